@@ -31,7 +31,8 @@ use sandtable_picture::{ViewDraw, build_draw_list, camera};
 use sandtable_render::cpu;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
-use sandtable_scene::{FeatureKind, SceneModel};
+use sandtable_scene::feature::FeatureKind;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_sheet::labels::{AnnotatedGround, annotations};
 use sandtable_terrain::triangle_surface::TriangleSurface;
 

@@ -15,7 +15,7 @@ use sandtable_terrain::query::service::HeightService;
 
 /// A digital terrain model: the ground, the features on it and the views of it that its file describes.
 pub struct Scene {
-    model: scene::SceneModel,
+    model: scene::scene_model::SceneModel,
 }
 
 /// How a scene is opened.
@@ -47,7 +47,7 @@ impl Default for SceneOptions<'_> {
 /// The view of a scene and the size of its picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
-    view: scene::SceneView,
+    view: scene::scene_view::SceneView,
     size: PictureSize,
 }
 

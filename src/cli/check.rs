@@ -14,8 +14,8 @@ use sandtable_base::message::choice::{Choice, ChoiceWord, word};
 use sandtable_description::finding::{Finding, Severity};
 use sandtable_description::source_place::SourcePlace;
 use sandtable_lint::opened::open_linted;
-use sandtable_scene::SceneModel;
-use sandtable_scene::views::whole_meters;
+use sandtable_scene::scene_label::whole_meters;
+use sandtable_scene::scene_model::SceneModel;
 
 /// The most notes that are printed: as many as fit on a screen beside the rest.
 const MOST_NOTES: usize = 20;

@@ -9,8 +9,8 @@ use crate::output::{print, print_lines, row};
 use crate::progress::StepTimer;
 use crate::render::find_camera;
 use crate::values::{picture_size, pixel};
-use sandtable_scene::SceneModel;
 use sandtable_scene::scene_file::open_scene;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_sheet::picture::PictureSize;
 use sandtable_sheet::picture_buffers::{PickedPlace, pick};
 

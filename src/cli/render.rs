@@ -19,7 +19,8 @@ use sandtable_base::message::suggest::{nearest, quoted};
 use sandtable_description::finding::{Finding, Severity};
 use sandtable_files::disk::{self, WriteFileCause, WriteFileError};
 use sandtable_render::OtherRenderer;
-use sandtable_scene::{SceneModel, SceneView};
+use sandtable_scene::scene_model::SceneModel;
+use sandtable_scene::scene_view::SceneView;
 use sandtable_sheet::picture::PictureSize;
 use sandtable_sheet::picture_statistics::Lightness;
 

@@ -11,9 +11,9 @@ use crate::output::{aligned, print, print_lines};
 use crate::progress::StepTimer;
 use sandtable_files::disk::{self, WriteFileError};
 use sandtable_files::output_files::OutputFiles;
-use sandtable_scene::SceneModel;
 use sandtable_scene::report::{ReportCell, ReportColumn, ReportTable, SceneReport};
 use sandtable_scene::scene_file::open_scene_true_to_scale;
+use sandtable_scene::scene_model::SceneModel;
 
 /// The most rows of a table that are printed; a file or JSON holds all.
 const SHOWN_ROWS: usize = 20;

@@ -18,8 +18,9 @@ use sandtable_files::disk::{self, ReadFileError, SystemError, WriteFileError};
 use sandtable_geom::crs::{Crs, CrsError};
 use sandtable_scene::assets::{AssetError, Assets};
 use sandtable_scene::build::build;
+use sandtable_scene::feature::SceneFeature;
 use sandtable_scene::scene_file::OpenSceneError;
-use sandtable_scene::{SceneFeature, SceneModel};
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::lattice::Lattice;
 
 /// Decimals of coordinates that are written in degrees: a millimeter.

@@ -15,9 +15,10 @@ use sandtable_geom::rect::Rect;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::attributes::DefaultCounts;
 use sandtable_scene::earthworks::{NamedEarthwork, of_table};
+use sandtable_scene::placed_model::Placement;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::sources::Sources;
 use sandtable_scene::world_frame::WorldFrame;
-use sandtable_scene::{Placement, SceneModel};
 use sandtable_terrain::lattice::Lattice;
 
 /// How far a model's pad may move ground beside its footprint, in cells: as far as its batters reach, and the pad's margin.

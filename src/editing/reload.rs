@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use crate::editor::SceneSource;
 use sandtable_files::disk;
 use sandtable_files::fingerprint::fingerprint;
-use sandtable_scene::SceneModel;
 use sandtable_scene::planned_pictures::ElevationNeed;
 use sandtable_scene::scene_file::{OpenSceneError, open_scene_for};
+use sandtable_scene::scene_model::SceneModel;
 
 /// A scene file that is shown, with the files that it was made of.
 #[derive(Clone, Debug)]

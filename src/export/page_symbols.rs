@@ -7,8 +7,8 @@ use sandtable_annotate::annotation::{Annotations, PictureSymbol, SymbolHeight};
 use sandtable_annotate::paint::annotate;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::pixels::Pixels;
-use sandtable_scene::SceneModel;
 use sandtable_scene::military::{SceneSymbol, SymbolSize};
+use sandtable_scene::scene_model::SceneModel;
 
 /// The picture that a symbol is painted on, 1080 pixels high as its design is, and its place on the ground there.
 const SIZE_PX: (u32, u32) = (900, 1080);

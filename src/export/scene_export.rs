@@ -8,7 +8,7 @@ use sandtable_files::disk::{self, WriteFileError};
 use sandtable_files::output_files::OutputFiles;
 use sandtable_mesh::write::Remarks;
 use sandtable_picture as picture;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 
 /// A format of exported scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

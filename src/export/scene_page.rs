@@ -20,7 +20,9 @@ use sandtable_picture::placed_text::PlacedText;
 use sandtable_roam::displayed::DisplayedTerrain;
 use sandtable_scene::flights::SceneFlight;
 use sandtable_scene::plinth::base_z;
-use sandtable_scene::{SceneLabel, SceneModel, SceneView};
+use sandtable_scene::scene_label::SceneLabel;
+use sandtable_scene::scene_model::SceneModel;
+use sandtable_scene::scene_view::SceneView;
 use sandtable_view::camera::{CameraError, ViewProjection};
 
 /// The error of the drawn ground where none is stated: the first of these, in meters, that needs no more triangles than

@@ -6,9 +6,10 @@ use sandtable_description::document::Document;
 use sandtable_description::finding::Finding;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_draw::list::FeatureId;
+use sandtable_scene::feature::{FeatureKind, SceneFeature};
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::sources::Sources;
 use sandtable_scene::symbols::LineSymbol;
-use sandtable_scene::{FeatureKind, SceneFeature, SceneModel};
 
 /// A scene with the document and the files that it was built of.
 pub struct LintContext<'a> {

@@ -7,7 +7,7 @@ use crate::sink::FindingSink;
 use sandtable_base::message::suggest::quoted;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::unused::UnusedInclude;
-use sandtable_scene::FeatureKind;
+use sandtable_scene::feature::FeatureKind;
 
 /// Finds styles and phases that no table names, included files without effect, and names that several tables have.
 pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {

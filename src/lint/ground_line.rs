@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use sandtable_geom::polyline::Polyline;
 use sandtable_geom::profile::Profile;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::profile::profile;
 
 /// The ground along `line`, world coordinates, in meters by meters from its start; NaN where there is none. Costs three

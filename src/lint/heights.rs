@@ -15,8 +15,8 @@ use sandtable_dem::units::FOOT_M;
 use sandtable_description::features::ModelPlacement;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::words::Clamp;
-use sandtable_scene::Placement;
 use sandtable_scene::attributes::Attributes;
+use sandtable_scene::placed_model::Placement;
 use sandtable_terrain::query::{Interpolation, ground_height};
 
 /// Fewer heights say nothing.

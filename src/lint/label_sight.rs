@@ -15,8 +15,10 @@ use sandtable_draw::list::FeatureId;
 use sandtable_draw::pixels::Pixels;
 use sandtable_geom::polyline::Polyline;
 use sandtable_render::picture::Rendering;
+use sandtable_scene::feature::FeatureKind;
 use sandtable_scene::label_course::LabelCourse;
-use sandtable_scene::{FeatureKind, SceneLabel, SceneModel};
+use sandtable_scene::scene_label::SceneLabel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_view::camera::{Camera, Projected};
 use sandtable_walk::pick::{StandingIndex, pixel_ray};
 

@@ -13,7 +13,8 @@ use sandtable_base::message::suggest::quoted;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_draw::list::FeatureId;
 use sandtable_picture::nested_ground::NestedHeights;
-use sandtable_scene::{SceneModel, SceneView};
+use sandtable_scene::scene_model::SceneModel;
+use sandtable_scene::scene_view::SceneView;
 use sandtable_sheet::labels::{AnnotatedGround, annotations};
 use sandtable_sheet::picture::{PictureSize, framed_camera};
 

@@ -8,7 +8,7 @@ use crate::sink::FindingSink;
 use crate::worst::WorstOfTables;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_draw::list::FeatureId;
-use sandtable_scene::FeatureKind;
+use sandtable_scene::feature::FeatureKind;
 use sandtable_scene::report::LakeRow;
 use sandtable_scene::water::lake_level::far_off_m;
 

@@ -39,8 +39,8 @@ use crate::context::LintContext;
 use crate::sink::FindingSink;
 use sandtable_description::document::Document;
 use sandtable_description::finding::Finding;
-use sandtable_scene::SceneModel;
 use sandtable_scene::assets::Assets;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::sources::Sources;
 use sandtable_scene::world_frame::WorldFrame;
 

@@ -9,7 +9,7 @@ use sandtable_description::finding_code::FindingCode;
 use sandtable_earthworks::alignment::Width;
 use sandtable_geom::own_crossing::own_crossing;
 use sandtable_geom::tight_bend::{REVERSAL_RAD, TightBend, tight_bends, turns};
-use sandtable_scene::FeatureKind;
+use sandtable_scene::feature::FeatureKind;
 use sandtable_scene::symbols::LineSymbol;
 
 /// The narrowest road in meters: what one foot before the other needs.

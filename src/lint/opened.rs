@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use sandtable_description::finding::Finding;
-use sandtable_scene::SceneModel;
 use sandtable_scene::build::build;
 use sandtable_scene::scene_file::{OpenSceneError, open_document};
+use sandtable_scene::scene_model::SceneModel;
 
 use crate::lint;
 

@@ -15,7 +15,7 @@ use sandtable_geom::polygon;
 use sandtable_geom::rect::Rect;
 use sandtable_geom::rect_tree::RectTree;
 use sandtable_geom::segment;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::symbols::LineSymbol;
 
 /// Rivers narrower than this run through a pipe under the road, which no map shows, meters.

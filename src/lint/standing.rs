@@ -8,9 +8,9 @@ use glam::{Mat4, Vec2, Vec3};
 use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, FeatureId, MaterialId, MeshId};
 use sandtable_geom::rect::Rect;
 use sandtable_model::Model;
-use sandtable_scene::SceneModel;
 use sandtable_scene::footprint::ModelFootprint;
 use sandtable_scene::placement::stand;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::support_surface::SupportSurface;
 use sandtable_walk::pick::StandingIndex;
 

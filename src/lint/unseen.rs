@@ -12,7 +12,7 @@ use crate::sink::FindingSink;
 use crate::standing::reach;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_geom::aabb::Aabb;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_sheet::picture::{PictureSize, framed_camera};
 use sandtable_view::frustum::Frustum;
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::{DVec2, DVec3};
 
 use sandtable_geom::rect::Rect;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::sunlight::{ALTITUDE_DEG, LEFT_DEG};
 use sandtable_terrain::lattice::{Lattice, Post};
 

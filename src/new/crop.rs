@@ -5,7 +5,7 @@ use glam::DVec2;
 use crate::stated;
 use sandtable_dem::largest_rectangle::largest_rectangle;
 use sandtable_geom::rect::Rect;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::lattice::Lattice;
 
 /// A part of the elevation model, in the scene's system, or in that of its inline points.

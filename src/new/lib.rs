@@ -35,11 +35,11 @@ use sandtable_files::disk::{self, SystemError, WriteFileError};
 use sandtable_geom::crs::Crs;
 use sandtable_geom::rect::Rect;
 use sandtable_remote::address::is_address_path;
-use sandtable_scene::SceneModel;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build_with;
 use sandtable_scene::planned_pictures::{ElevationNeed, PlannedPictures};
 use sandtable_scene::scene_file::OpenSceneError;
+use sandtable_scene::scene_model::SceneModel;
 
 /// The name of the scene file in its folder.
 const FILE_NAME: &str = "scene.toml";

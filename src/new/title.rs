@@ -10,7 +10,7 @@ use crate::text::VectorDraft;
 use sandtable_base::message::capitalized::capitalized;
 use sandtable_files::disk;
 use sandtable_geom::polygon;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 
 /// Words of file names that are written in capitals.
 const ABBREVIATIONS: [&str; 8] = ["dem", "dtm", "dsm", "srtm", "ned", "utm", "usgs", "nasadem"];

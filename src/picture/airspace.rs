@@ -7,8 +7,8 @@ use crate::graphic_colors::graphic_color;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DepthLayer, DrawList};
 use sandtable_draw::material::{AlphaMode, Material};
-use sandtable_scene::SceneModel;
-use sandtable_scene::graphics::SceneGraphic;
+use sandtable_scene::scene_graphic::SceneGraphic;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_structure::faces::Faces;
 use sandtable_symbology::graphic::kind::GraphicShape;
 

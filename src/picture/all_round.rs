@@ -25,10 +25,12 @@ use sandtable_geom::rect::Rect;
 use sandtable_ribbon::drape::drape;
 use sandtable_ribbon::texture::RibbonSurface;
 use sandtable_roam::displayed::DisplayedTerrain;
+use sandtable_scene::feature_meshes::Ribbon;
 use sandtable_scene::framing::parallel_view::parallel_camera;
-use sandtable_scene::ground_map::GroundMapKey;
+use sandtable_scene::ground_map_cache::GroundMapKey;
+use sandtable_scene::scene_model::SceneModel;
+use sandtable_scene::scene_view::ParallelView;
 use sandtable_scene::symbols::LineSymbol;
-use sandtable_scene::{ParallelView, Ribbon, SceneModel};
 use sandtable_terrain::triangle_surface::TriangleSurface;
 use sandtable_view::camera::{Camera, CameraError};
 

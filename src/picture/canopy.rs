@@ -25,7 +25,7 @@ use sandtable_draw::undergrowth::Undergrowth;
 use sandtable_mesh::sink::MeshSink;
 use sandtable_model::Model;
 use sandtable_model::detail::ApparentSize;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::undergrowth::{CrownGround, crown_reach};
 use sandtable_terrain::support_surface::SupportSurface;
 

@@ -18,7 +18,7 @@ use sandtable_draw::material::{Material, TextureId};
 use sandtable_model::detail::{ApparentSize, DetailForm, ModelDetail};
 use sandtable_model::impostor::Impostor;
 use sandtable_model::{Model, ModelPart};
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_view::camera::Camera;
 use sandtable_view::frustum::Frustum;
 

@@ -23,8 +23,9 @@ use sandtable_ribbon::partition;
 use sandtable_ribbon::plan::PlanMesh;
 use sandtable_ribbon::stroke::{StrokeOptions, StrokePath, stroke};
 use sandtable_ribbon::texture::{RibbonSurface, markings, texture};
+use sandtable_scene::feature_meshes::Ribbon;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::symbols::LineSymbol;
-use sandtable_scene::{Ribbon, SceneModel};
 use sandtable_terrain::triangle_surface::TriangleSurface;
 
 /// The layers that symbols of rivers and of roads are the uppermost of: banks, and lakes.

@@ -15,8 +15,8 @@ use sandtable_draw::color::Srgba;
 use sandtable_geom::polygon::doubled_area;
 use sandtable_geom::rect::Rect;
 use sandtable_ribbon::area;
-use sandtable_scene::SceneModel;
-use sandtable_scene::graphics::SceneGraphic;
+use sandtable_scene::scene_graphic::SceneGraphic;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_symbology::graphic::drawing::{GraphicInput, StrokeDash, StrokeSide, TextCourse};
 use sandtable_terrain::triangle_surface::TriangleSurface;
 

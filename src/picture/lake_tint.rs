@@ -16,7 +16,7 @@ use sandtable_geom::distance_field::{RegionGrid, distances_m};
 use sandtable_geom::polygon;
 use sandtable_geom::rect::Rect;
 use sandtable_ribbon::texture::RibbonSurface;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::water_shore::OPEN_SHARE;
 
 /// Cells along the longer side of a lake: its color changes from shore to middle, over some tens of them.

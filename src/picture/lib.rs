@@ -48,8 +48,9 @@ use sandtable_geom::aabb::Aabb;
 use sandtable_roam::displayed::DisplayedTerrain;
 use sandtable_scene::framing::fitted_view::fitted_aim;
 use sandtable_scene::framing::parallel_view::parallel_camera;
-use sandtable_scene::ground_map::GroundMapKey;
-use sandtable_scene::{SceneModel, SceneView, ViewAim};
+use sandtable_scene::ground_map_cache::GroundMapKey;
+use sandtable_scene::scene_model::SceneModel;
+use sandtable_scene::scene_view::{SceneView, ViewAim};
 use sandtable_view::camera::{Camera, CameraError, far_m};
 
 /// The draw list of a scene for one camera.

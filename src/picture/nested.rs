@@ -27,9 +27,11 @@ use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, FeatureId, MaterialId
 use sandtable_draw::material::TextureId;
 use sandtable_geom::rect::Rect;
 use sandtable_roam::displayed::DisplayedTerrain;
-use sandtable_scene::ground_map::{GroundMapKey, form_level, ground_map};
+use sandtable_scene::feature::{FeatureKind, SceneFeature};
+use sandtable_scene::ground_map::{form_level, ground_map};
+use sandtable_scene::ground_map_cache::GroundMapKey;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::texture_shading::sky_in_part;
-use sandtable_scene::{FeatureKind, SceneFeature, SceneModel};
 use sandtable_view::camera::Camera;
 
 /// How deep skirts reach below the border of a ground, in cells of the coarser of the two that meet there: deeper than means

@@ -17,9 +17,9 @@ use glam::{DVec2, Vec3};
 
 use sandtable_geom::aabb::Aabb;
 use sandtable_geom::rect::Rect;
-use sandtable_scene::SceneModel;
 use sandtable_scene::finer_elevation::level_samples;
 use sandtable_scene::framing::shown_step::SQUARE_PX;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_view::camera::Camera;
 use sandtable_view::frustum::Frustum;

@@ -7,7 +7,7 @@ use crate::placed_text::PlacedText;
 use crate::{graphics, sight};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::DrawList;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::triangle_surface::TriangleSurface;
 use sandtable_view::camera::Camera;
 

@@ -20,7 +20,7 @@ use sandtable_draw::pixels::Pixels;
 use sandtable_mesh::sink::MeshSink;
 use sandtable_ribbon::drape::drape;
 use sandtable_ribbon::plan::{PlanMesh, PlanVertex};
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::seen_ground::{PostFrame, SceneSight, SceneViewshed, SeenPosts, SightedLine};
 use sandtable_scene::sight_layers::{SceneRange, heading};
 use sandtable_terrain::lattice::{Lattice, Post};

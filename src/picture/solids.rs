@@ -7,7 +7,8 @@ use sandtable_draw::list::{DepthLayer, DrawList};
 use sandtable_draw::material::Material;
 use sandtable_ribbon::texture::texture;
 use sandtable_scene::facade::facade;
-use sandtable_scene::{Coat, SceneModel};
+use sandtable_scene::feature_meshes::Coat;
+use sandtable_scene::scene_model::SceneModel;
 
 /// Adds all solids.
 pub(super) fn add(list: &mut DrawList, scene: &SceneModel) {

@@ -13,8 +13,8 @@ use sandtable_draw::material::{AlphaMode, Material};
 use sandtable_draw::pixels::Pixels;
 use sandtable_geom::rect::Rect;
 use sandtable_mesh::sink::MeshSink;
-use sandtable_scene::SceneModel;
 use sandtable_scene::plinth::base_z;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::table_shadow::{TableShadow, table_rect};
 use sandtable_scene::wood::wood;
 

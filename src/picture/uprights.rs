@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::add_mesh;
 use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh};
 use sandtable_draw::material::Material;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::full_resolution::FullResolution;
 use sandtable_terrain::support_surface::SupportSurface;
 use sandtable_terrain::triangle_surface::TriangleSurface;

@@ -8,8 +8,8 @@ use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh, DrawVertex, FeatureId};
 use sandtable_draw::material::{Albedo, AlphaMode, Material};
 use sandtable_mesh::sink::MeshSink;
-use sandtable_scene::SceneModel;
 use sandtable_scene::plinth::floor_z;
+use sandtable_scene::scene_model::SceneModel;
 
 /// The color of the lines: neutral, and lighter than ink, so that the ground stays the figure.
 pub const LINES: Srgba = Srgba([96, 96, 104, 130]);

@@ -6,9 +6,9 @@
 
 use glam::DVec2;
 
-use crate::FeatureKind;
 use crate::builder::SceneBuilder;
 use crate::crossed_shapes::CrossedShapes;
+use crate::feature::FeatureKind;
 use crate::near::Clipped;
 use crate::scene_findings::FeatureTable;
 use crate::sources::{Sourced, Sources};
@@ -58,7 +58,7 @@ pub fn lay(
             patch.lay(feature, collected);
         }
         let outcome = "what an odd number of its turns runs around is covered";
-        crossed.report(("area", outcome), table.source.span(), sources.frame, collected);
+        crossed.report(("area", outcome), table.source.span(), sources.frame, &mut collected.findings);
         let named =
             FeatureTable { kind: FeatureKind::Area, name: table.name.as_deref(), source: &table.source };
         collected.findings.left_out(off, &named, "off the elevation model");

@@ -12,6 +12,9 @@ use sandtable_description::features::FeatureSource;
 use sandtable_description::scalar::Scalar;
 use sandtable_vector::feature::{Geometry, VectorLayer};
 
+/// Longer texts name nothing; they are cut here.
+const MOST_LETTERS: usize = 1000;
+
 /// The properties of one feature; none for a feature that the scene file itself states.
 #[derive(Clone, Debug, Default)]
 pub struct Attributes {
@@ -129,4 +132,14 @@ pub fn notes(counts: &DefaultCounts) -> impl Iterator<Item = String> + '_ {
         let features = if *count == 1 { "1 feature gives" } else { &format!("{count} features give") };
         format!("{key}: {features} no value in its range; {default} was taken")
     })
+}
+
+/// A value as text; `None` for text without a letter.
+pub fn written(value: &Scalar) -> Option<String> {
+    let text = match value {
+        Scalar::Bool(value) => value.to_string(),
+        Scalar::Number(number) => number.to_string(),
+        Scalar::Text(text) => text.trim().chars().take(MOST_LETTERS).collect(),
+    };
+    (!text.is_empty()).then_some(text)
 }

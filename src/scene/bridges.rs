@@ -12,7 +12,9 @@
 
 use std::collections::BTreeSet;
 
-use crate::builder::{SceneBuilder, described};
+use crate::builder::SceneBuilder;
+use crate::feature::{FeatureKind, described};
+use crate::feature_meshes::{Coat, Solid};
 use crate::report::SpanRow;
 use crate::roads::centerline::Centerline;
 use crate::roads::chains::{ChainEnd, SpanChain};
@@ -20,7 +22,6 @@ use crate::roads::levels::{self, ChainRun, Site};
 use crate::roads::profiles::BridgeProfile;
 use crate::roads::spans::{self, RoadSpan};
 use crate::sources::Sources;
-use crate::{Coat, FeatureKind, Solid};
 use sandtable_base::limits::BRIDGE_PIERS;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;

@@ -11,40 +11,35 @@ use std::sync::{Arc, OnceLock};
 
 use glam::DVec2;
 
-use crate::SceneModel;
-use crate::areas;
 use crate::assets::Assets;
 use crate::attributes;
-use crate::bridges;
 use crate::builder::SceneBuilder;
-use crate::buildings::{self, Plot};
-use crate::earthworks;
+use crate::buildings;
 use crate::exact_ground::ExactGround;
-use crate::fences::{self, FenceLine};
+use crate::fences;
 use crate::finer_elevation::FinerElevation;
 use crate::font;
 use crate::graphics;
 use crate::ground::{self, LoadedGround};
 use crate::imagery;
+use crate::labels;
 use crate::military;
 use crate::models;
+use crate::placed_sight;
 use crate::planned_pictures::ElevationNeed;
-use crate::roads::centerline::{self, Centerline};
-use crate::roads::{conform, network};
-use crate::sight_layers;
+use crate::roads::network;
+use crate::scene_model::SceneModel;
+use crate::shaped_ground::{shape, shape_loaded};
 use crate::sources::Sources;
 use crate::spot_heights::spot_heights;
 use crate::style::{self, RampSource, Surroundings};
 use crate::sunlight::Sunlight;
 use crate::views;
-use crate::water::{lakes, rivers};
 use crate::world_frame::WorldFrame;
 use sandtable_dem::raster::Raster;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::finding_code::FindingCode;
-use sandtable_earthworks::brush::Change;
-use sandtable_earthworks::held_posts::HeldPosts;
 use sandtable_geom::crs::Crs;
 use sandtable_roam::layout::{DEFAULT_PATCH, PatchLayout};
 use sandtable_terrain::lattice::Lattice;
@@ -75,31 +70,6 @@ pub fn build_ground(document: &Document, assets: &Assets) -> Result<SceneGround,
     let LoadedGround { source, lattice, crs, stated_crs, scale_note, .. } = loaded;
     let heights = height_service(document, source, crs, Arc::new(lattice), &decks)?;
     Ok(SceneGround { heights, stated_crs, scale_note, files: assets.files_read() })
-}
-
-/// The ground of a part of a scene by all samples of its elevation, with what shapes it. `document` is that of the part.
-///
-/// # Errors
-/// As [`build_ground`].
-pub(super) fn part_ground(document: &Document, assets: &Assets) -> Result<Lattice, Diagnostic> {
-    let mut loaded = ground::load(document, assets, ElevationNeed::Nested { step: 1 })?;
-    shape_loaded(document, assets, &mut loaded)?;
-    Ok(loaded.lattice)
-}
-
-/// Shapes the ground as it was loaded, and returns the decks over it. Of the models, only those that have the ground leveled are
-/// read.
-fn shape_loaded(
-    document: &Document,
-    assets: &Assets,
-    loaded: &mut LoadedGround,
-) -> Result<Vec<SurfaceTriangle>, Diagnostic> {
-    let frame = WorldFrame::new(document, &loaded.crs, &loaded.stated_crs, loaded.lattice.origin());
-    let sources = Sources::new(&frame, assets);
-    let mut collected = SceneBuilder::new(loaded.findings.clone());
-    shape(document, &sources, &mut loaded.lattice, &mut collected)?;
-    models::level_pads(&sources, &mut loaded.lattice)?;
-    Ok(collected.decks)
 }
 
 /// Builds the scene that `document` describes, with all samples of its elevation that fit into the memory. `progress` is called
@@ -148,11 +118,11 @@ pub fn build_with(
 
     graphics::lay(document, &sources, &lattice.extent(), &mut collected)?;
     let exact = ExactGround::new(&frame, &lattice, assets, loaded.all_samples)?;
-    let sight = sight_layers::lay(&exact, &mut collected)?;
+    let sight = placed_sight::lay(&exact, &mut collected)?;
 
     progress("placing labels and cameras");
     let layout = layout(document, &lattice)?;
-    let mut labels = views::labels(&sources, &exact, &mut collected.findings)?;
+    let mut labels = labels::labels(&sources, &exact, &mut collected.findings)?;
     let most = document.style.spot_heights as usize;
     labels.extend(spot_heights(most, &labels, &collected.lakes, &exact)?);
     exact.report(&mut collected.findings);
@@ -232,36 +202,6 @@ pub fn build_with(
         stated_crs,
         files: assets.files_read(),
     })
-}
-
-/// Features that shaped the ground and are not built yet.
-struct ShapedFeatures {
-    roads: Vec<Centerline>,
-    plots: Vec<Plot>,
-    lines: Vec<FenceLine>,
-    held: HeldPosts,
-    dug: Vec<Change>,
-}
-
-/// Shapes the ground for everything but models, and builds the decks over it.
-fn shape(
-    document: &Document,
-    sources: &Sources<'_>,
-    lattice: &mut Lattice,
-    collected: &mut SceneBuilder,
-) -> Result<ShapedFeatures, Diagnostic> {
-    let extent = lattice.extent();
-    lakes::lay(document, sources, lattice, collected)?;
-    rivers::lay(document, sources, lattice, collected)?;
-    let held = HeldPosts::pinned(lattice);
-    areas::lay(document, sources, &extent, collected)?;
-    let mut roads = centerline::collect(document, sources, &extent, collected)?;
-    conform::conform(document, lattice, &mut roads, collected)?;
-    let plots = buildings::lay_out(document, sources, lattice, collected)?;
-    let lines = fences::lay_out(document, sources, lattice, collected)?;
-    bridges::build(document, sources, lattice, &mut roads, collected)?;
-    let dug = earthworks::build(document, sources, lattice, &held, collected)?;
-    Ok(ShapedFeatures { roads, plots, lines, held, dug })
 }
 
 fn height_service(

@@ -1,14 +1,15 @@
 //! The output of the passes over a document: features with their ids, ribbons, solids, findings and reports.
 
 use crate::attributes::DefaultCounts;
+use crate::feature::{FeatureKind, SceneFeature};
+use crate::feature_meshes::{FeatureSolid, Ribbon, Solid};
 use crate::feature_origin::FeatureOrigin;
-use crate::graphics::SceneGraphic;
 use crate::report::SceneReport;
 use crate::roads::profiles::{BridgeProfile, RoadProfile};
 use crate::scene_findings::SceneFindings;
-use crate::spot_heights::LakeSurface;
+use crate::scene_graphic::SceneGraphic;
 use crate::symbols::LineSymbol;
-use crate::{FeatureKind, FeatureSolid, Ribbon, SceneFeature, Solid};
+use crate::water::lake_level::LakeSurface;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::FeatureId;
 use sandtable_ribbon::partition;
@@ -108,15 +109,6 @@ impl SceneBuilder {
             ribbon.plan = plan;
         }
         self.ribbons.retain(|ribbon| !ribbon.plan.triangles.is_empty());
-    }
-}
-
-/// A feature in a note; many have no name.
-pub fn described(kind: &str, name: &str) -> String {
-    match name {
-        "" if kind.starts_with(['a', 'e', 'i', 'o', 'u']) => format!("an {kind} without a name"),
-        "" => format!("a {kind} without a name"),
-        _ => format!("{kind} '{name}'"),
     }
 }
 

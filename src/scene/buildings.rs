@@ -12,11 +12,12 @@ use crate::attributes::Attributes;
 use crate::builder::SceneBuilder;
 use crate::building_colors::color_named;
 use crate::crossed_shapes::CrossedShapes;
+use crate::feature::FeatureKind;
+use crate::feature_meshes::{Coat, FeatureSolid, Solid};
 use crate::report::BuildingPadRow;
 use crate::scene_findings::SceneFindings;
 use crate::sources::{Sourced, Sources};
 use crate::vertical_scale::DrawnGround;
-use crate::{Coat, FeatureKind, FeatureSolid, Solid};
 use sandtable_base::message::choice::Choice;
 use sandtable_description::color::Color;
 use sandtable_description::diagnostic::Diagnostic;
@@ -139,7 +140,7 @@ pub fn lay_out(
             plots.push(Plot { table, attributes, parts, pad_m, feature });
         }
         let outcome = "it is built in pieces that do not";
-        crossed.report(("building", outcome), building.source.span(), sources.frame, collected);
+        crossed.report(("building", outcome), building.source.span(), sources.frame, &mut collected.findings);
     }
     tally.note(document, &mut collected.findings);
     Ok(plots)

@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use crate::builder::{SceneBuilder, described};
+use crate::feature::described;
+use crate::scene_findings::SceneFindings;
 use crate::world_frame::WorldFrame;
 use sandtable_description::finding::Finding;
 use sandtable_description::finding_code::FindingCode;
@@ -45,7 +46,7 @@ impl CrossedShapes {
         (noun, outcome): (&str, &str),
         span: Range<usize>,
         frame: &WorldFrame<'_>,
-        collected: &mut SceneBuilder,
+        findings: &mut SceneFindings,
     ) {
         let Some((name, at)) = self.first else { return };
         let (what, at, others) = (described(noun, &name), at + frame.origin, self.count - 1);
@@ -53,6 +54,6 @@ impl CrossedShapes {
         let message = format!("{what} crosses itself at ({:.0}, {:.0}): {outcome}{more}", at.x, at.y);
         let finding = Finding::new(FindingCode::CrossesItself, message).at(&frame.document.source, span);
         let help = "mend the order of its points, for example with: ogr2ogr -makevalid out.geojson IN";
-        collected.findings.push(finding.with_help(help).and_more(others));
+        findings.push(finding.with_help(help).and_more(others));
     }
 }

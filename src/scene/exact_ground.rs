@@ -16,9 +16,10 @@ use glam::{DVec2, Vec2};
 
 use crate::all_samples::{AllSamples, PartTooLarge};
 use crate::assets::Assets;
-use crate::build::part_ground;
 use crate::finer_elevation::part_document;
+use crate::planned_pictures::depends_on_samples;
 use crate::scene_findings::SceneFindings;
+use crate::shaped_ground::part_ground;
 use crate::world_frame::WorldFrame;
 use sandtable_dem::windows::Windows;
 use sandtable_description::diagnostic::Diagnostic;
@@ -26,7 +27,7 @@ use sandtable_description::document::Document;
 use sandtable_description::feature_value::FeatureValue;
 use sandtable_description::features::FenceTable;
 use sandtable_description::finding_code::FindingCode;
-use sandtable_description::words::{BaseRule, FenceKind, Footing, ProfileMode, RangeExtent};
+use sandtable_description::words::{BaseRule, FenceKind, Footing, ProfileMode};
 use sandtable_geom::rect::Rect;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::query::windowed::LatticePartError;
@@ -41,18 +42,6 @@ const SHAPED_PART_CELLS: f64 = 64.0;
 
 /// How far from a summit of the means the highest sample is looked for, in cells of the means: within the squares beside it.
 const SUMMIT_CELLS: f64 = 1.5;
-
-/// Whether pictures of a scene show heights of places in numbers, or what is seen from a place, which depend on single samples.
-pub(super) fn depends_on_samples(document: &Document) -> bool {
-    let prints_heights = document.labels.iter().any(|label| label.text.contains("{height}"));
-    prints_heights || document.style.spot_heights > 0 || shows_sight(document)
-}
-
-/// Whether what is seen from a place shows.
-fn shows_sight(document: &Document) -> bool {
-    let is_seen = document.ranges.iter().any(|range| range.fill == RangeExtent::Seen);
-    is_seen || !document.viewsheds.is_empty() || !document.sights.is_empty()
-}
 
 /// Whether the heights of the ground may be other than those of the elevation.
 fn shapes_ground(document: &Document) -> bool {

@@ -5,30 +5,24 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, Vec3};
 
-use crate::SceneLabel;
-use crate::attributes::Attributes;
+use crate::attributes::{Attributes, written};
 use crate::exact_ground::ExactGround;
 use crate::label_course::{LabelCourse, across, along};
-use crate::near::MERGE_M;
 use crate::scene_findings::SceneFindings;
+use crate::scene_label::{SceneLabel, whole_meters};
+use crate::shape_place::{place, world_points};
 use crate::sources::Sources;
-use crate::views::whole_meters;
 use crate::world_frame::WorldFrame;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::LabelTable;
 use sandtable_description::expression::Expression;
 use sandtable_description::finding_code::FindingCode;
-use sandtable_description::scalar::Scalar;
 use sandtable_geom::crs::Crs;
-use sandtable_geom::polygon::{doubled_area, inner_point};
-use sandtable_geom::polyline::Polyline;
+use sandtable_geom::polygon::doubled_area;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_vector::feature::{Geometry, Polygon};
-
-/// Longer texts name nothing; they are cut here.
-const MOST_LETTERS: usize = 1000;
 
 /// The labels of the features that `table` names, in the order of their rank. `findings` gets a sentence on features
 /// without one.
@@ -192,16 +186,6 @@ impl LeftOut {
     }
 }
 
-/// A value as text; `None` for text without a letter.
-pub fn written(value: &Scalar) -> Option<String> {
-    let text = match value {
-        Scalar::Bool(value) => value.to_string(),
-        Scalar::Number(number) => number.to_string(),
-        Scalar::Text(text) => text.trim().chars().take(MOST_LETTERS).collect(),
-    };
-    (!text.is_empty()).then_some(text)
-}
-
 /// `text` with `{height}` and every `{property}` replaced; `None` where the feature does not have that property. A brace
 /// that is not closed stays.
 fn filled(text: &str, elevation: &str, attributes: &Attributes) -> Option<String> {
@@ -223,39 +207,6 @@ fn next_brace(text: &str) -> Option<(&str, &str, &str)> {
     let (before, rest) = text.split_once('{')?;
     let (name, after) = rest.split_once('}')?;
     Some((before, name, after))
-}
-
-/// The place on the ground that names a shape of the system `crs`, world space, displayed height; `None` where nothing of it lies on
-/// ground with data.
-pub fn place(shape: &Geometry, crs: &Crs, frame: &WorldFrame<'_>, lattice: &Lattice) -> Option<DVec3> {
-    let extent = lattice.extent();
-    let world = |points: &[DVec2]| world_points(points, crs, frame);
-    let longest = |best: (DVec2, f64), next: (DVec2, f64)| if next.1 > best.1 { next } else { best };
-    let on_ground = |at: DVec2| frame.ground_at(lattice, at).map(|ground| at.extend(f64::from(ground.z)));
-    match shape {
-        Geometry::Points(points) => {
-            points.iter().find_map(|&point| frame.world(crs, point).ok().and_then(on_ground))
-        }
-        Geometry::Lines(lines) => {
-            let lines = lines.iter().filter_map(|line| Polyline::new(world(line)?, MERGE_M));
-            let pieces = lines.flat_map(|line| line.clip(&extent));
-            let middles = pieces.map(|piece| (piece.at(piece.length() / 2.0), piece.length()));
-            middles.reduce(longest).and_then(|(at, _)| on_ground(at))
-        }
-        Geometry::Polygons(polygons) => {
-            let inside = |polygon: &Polygon| {
-                let rings: Vec<Vec<DVec2>> =
-                    polygon.rings().map(|ring| world(ring)).collect::<Option<_>>()?;
-                inner_point(rings.iter().map(Vec::as_slice), &extent)
-            };
-            polygons.iter().filter_map(inside).reduce(longest).and_then(|(at, _)| on_ground(at))
-        }
-    }
-}
-
-/// Points of the system `crs` in world coordinates; `None` where one has none.
-fn world_points(points: &[DVec2], crs: &Crs, frame: &WorldFrame<'_>) -> Option<Vec<DVec2>> {
-    points.iter().map(|&at| frame.world(crs, at).ok().filter(|at| at.is_finite())).collect()
 }
 
 fn world_lines(shape: &Geometry, crs: &Crs, frame: &WorldFrame<'_>) -> Vec<Vec<DVec2>> {

@@ -6,12 +6,13 @@
 use crate::attributes::Attributes;
 use crate::builder::SceneBuilder;
 use crate::crossed_shapes::CrossedShapes;
+use crate::feature::FeatureKind;
+use crate::feature_meshes::FeatureSolid;
 use crate::near::{self, Clipped};
 use crate::report::TrenchRow;
 use crate::scene_findings::FeatureTable;
 use crate::sources::Sources;
 use crate::vertical_scale::DrawnGround;
-use crate::{FeatureKind, FeatureSolid};
 use sandtable_base::limits::LINE_PIECES;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
@@ -92,7 +93,7 @@ pub fn lay_out(
         let named = FeatureTable { kind: FeatureKind::Fence, name: stated, source: &fence.source };
         let found = sources.lines(&fence.source)?;
         let mut crossed = CrossedShapes::default();
-        for (attributes, line) in near::lines(found, &extent, 0.0, &named, collected) {
+        for (attributes, line) in near::lines(found, &extent, 0.0, &named, &mut collected.findings) {
             let name = attributes.name(stated);
             let feature = collected.add(FeatureKind::Fence, name.clone(), attributes.origin(&fence.source));
             crossed.add_line(line.points(), || name.clone());
@@ -106,7 +107,12 @@ pub fn lay_out(
             }
             lines.push(line);
         }
-        crossed.report(("line", "it stands through itself"), fence.source.span(), sources.frame, collected);
+        crossed.report(
+            ("line", "it stands through itself"),
+            fence.source.span(),
+            sources.frame,
+            &mut collected.findings,
+        );
     }
     if undug > 0 {
         let trenches = if undug == 1 { "trench" } else { "trenches" };

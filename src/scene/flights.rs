@@ -7,9 +7,10 @@ use glam::{DVec2, Vec3};
 
 use crate::assets::Assets;
 use crate::near::MERGE_M;
+use crate::scene_model::SceneModel;
+use crate::scene_view::{SceneView, ViewAim};
 use crate::sources::Sources;
 use crate::world_frame::WorldFrame;
-use crate::{SceneModel, SceneView, ViewAim};
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::{Document, FlightTable};
 use sandtable_geom::polyline::Polyline;

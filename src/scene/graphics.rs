@@ -2,10 +2,11 @@
 
 use glam::DVec2;
 
-use crate::FeatureKind;
 use crate::attributes::Attributes;
 use crate::builder::SceneBuilder;
+use crate::feature::FeatureKind;
 use crate::scene_findings::FeatureTable;
+use crate::scene_graphic::SceneGraphic;
 use crate::sources::Sources;
 use sandtable_base::limits::SCENE_GRAPHICS;
 use sandtable_base::message::suggest::{nearest, quoted};
@@ -23,27 +24,6 @@ use sandtable_symbology::graphic::check::{GraphicError, MOST_RANGES, PlacedGraph
 use sandtable_symbology::graphic::fields::{ECHELONS, GraphicFields, echelon_mark};
 use sandtable_symbology::graphic::kind::{GRAPHIC_KINDS, GraphicKind};
 use sandtable_vector::feature::Geometry;
-
-/// A tactical graphic in its place.
-#[derive(Clone, Debug)]
-pub struct SceneGraphic {
-    /// What it is.
-    pub kind: &'static GraphicKind,
-    /// Its points, world X and Y; of an area without repeating the first.
-    pub points: Vec<DVec2>,
-    /// The stated width in meters.
-    pub width_m: Option<f64>,
-    /// Its texts and numbers.
-    pub fields: GraphicFields,
-    /// Whose it is.
-    pub side: GraphicSide,
-    /// Whether it is there.
-    pub status: GraphicStatus,
-    /// The lowest and the highest elevation of airspace, meters.
-    pub elevations_m: Option<[f64; 2]>,
-    /// The feature it is.
-    pub feature: FeatureId,
-}
 
 /// Adds the document's graphics to `collected`; those of files that lie off the ground are left out with a note.
 ///

@@ -1,11 +1,12 @@
 //! The ground map of a picture: heights, slopes and light at the level of the posts that the picture shows.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
-use crate::SceneModel;
+use crate::ground_map_cache::GroundMapKey;
 use crate::relief_strength::ReliefStrength;
+use crate::scene_model::SceneModel;
 use crate::texture_shading::TextureShading;
 use crate::undergrowth::undergrowth;
 use sandtable_dem::raster::Samples;
@@ -17,39 +18,13 @@ use sandtable_terrain::light::TerrainLight;
 use sandtable_terrain::terraces::without_terraces;
 use sandtable_terrain::water_shore::WaterShore;
 
-/// What a scene's ground map depends on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GroundMapKey {
-    /// 0 for every post, each further level for every second post of the one before, smoothed.
-    pub level: u32,
-    /// Unit vector toward the sun.
-    pub to_sun: Vec3,
-}
-
-/// The ground map that was made last: pictures of one view after the other share it.
-#[derive(Debug, Default)]
-pub struct GroundMapCache(Mutex<Option<(GroundMapKey, Arc<GroundMap>)>>);
-
-impl GroundMapCache {
-    /// The map of a scene; `making` is called before it is made.
-    pub(super) fn get(&self, scene: &SceneModel, key: GroundMapKey, making: impl FnOnce()) -> Arc<GroundMap> {
-        let mut last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        match &*last {
-            Some((of, map)) if *of == key => Arc::clone(map),
-            _ => {
-                making();
-                // The one before is dropped first.
-                *last = None;
-                let map = Arc::new(ground_map(scene, key));
-                *last = Some((key, Arc::clone(&map)));
-                map
-            }
-        }
-    }
-
-    /// Whether no map has been made.
-    pub(super) fn is_empty(&self) -> bool {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).is_none()
+impl SceneModel {
+    /// What the ground looks like, its light computed unless the last picture had the same; `making` is called before.
+    pub fn map(&self, key: GroundMapKey, making: impl FnOnce()) -> Arc<GroundMap> {
+        self.maps.get(key, || {
+            making();
+            ground_map(self, key)
+        })
     }
 }
 

@@ -6,8 +6,8 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-use crate::SceneModel;
 use crate::ground_map::is_whole_meters;
+use crate::scene_model::SceneModel;
 use crate::texture_shading::sky_in_part;
 use sandtable_draw::ground::{GroundMap, GroundPost};
 use sandtable_draw::ground_window::GroundWindow;

@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 
-use crate::attributes::Attributes;
-use crate::feature_labels::{place, written};
+use crate::attributes::{Attributes, written};
 use crate::scene_findings::SceneFindings;
+use crate::shape_place::place;
 use crate::sources::Sources;
 use crate::world_frame::WorldFrame;
 use sandtable_base::limits::SCENE_SYMBOLS;

@@ -3,8 +3,7 @@
 use glam::DVec2;
 
 use crate::attributes::Attributes;
-use crate::builder::SceneBuilder;
-use crate::scene_findings::FeatureTable;
+use crate::scene_findings::{FeatureTable, SceneFindings};
 use crate::sources::Sourced;
 use sandtable_geom::polyline::{Polyline, kept};
 use sandtable_geom::rect::Rect;
@@ -21,7 +20,7 @@ pub fn lines(
     extent: &Rect,
     reach_m: f64,
     table: &FeatureTable<'_>,
-    collected: &mut SceneBuilder,
+    findings: &mut SceneFindings,
 ) -> Vec<(Attributes, Polyline)> {
     let (count, mut points) = (lines.len(), 0);
     let near: Vec<_> = lines
@@ -33,8 +32,8 @@ pub fn lines(
             Some((attributes, line.filter(|_| reach.meets(extent))?))
         })
         .collect();
-    collected.findings.left_out(count - near.len() - points, table, "off the elevation model");
-    collected.findings.without_extent(points, table, "all of their points are one place");
+    findings.left_out(count - near.len() - points, table, "off the elevation model");
+    findings.without_extent(points, table, "all of their points are one place");
     near
 }
 

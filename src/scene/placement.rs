@@ -13,8 +13,8 @@
 
 use glam::{DVec2, Mat4, Quat, Vec2, Vec3};
 
-use crate::Placement;
 use crate::footprint::{ModelFootprint, Under};
+use crate::placed_model::Placement;
 use sandtable_description::words::{Anchor, Clamp, Footing};
 use sandtable_draw::list::DrawMesh;
 use sandtable_geom::polygon;
@@ -165,7 +165,7 @@ fn tilted(lean: Vec2) -> Quat {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::GroundFit;
+    use crate::placed_model::GroundFit;
     use crate::vertical_scale::VerticalScale;
     use glam::DVec2;
     use sandtable_draw::list::FeatureId;

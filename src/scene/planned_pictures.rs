@@ -1,5 +1,8 @@
 //! What a scene is built for, as far as that decides how many samples of its elevation are read.
 
+use sandtable_description::document::Document;
+use sandtable_description::words::RangeExtent;
+
 /// How many samples of the elevation a scene needs.
 #[derive(Clone, Copy, Debug)]
 pub enum ElevationNeed<'a> {
@@ -49,4 +52,16 @@ pub enum PlannedCameras {
     All,
     /// None of the scene: plans of any part of the ground whose pixels are so many meters wide.
     Plans(f64),
+}
+
+/// Whether pictures of a scene show heights of places in numbers, or what is seen from a place, which depend on single samples.
+pub(super) fn depends_on_samples(document: &Document) -> bool {
+    let prints_heights = document.labels.iter().any(|label| label.text.contains("{height}"));
+    prints_heights || document.style.spot_heights > 0 || shows_sight(document)
+}
+
+/// Whether what is seen from a place shows.
+fn shows_sight(document: &Document) -> bool {
+    let is_seen = document.ranges.iter().any(|range| range.fill == RangeExtent::Seen);
+    is_seen || !document.viewsheds.is_empty() || !document.sights.is_empty()
 }

@@ -1,9 +1,8 @@
 //! Elevation of more samples than a scene needs: means of squares of them, read in windows or from an overview of the file.
 
-use crate::exact_ground::depends_on_samples;
 use crate::finer_elevation::level_samples;
 use crate::framing::shown_step::{UnreadGround, shown_step};
-use crate::planned_pictures::{ElevationNeed, NearGround, PlannedPictures};
+use crate::planned_pictures::{ElevationNeed, NearGround, PlannedPictures, depends_on_samples};
 use crate::scene_findings::SceneFindings;
 use sandtable_base::limits::{PICTURED_SAMPLES, RASTER_SAMPLES, REDUCED_SAMPLES};
 use sandtable_dem::raster::Raster;

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::SceneModel;
 use crate::assets::{AssetError, Assets};
 use crate::build::{SceneGround, build, build_ground, build_with};
 use crate::cause_code::coded;
 use crate::planned_pictures::ElevationNeed;
+use crate::scene_model::SceneModel;
 use sandtable_base::message::chain::error_text;
 use sandtable_base::message::suggest::{quoted, remedy};
 use sandtable_description::diagnostic::{Diagnostic, Diagnostics};

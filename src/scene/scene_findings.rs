@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::FeatureKind;
+use crate::feature::FeatureKind;
 use sandtable_base::message::suggest::quoted;
 use sandtable_description::document::Document;
 use sandtable_description::features::FeatureSource;

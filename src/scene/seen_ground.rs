@@ -6,7 +6,6 @@ use std::sync::OnceLock;
 
 use glam::DVec2;
 
-use crate::exact_ground::{ExactGround, ExactPartError};
 use sandtable_description::words::ViewshedTint;
 use sandtable_draw::list::FeatureId;
 use sandtable_geom::rect::Rect;
@@ -82,22 +81,8 @@ impl SceneViewshed {
         Self { name, observers, tint, feature, seen: OnceLock::new() }
     }
 
-    /// Finds what is in sight on all samples where the picture's ground is of means of them, and gives the ground that this
-    /// took; `None` where it is not.
-    ///
-    /// # Errors
-    /// The range is too large, or the samples cannot be read.
-    pub(super) fn find(&self, exact: &ExactGround<'_>) -> Result<Option<Lattice>, ExactPartError> {
-        let Some(reach) = self.reach() else { return Ok(None) };
-        let part = exact.part(&reach)?;
-        if let Some(part) = &part {
-            self.seen.get_or_init(|| self.compute(part));
-        }
-        Ok(part)
-    }
-
     /// The rectangle within reach of the observers, map coordinates; may be infinite. `None` without observers.
-    fn reach(&self) -> Option<Rect> {
+    pub(super) fn reach(&self) -> Option<Rect> {
         let corners = |options: &ViewshedOptions| {
             let at = options.observer.at;
             [at - options.range_m, at + options.range_m]
@@ -150,20 +135,6 @@ pub struct SceneSight {
 }
 
 impl SceneSight {
-    /// Finds what is in sight on all samples where the picture's ground is of means of them.
-    ///
-    /// # Errors
-    /// A line is too long, or the samples cannot be read.
-    pub(super) fn find(&mut self, exact: &ExactGround<'_>) -> Result<(), ExactPartError> {
-        let mut found = Vec::new();
-        for target in &self.targets {
-            let Some(part) = exact.part(&Rect::around([self.observer.at, target.at]))? else { return Ok(()) };
-            found.push(SightedLine::on(&part, self.observer, *target));
-        }
-        self.found = Some(found);
-        Ok(())
-    }
-
     /// What is in sight along the line to each target, on `lattice` unless it was found before; `None` without ground under the
     /// observer.
     pub fn lines(&self, lattice: &Lattice) -> Cow<'_, [Option<SightedLine>]> {
@@ -179,7 +150,7 @@ impl SceneSight {
 
 impl SightedLine {
     /// That of a line on `lattice`; `None` without ground under the observer.
-    fn on(lattice: &Lattice, observer: SightEnd, target: SightEnd) -> Option<Self> {
+    pub(super) fn on(lattice: &Lattice, observer: SightEnd, target: SightEnd) -> Option<Self> {
         let curvature = Curvature::default();
         let foot_m = ground_height(lattice, Interpolation::Planar, observer.at).height_m()?;
         let stations = profile(lattice, &[observer.at, target.at]);

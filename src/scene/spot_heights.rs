@@ -1,11 +1,11 @@
 //! Spot heights: elevations at summits, saddles and lakes that nobody has named.
 
-use glam::{DVec2, Vec2};
+use glam::Vec2;
 
-use crate::SceneLabel;
 use crate::exact_ground::{ExactGround, ExactSpot};
 use crate::label_course::LabelCourse;
-use crate::views::whole_meters;
+use crate::scene_label::{SceneLabel, whole_meters};
+use crate::water::lake_level::LakeSurface;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::words::LabelKind;
 use sandtable_geom::polygon::inner_point;
@@ -19,17 +19,6 @@ const SADDLE_SHARE: f32 = 0.5;
 const APART_SHARE: f32 = 0.02;
 /// Hills and saddles lower than this share of the ground's relief have no spot height.
 const LEAST_SHARE: f32 = 0.02;
-
-/// A lake's outline in world coordinates with its level in meters.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LakeSurface {
-    /// Its outer shore.
-    pub outline: Vec<DVec2>,
-    /// Of the water.
-    pub level_m: f64,
-    /// Whether the scene states it.
-    pub is_stated: bool,
-}
 
 /// Up to `most` labels of elevations off the places of `labels`, the most important first. On ground of means of samples these
 /// find and rank the places; summits then are the highest samples there, and saddles and lakes without a stated level have the

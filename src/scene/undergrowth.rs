@@ -5,7 +5,7 @@
 
 use glam::Vec2;
 
-use crate::SceneModel;
+use crate::scene_model::SceneModel;
 use sandtable_model::Model;
 
 /// The radius of a cone in radii of its crown: litter lies beyond the boughs.

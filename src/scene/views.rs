@@ -1,75 +1,22 @@
-//! Labels and cameras in world space.
+//! Cameras in world space.
 
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, SQRT_2};
 
 use glam::{DVec2, Vec3};
 
-use crate::attributes::Attributes;
-use crate::exact_ground::ExactGround;
-use crate::feature_labels;
-use crate::label_course::LabelCourse;
 use crate::paper_sheet::PaperSheet;
 use crate::scene_findings::SceneFindings;
-use crate::sources::Sources;
+use crate::scene_view::{FittedView, ParallelView, SceneView, ViewAim};
 use crate::vertical_scale::DrawnGround;
 use crate::world_frame::WorldFrame;
-use crate::{FittedView, ParallelView, SceneLabel, SceneView, ViewAim};
 use sandtable_description::diagnostic::Diagnostic;
-use sandtable_description::document::{CameraTable, Document, LabelTable, PAPER_DPI, paper_mm};
+use sandtable_description::document::{CameraTable, Document, PAPER_DPI, paper_mm};
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::stated::Stated;
 use sandtable_description::words::CameraProjection;
 use sandtable_geom::rect::Rect;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::query::{Interpolation, ground_height};
-
-/// The document's labels, `{height}` filled in; those of files with findings on the features without a label.
-///
-/// # Errors
-/// A label with `at` lies off the ground, or a file cannot be read or holds no feature that matches.
-pub(super) fn labels(
-    sources: &Sources<'_>,
-    exact: &ExactGround<'_>,
-    findings: &mut SceneFindings,
-) -> Result<Vec<SceneLabel>, Diagnostic> {
-    let mut labels = Vec::new();
-    for table in &sources.frame.document.labels {
-        match &table.at {
-            Some(at) => labels.push(label(table, at, exact)?),
-            None => labels.extend(feature_labels::labels(table, sources, exact, findings)?),
-        }
-    }
-    Ok(labels)
-}
-
-fn label(
-    table: &LabelTable,
-    at: &Stated<[f64; 2]>,
-    exact: &ExactGround<'_>,
-) -> Result<SceneLabel, Diagnostic> {
-    let (frame, lattice) = (exact.frame, exact.lattice);
-    let world = frame.point(at, table.crs.as_ref())?;
-    let ground = frame.on_ground(lattice, at, world)?;
-    let text = match table.text.contains("{height}") {
-        true => table.text.replace("{height}", &whole_meters(exact.elevation_m(world, ground.z)?)),
-        false => table.text.to_string(),
-    };
-    Ok(SceneLabel {
-        text,
-        stated: table.text.span().unwrap_or_default(),
-        ground,
-        anchor: ground + Vec3::Z * table.height as f32,
-        course: LabelCourse::Place,
-        kind: table.kind,
-        rank: feature_labels::rank(table, &Attributes::default()),
-    })
-}
-
-/// A height in whole meters, without a sign before 0.
-pub fn whole_meters(height_m: f32) -> String {
-    let rounded = height_m.round();
-    format!("{:.0}", if rounded == 0.0 { 0.0 } else { rounded })
-}
 
 /// The document's cameras; without any, one that is fitted to the whole ground.
 ///
@@ -246,15 +193,4 @@ pub fn find_buried(
 pub(super) fn overview() -> SceneView {
     let view = FittedView { azimuth_rad: None, pitch_rad: None, shown: None };
     SceneView { name: "overview".into(), aim: ViewAim::Fitted(view), fov_y_rad: fov_y_rad(None), paper: None }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn no_height_is_written_as_minus_nothing() {
-        let written = [-0.3, 0.0, 0.4, -0.6, 311.5].map(whole_meters);
-        assert_eq!(written, ["0", "0", "0", "-1", "312"]);
-    }
 }

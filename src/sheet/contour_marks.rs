@@ -12,7 +12,7 @@ use sandtable_draw::list::FeatureId;
 use sandtable_geom::isolines::{Isoline, ValueGrid, isolines};
 use sandtable_picture::nested_ground::NestedHeights;
 use sandtable_render::picture::Rendering;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_view::camera::Camera;
 
 /// The rows of elevations read from a picture: on fewer, lines leave the drawn ones; on more, time is spent.

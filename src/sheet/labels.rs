@@ -23,7 +23,8 @@ use sandtable_picture::nested_ground::NestedHeights;
 use sandtable_picture::placed_text::PlacedText;
 use sandtable_render::picture::Rendering;
 use sandtable_scene::label_course::LabelCourse;
-use sandtable_scene::{SceneLabel, SceneModel};
+use sandtable_scene::scene_label::SceneLabel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_view::camera::Camera;
 
 /// What a picture shows that its scene alone does not tell.

@@ -16,7 +16,8 @@ use sandtable_draw::list::FeatureId;
 use sandtable_draw::print_pattern::PrintPattern;
 use sandtable_render::picture::Rendering;
 use sandtable_ribbon::texture::RibbonSurface;
-use sandtable_scene::{FeatureKind, SceneModel};
+use sandtable_scene::feature::FeatureKind;
+use sandtable_scene::scene_model::SceneModel;
 
 /// Every such row and column of the picture is counted: a class of any use shows on several.
 const STEP: usize = 2;
@@ -113,7 +114,7 @@ fn classes(scene: &SceneModel) -> Vec<Option<ShownClass>> {
     let widths: BTreeMap<FeatureId, f64> =
         scene.symbols.iter().map(|symbol| (symbol.feature, symbol.least_px)).collect();
     let names = model_names(scene);
-    let class = |(index, feature): (usize, &sandtable_scene::SceneFeature)| {
+    let class = |(index, feature): (usize, &sandtable_scene::feature::SceneFeature)| {
         let id = FeatureId(FeatureId::GROUND.0 + 1 + index as u32);
         let surface = surfaces.get(&id).copied();
         Some(match feature.kind {

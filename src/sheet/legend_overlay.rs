@@ -8,7 +8,7 @@ use sandtable_draw::color::Srgba;
 use sandtable_draw::list::FeatureId;
 use sandtable_picture::graphic_colors::{HIDDEN, HIDDEN_LINE, SEEN, SEEN_LINE, graphic_color, side_color};
 use sandtable_render::picture::Rendering;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_symbology::graphic::kind::GraphicTint;
 
 /// The width of a graphic's line in design pixels.

@@ -7,7 +7,7 @@ use sandtable_annotate::class_legend::{LegendEntry, LegendSwatch};
 use sandtable_base::message::capitalized::capitalized;
 use sandtable_description::words::StylePreset;
 use sandtable_render::picture::Rendering;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_symbology::code::SymbolCode;
 use sandtable_symbology::entities;
 use sandtable_symbology::fields::SymbolIdentity;

@@ -8,8 +8,8 @@ use sandtable_geom::axis::axis;
 use sandtable_geom::polygon::inner_point;
 use sandtable_geom::rect::Rect;
 use sandtable_render::picture::Rendering;
-use sandtable_scene::SceneLabel;
 use sandtable_scene::label_course::LabelCourse;
+use sandtable_scene::scene_label::SceneLabel;
 use sandtable_view::camera::{Camera, Projected};
 
 /// How far the drawn width of a line is looked for to each side, in pixels.

@@ -16,7 +16,7 @@ use sandtable_draw::list::FeatureId;
 use sandtable_draw::pixels::Pixels;
 use sandtable_draw::print_pattern::PrintPattern;
 use sandtable_render::picture::Rendering;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_view::camera::Camera;
 
 /// The darkest gray of the relief, 0..=1: lighter than what a copier turns black.

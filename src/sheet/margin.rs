@@ -13,7 +13,7 @@ use sandtable_draw::pixels::Pixels;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::declination::{convergence_deg, declination};
 use sandtable_geom::mgrs::GridZone;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::full_resolution::FullResolution;
 use sandtable_terrain::triangle_surface::TriangleSurface;
 use sandtable_view::camera::Camera;

@@ -7,8 +7,8 @@ use sandtable_annotate::annotation::{PictureSymbol, SymbolHeight};
 use sandtable_description::words::StylePreset;
 use sandtable_picture::nested_ground::NestedHeights;
 use sandtable_render::picture::Rendering;
-use sandtable_scene::SceneModel;
 use sandtable_scene::military::{SceneSymbol, SymbolSize};
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_view::camera::Camera;
 
 /// The heights in pixels between which a symbol of a size on the ground stays: legible, and not in the way.

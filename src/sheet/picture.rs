@@ -14,7 +14,8 @@ use sandtable_picture::{ViewDraw, build_draw_list, camera};
 use sandtable_render::picture::Rendering;
 use sandtable_render::{RenderBackend, RenderError, render};
 use sandtable_scene::framing::shaped_page::page_size;
-use sandtable_scene::{SceneModel, SceneView};
+use sandtable_scene::scene_model::SceneModel;
+use sandtable_scene::scene_view::SceneView;
 use sandtable_view::camera::{Camera, CameraError};
 
 /// The size of a picture.

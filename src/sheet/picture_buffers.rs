@@ -20,7 +20,8 @@ use sandtable_files::png::encode_png;
 use sandtable_picture::build_shapes;
 use sandtable_render::cpu::render_buffers;
 use sandtable_render::picture::Rendering;
-use sandtable_scene::{SceneModel, SceneView};
+use sandtable_scene::scene_model::SceneModel;
+use sandtable_scene::scene_view::SceneView;
 use sandtable_view::camera::Camera;
 
 /// The buffers of a picture and what is needed to read them.

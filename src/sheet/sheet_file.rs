@@ -8,7 +8,8 @@ use sandtable_files::disk::WriteFileError;
 use sandtable_files::error::FileError;
 use sandtable_files::output_files::OutputFiles;
 use sandtable_files::png::{PngNotes, encode_png, encode_png_with};
-use sandtable_scene::{SceneModel, SceneView};
+use sandtable_scene::scene_model::SceneModel;
+use sandtable_scene::scene_view::SceneView;
 
 /// Pixels per inch where a view has no print in mind.
 const SCREEN_DPI: f64 = 96.0;

@@ -11,7 +11,8 @@ use crate::picture_buffers::{PictureBuffers, ShownFeature};
 use sandtable_annotate::report::{AnnotationReport, LabelMove, SheetBox};
 use sandtable_annotate::sheet_frame::SheetFrame;
 use sandtable_files::disk;
-use sandtable_scene::{SceneModel, SceneView};
+use sandtable_scene::scene_model::SceneModel;
+use sandtable_scene::scene_view::SceneView;
 use sandtable_view::camera::{Camera, ViewProjection};
 
 /// The half of a sidecar that is known before annotations are painted.

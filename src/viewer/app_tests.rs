@@ -276,9 +276,9 @@ fn a_model_is_dragged_and_turned_and_a_road_is_widened_and_removed() {
     let mut harness = window(Some(&scene.file));
     let feature = |app: &ViewerApp, name: &str| {
         let scene = &app.opened.as_ref().expect("open").scene;
-        let is_named = |feature: &sandtable_scene::SceneFeature| {
+        let is_named = |feature: &sandtable_scene::feature::SceneFeature| {
             if name.is_empty() {
-                feature.kind == sandtable_scene::FeatureKind::Model
+                feature.kind == sandtable_scene::feature::FeatureKind::Model
             } else {
                 feature.name == name
             }

@@ -13,7 +13,7 @@ use glam::Vec3;
 
 use crate::lettering::font;
 use sandtable_description::words::LabelKind;
-use sandtable_scene::SceneLabel;
+use sandtable_scene::scene_label::SceneLabel;
 use sandtable_view::camera::Camera;
 
 /// A label that is shown comes as if its rank were lower by this: labels of one rank do not take turns.

@@ -2,7 +2,7 @@
 
 use sandtable_draw::list::FeatureId;
 use sandtable_query::positions::format_position;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_walk::pick::WalkPick;
 
 /// What is known about a place; a text is empty where there is nothing to say.

@@ -11,8 +11,8 @@ use sandtable_annotate::paint::annotate;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::font::FontFile;
 use sandtable_draw::pixels::Pixels;
-use sandtable_scene::SceneModel;
 use sandtable_scene::military::SceneSymbol;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_view::camera::Camera;
 
 /// The height of the frame of a friendly unit, in points.

@@ -15,7 +15,7 @@ use crate::line_piece::LinePicture;
 use crate::opened::OpenedScene;
 use crate::symbol_layer::SymbolLayer;
 use sandtable_draw::list::FeatureId;
-use sandtable_scene::SceneLabel;
+use sandtable_scene::scene_label::SceneLabel;
 use sandtable_view::camera::Camera;
 use sandtable_view::navigation::{NavigationMode, NavigationSteps};
 use sandtable_walk::pick::WalkPick;

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use sandtable_description::document::FlightTable;
 use sandtable_picture::camera;
-use sandtable_scene::SceneModel;
 use sandtable_scene::build::build;
 use sandtable_scene::flights::{SceneFlight, flight};
 use sandtable_scene::scene_file::{OpenSceneError, open_document};
+use sandtable_scene::scene_model::SceneModel;
 
 /// [`open_scene`](sandtable_scene::scene_file::open_scene) with its flight called `name`, or its first.
 ///

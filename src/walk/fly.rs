@@ -12,8 +12,8 @@ use sandtable_draw::pixels::Pixels;
 use sandtable_files::disk::{self, ReadFileError, WriteFileError};
 use sandtable_files::fingerprint::fingerprint;
 use sandtable_render::RenderBackend;
-use sandtable_scene::SceneModel;
 use sandtable_scene::flights::SceneFlight;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_sheet::picture::{PictureError, PictureSize, render_view};
 
 /// The note beside the frames.

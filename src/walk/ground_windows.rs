@@ -20,8 +20,8 @@ use sandtable_dem::reduced::{reduced_part, reduced_size};
 use sandtable_dem::windows::Windows;
 use sandtable_draw::ground::GroundMap;
 use sandtable_draw::ground_window::GroundWindow;
-use sandtable_scene::SceneModel;
 use sandtable_scene::ground_window::{WindowGround, ground_window};
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::lattice::{Lattice, LatticeError, Post};
 use sandtable_terrain::post_rect::PostRect;
 
@@ -167,7 +167,7 @@ mod tests {
 
     use super::*;
     use sandtable_editing::viewing::open_to_view;
-    use sandtable_scene::ground_map::GroundMapKey;
+    use sandtable_scene::ground_map_cache::GroundMapKey;
 
     fn scene() -> (Arc<SceneModel>, GroundWindowLight) {
         let editor = open_to_view(Path::new(concat!(env!("SANDTABLE_ROOT"), "scenes/road.toml")), &[])

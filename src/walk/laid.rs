@@ -18,7 +18,7 @@ use sandtable_roam::graph::Vertex;
 use sandtable_roam::patched_ground::PatchedGround;
 use sandtable_roam::refine::deferred::Deferred;
 use sandtable_roam::refine::deferred::surface::DeferredSurface;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::full_resolution::FullResolution;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::triangle_surface::TriangleSurface;

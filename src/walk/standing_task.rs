@@ -12,7 +12,7 @@ use crate::relief_map::ReliefEdits;
 use sandtable_draw::list::DrawList;
 use sandtable_picture::models::PlacementMoves;
 use sandtable_picture::standing::{self, WalkedGround};
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_view::camera::Camera;
 

@@ -16,7 +16,8 @@ use sandtable_files::png::encode_png;
 use sandtable_picture::ViewDraw;
 use sandtable_render::RenderBackend;
 use sandtable_scene::scene_file::open_scene;
-use sandtable_scene::{SceneModel, SceneView};
+use sandtable_scene::scene_model::SceneModel;
+use sandtable_scene::scene_view::SceneView;
 use sandtable_sheet::picture::{PictureSize, RenderedView, render_view};
 
 use crate::steps::{Step, Steps};

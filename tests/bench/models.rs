@@ -25,7 +25,7 @@ use sandtable_model::simplify::levels;
 use sandtable_model::{Companions, Model};
 use sandtable_picture::{build_draw_list, display, draw_list};
 use sandtable_render::cpu::{RenderQuality, render};
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_view::camera::Camera;
 
 use crate::steps::{Step, Steps};

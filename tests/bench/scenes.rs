@@ -39,7 +39,7 @@ fn built(
     folder: &tests_common::scratch::Scratch,
     text: &str,
     allowed: &[std::path::PathBuf],
-) -> (sandtable_scene::SceneModel, Vec<steps::Step>) {
+) -> (sandtable_scene::scene_model::SceneModel, Vec<steps::Step>) {
     let path = folder.write("scene.toml", text);
     let steps = steps::Steps::default();
     let scene = sandtable_scene::scene_file::open_scene(&path, allowed, &|step| steps.begin(step))

@@ -9,7 +9,8 @@ use sandtable_description::words::Clamp;
 use sandtable_picture as picture;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
-use sandtable_scene::{GroundFit, Placement, SceneModel};
+use sandtable_scene::placed_model::{GroundFit, Placement};
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_view::camera::Camera;
 
 use super::scratch::Scratch;
@@ -84,9 +85,9 @@ pub fn overlook(scene: &SceneModel, size: (u32, u32)) -> Camera {
 
 /// A picture from anywhere.
 pub fn seen_from(scene: &SceneModel, eye: Vec3, target: Vec3, size: (u32, u32)) -> Camera {
-    let view = sandtable_scene::SceneView {
+    let view = sandtable_scene::scene_view::SceneView {
         name: String::new(),
-        aim: sandtable_scene::ViewAim::At { eye, target },
+        aim: sandtable_scene::scene_view::ViewAim::At { eye, target },
         fov_y_rad: 0.7,
         paper: None,
     };

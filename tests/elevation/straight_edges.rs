@@ -4,9 +4,9 @@ use glam::DVec2;
 use sandtable_dem::answer::Answer;
 use sandtable_description::parse::parse_bytes;
 use sandtable_geom::crs::Crs;
-use sandtable_scene::SceneModel;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::query::Interpolation;
 use sandtable_terrain::query::source::source_heights;
 

@@ -11,7 +11,8 @@ use sandtable_ribbon::texture::RibbonSurface;
 use sandtable_ribbon::texture::cover::cover_length_m;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
-use sandtable_scene::{FeatureKind, SceneModel};
+use sandtable_scene::feature::FeatureKind;
+use sandtable_scene::scene_model::SceneModel;
 
 use crate::common::scratch::Scratch;
 

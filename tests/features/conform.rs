@@ -6,11 +6,11 @@ use std::path::Path;
 use glam::DVec2;
 use sandtable_description::parse::parse_bytes;
 use sandtable_earthworks::alignment::Support;
-use sandtable_scene::SceneModel;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
 use sandtable_scene::report::ConformedRoadRow;
 use sandtable_scene::roads::profiles::RoadProfile;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::query::{Interpolation, ground_height};
 
 use crate::common::data::data;

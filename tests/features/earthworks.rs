@@ -4,8 +4,8 @@ use std::path::Path;
 
 use glam::DVec2;
 use sandtable_base::message::chain::error_text;
-use sandtable_scene::SceneModel;
 use sandtable_scene::scene_file::{open_scene, open_scene_ground};
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::water_cover::water_cover;
 

@@ -8,9 +8,9 @@ use sandtable_description::parse::parse_bytes;
 use sandtable_ribbon::partition::overlap_m2;
 use sandtable_ribbon::plan::PlanMesh;
 use sandtable_ribbon::texture::RibbonSurface;
-use sandtable_scene::SceneModel;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
+use sandtable_scene::scene_model::SceneModel;
 
 use crate::common::scratch::Scratch;
 

@@ -5,8 +5,8 @@ use std::fmt::Write;
 use glam::DVec2;
 use sandtable_picture::{build_draw_list, camera};
 use sandtable_render::RenderBackend;
-use sandtable_scene::SceneModel;
 use sandtable_scene::scene_file::build_scene_text;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_sheet::picture::{PictureSize, annotate_view, draw_view};
 
 use super::byte_source::ByteSource;

@@ -17,7 +17,8 @@ use sandtable_picture::ViewDraw;
 use sandtable_render::RenderBackend;
 use sandtable_ribbon::drape::check_clearance;
 use sandtable_scene::scene_file::open_scene;
-use sandtable_scene::{SceneModel, SceneView};
+use sandtable_scene::scene_model::SceneModel;
+use sandtable_scene::scene_view::SceneView;
 use sandtable_sheet::picture::{PictureSize, RenderedView, render_view};
 
 /// Small enough to be quick and to be kept, large enough for annotations.

@@ -6,8 +6,8 @@ use glam::Vec2;
 use sandtable_annotate::figure::CoordinateFigure;
 use sandtable_annotate::grid::{GridAxis, GridLine, PictureGrid};
 use sandtable_render::RenderBackend;
-use sandtable_scene::SceneModel;
 use sandtable_scene::scene_file::open_scene;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_sheet::grid::{grid_over, picture_grid};
 use sandtable_sheet::picture::{DrawnView, PictureSize, draw_view};
 

@@ -7,7 +7,7 @@ use glam::Vec3;
 use sandtable_annotate::report::{AnnotationReport, SheetBox};
 use sandtable_render::RenderBackend;
 use sandtable_scene::scene_file::open_scene;
-use sandtable_scene::{SceneView, ViewAim};
+use sandtable_scene::scene_view::{SceneView, ViewAim};
 use sandtable_sheet::picture::{PictureSize, render_view};
 
 /// The pairs of boxes that overlap and are not of one name, by their texts.

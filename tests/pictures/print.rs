@@ -5,8 +5,8 @@ use std::path::Path;
 
 use sandtable_draw::list::FeatureId;
 use sandtable_render::RenderBackend;
-use sandtable_scene::SceneModel;
 use sandtable_scene::scene_file::open_scene;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_sheet::picture::{PictureSize, draw_view};
 
 const SIZE: PictureSize = PictureSize { width: 960, height: 540 };

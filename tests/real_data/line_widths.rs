@@ -10,9 +10,10 @@ use sandtable_picture::{build_draw_list, camera, draw_list};
 use sandtable_render::cpu::{RenderQuality, render};
 use sandtable_render::picture::Rendering;
 use sandtable_ribbon::texture::RibbonSurface;
+use sandtable_scene::feature::FeatureKind;
 use sandtable_scene::scene_file::open_scene;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::symbols::LineSymbol;
-use sandtable_scene::{FeatureKind, SceneModel};
 use sandtable_terrain::triangle_surface::TriangleSurface;
 use sandtable_view::camera::Camera;
 

@@ -4,7 +4,8 @@
 use std::path::{Path, PathBuf};
 
 use sandtable_geom::crs::Crs;
-use sandtable_scene::{FeatureKind, SceneModel};
+use sandtable_scene::feature::FeatureKind;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::query::Surface;
 
 use crate::common::data::data;

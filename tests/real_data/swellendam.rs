@@ -2,7 +2,7 @@
 //! leave the model, and reservoirs to be leveled.
 
 use sandtable_geom::crs::Crs;
-use sandtable_scene::FeatureKind;
+use sandtable_scene::feature::FeatureKind;
 use sandtable_terrain::lattice::Post;
 use sandtable_terrain::query::Surface;
 

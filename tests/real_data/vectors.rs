@@ -3,7 +3,8 @@
 
 use std::path::Path;
 
-use sandtable_scene::{FeatureKind, SceneModel};
+use sandtable_scene::feature::FeatureKind;
+use sandtable_scene::scene_model::SceneModel;
 
 use crate::common::data::data;
 use crate::common::scratch::Scratch;

@@ -2,7 +2,8 @@
 
 use sandtable_earthworks::alignment::Support;
 use sandtable_ribbon::partition::overlap_m2;
-use sandtable_scene::{FeatureKind, SceneModel};
+use sandtable_scene::feature::FeatureKind;
+use sandtable_scene::scene_model::SceneModel;
 
 use crate::common::places::text_of;
 use crate::common::scratch::Scratch;

@@ -14,7 +14,7 @@ use sandtable_model::{Companions, Model, ModelPart};
 use sandtable_picture::{build_draw_list, display, draw_list};
 use sandtable_render::cpu::{RenderQuality, render};
 use sandtable_render::picture::Rendering;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::triangle_surface::TriangleSurface;
 use sandtable_view::camera::Camera;
 

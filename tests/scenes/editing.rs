@@ -11,8 +11,8 @@ use sandtable_editing::edit::{EarthworkDraft, EditPlace, EditValue, NewTable, Sc
 use sandtable_editing::editor::{EditError, OnConflict, SaveError, SceneEditor};
 use sandtable_editing::effect::EditEffect;
 use sandtable_editing::reload::{ReloadedScene, WatchedScene};
-use sandtable_scene::SceneModel;
 use sandtable_scene::scene_file::open_scene;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_walk::Walk;
 use sandtable_walk::frame::WalkOptions;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use glam::Vec3;
-use sandtable_scene::ViewAim;
+use sandtable_scene::scene_view::ViewAim;
 use sandtable_terrain::full_resolution::FullResolution;
 use sandtable_terrain::triangle_surface::TriangleSurface;
 use sandtable_walk::flown_scene::open_scene_with_flight;

@@ -8,9 +8,9 @@ use sandtable_description::parse::parse_bytes;
 use sandtable_draw::list::{DepthLayer, FeatureId};
 use sandtable_picture::{ViewDraw, build_draw_list};
 use sandtable_ribbon::drape::check_clearance;
-use sandtable_scene::SceneModel;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_symbology::graphic::kind::{GRAPHIC_KINDS, GraphicKind, GraphicShape, MOST_POINTS};
 use sandtable_terrain::sight::viewshed::{PostVisibility, viewshed};
 

@@ -8,9 +8,9 @@ use sandtable_description::parse::parse_bytes;
 use sandtable_draw::color::Srgba;
 use sandtable_geom::crs::Crs;
 use sandtable_picture::{build_draw_list, camera};
-use sandtable_scene::SceneModel;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
+use sandtable_scene::scene_model::SceneModel;
 
 use crate::common::scratch::Scratch;
 

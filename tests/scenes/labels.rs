@@ -4,10 +4,10 @@ use std::fs;
 use std::path::PathBuf;
 
 use sandtable_description::parse::parse_bytes;
-use sandtable_scene::SceneModel;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
 use sandtable_scene::label_course::LabelCourse;
+use sandtable_scene::scene_model::SceneModel;
 
 /// A level grid of 1000 m by 1000 m at 50 m from (0, 0), and what is named on it and around it.
 const PLACES: &str = r#"{"type": "FeatureCollection", "crs": {"type": "name", "properties": {"name": "EPSG:32616"}},
@@ -36,7 +36,7 @@ fn scene(test: &str, text: &str) -> Result<SceneModel, String> {
 
 /// The texts of the labels with their places in map coordinates.
 fn labels(scene: &SceneModel) -> Vec<(&str, [f32; 2])> {
-    let at = |label: &sandtable_scene::SceneLabel| {
+    let at = |label: &sandtable_scene::scene_label::SceneLabel| {
         (label.ground.truncate() + scene.lattice.origin().as_vec2()).to_array()
     };
     scene.labels.iter().map(|label| (label.text.as_str(), at(label))).collect()

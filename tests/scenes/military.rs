@@ -4,9 +4,9 @@ use std::fs;
 use std::path::PathBuf;
 
 use sandtable_description::parse::parse_bytes;
-use sandtable_scene::SceneModel;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
+use sandtable_scene::scene_model::SceneModel;
 
 /// On a level grid of 1000 m by 1000 m from (0, 0).
 const UNITS: &str = r#"{"type": "FeatureCollection", "crs": {"type": "name", "properties": {"name": "EPSG:32616"}},

@@ -6,10 +6,10 @@ use std::path::PathBuf;
 use glam::Vec3;
 use sandtable_description::parse::parse_bytes;
 use sandtable_picture::{build_draw_list, camera};
-use sandtable_scene::SceneModel;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
 use sandtable_scene::plinth::base_z;
+use sandtable_scene::scene_model::SceneModel;
 
 /// A folder of its own for one test, with `hill.asc` in it: `columns` × `rows` posts 10 m apart from (5, 5).
 fn folder(test: &str, (columns, rows): (u32, u32)) -> PathBuf {

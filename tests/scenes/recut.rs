@@ -13,7 +13,8 @@ use sandtable_roam::displayed::DisplayedTerrain;
 use sandtable_roam::graph::Vertex;
 use sandtable_roam::refine::coherent::Coherent;
 use sandtable_scene::scene_file::open_scene;
-use sandtable_scene::{SceneModel, SceneView, ViewAim};
+use sandtable_scene::scene_model::SceneModel;
+use sandtable_scene::scene_view::{SceneView, ViewAim};
 use sandtable_view::camera::Camera;
 
 /// f32 world coordinates in a scene of ten kilometers, times the slope of a mountain side.

@@ -6,9 +6,9 @@ use crate::common::scratch::Scratch;
 use glam::{DVec2, Vec2};
 use sandtable_description::parse::parse_bytes;
 use sandtable_geom::polygon;
-use sandtable_scene::SceneModel;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::query::gradient::{GradientSurface, ground_gradient};
 use sandtable_terrain::query::{Interpolation, ground_height};
 
@@ -198,7 +198,7 @@ fn the_number_of_threads_changes_nothing() {
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
         let scene = pool.install(|| scene(&text)).expect("sound");
-        let looks = |placement: &sandtable_scene::Placement| {
+        let looks = |placement: &sandtable_scene::placed_model::Placement| {
             [placement.at.x, placement.at.y, placement.scale, placement.heading_rad].map(f32::to_bits)
         };
         scene.placements.iter().map(looks).collect::<Vec<_>>()

@@ -9,7 +9,8 @@ use sandtable_render::cpu::{RenderQuality, render};
 use sandtable_render::picture::Rendering;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
-use sandtable_scene::{FeatureKind, SceneModel};
+use sandtable_scene::feature::FeatureKind;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_view::camera::Camera;
 
 use crate::common::forest::seen_from;

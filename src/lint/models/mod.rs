@@ -11,9 +11,11 @@ use crate::context::LintContext;
 use crate::sink::FindingSink;
 use sandtable_geom::aabb::Aabb;
 use sandtable_model::{Model, built_in};
+use sandtable_scene::feature::FeatureKind;
 use sandtable_scene::footprint::ModelFootprint;
+use sandtable_scene::placed_model::Placement;
 use sandtable_scene::placement::stand;
-use sandtable_scene::{FeatureKind, Placement, SceneModel};
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::support_surface::SupportSurface;
 
 /// The most models that are looked at: of more, the first. Bounds the time of a check to some seconds.

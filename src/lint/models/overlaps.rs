@@ -16,8 +16,9 @@ use sandtable_geom::polygon;
 use sandtable_geom::polyline::Polyline;
 use sandtable_geom::rect::Rect;
 use sandtable_geom::rect_tree::RectTree;
+use sandtable_scene::feature::FeatureKind;
+use sandtable_scene::feature_meshes::Solid;
 use sandtable_scene::symbols::LineSymbol;
-use sandtable_scene::{FeatureKind, Solid};
 
 /// The share of the smaller foot that has to lie in the other: less is a balcony, or a wall that two houses have in common.
 const SHARED: f64 = 0.2;

@@ -6,7 +6,8 @@ use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use crate::framing::fit::{FitFrame, fitted_eye, projected};
 use crate::plinth::base_z;
-use crate::{FittedView, SceneModel};
+use crate::scene_model::SceneModel;
+use crate::scene_view::FittedView;
 use sandtable_geom::convex::hull;
 use sandtable_geom::polygon::doubled_area;
 use sandtable_geom::rect::Rect;

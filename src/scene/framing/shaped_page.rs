@@ -17,7 +17,8 @@ use crate::framing::fit::ParallelSpan;
 use crate::framing::fitted_view::silhouette;
 use crate::framing::parallel_view::fitted_px_per_m;
 use crate::paper_sheet::SCREEN_PX;
-use crate::{ParallelView, SceneModel, SceneView, ViewAim};
+use crate::scene_model::SceneModel;
+use crate::scene_view::{ParallelView, SceneView, ViewAim};
 use sandtable_view::axes::DirectionAxes;
 
 /// Pages between a square and the longest: each is 1.1 % longer for its width than the one before, so that the best of them

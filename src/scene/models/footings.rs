@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use crate::footprint::ModelFootprint;
-use crate::models::PlacedModels;
+use crate::models::placed_models::PlacedModels;
+use crate::placed_model::{GroundFit, Placement};
 use crate::placement::{outline, stand};
 use crate::vertical_scale::VerticalScale;
 use crate::world_frame::WorldFrame;
-use crate::{GroundFit, Placement};
 use sandtable_base::limits::LEVELED_CELLS;
 use sandtable_base::limits::LEVELED_PADS;
 use sandtable_description::diagnostic::Diagnostic;

@@ -7,10 +7,10 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 
-use crate::Placement;
 use crate::builder::SceneBuilder;
 use crate::footprint::ModelFootprint;
-use crate::models::{InstanceGroup, PlacedModels};
+use crate::models::placed_models::{InstanceGroup, PlacedModels};
+use crate::placed_model::Placement;
 use crate::placement::stand;
 use crate::report::{InstancesRow, ModelRow};
 use crate::scene_findings::SceneFindings;

@@ -1,8 +1,8 @@
 //! The document's roads as centerlines, each with what it is to become.
 
-use crate::FeatureKind;
 use crate::attributes::Attributes;
 use crate::builder::SceneBuilder;
+use crate::feature::FeatureKind;
 use crate::near;
 use crate::scene_findings::FeatureTable;
 use crate::sources::Sources;
@@ -53,7 +53,7 @@ pub fn collect(
         let widths_m = lines.first().and_then(|line| near::widths_m(road.widths.as_deref(), &line.shape));
         let named =
             FeatureTable { kind: FeatureKind::Road, name: road.name.as_deref(), source: &road.source };
-        for (attributes, line) in near::lines(lines, extent, REACH_M, &named, collected) {
+        for (attributes, line) in near::lines(lines, extent, REACH_M, &named, &mut collected.findings) {
             let mut centerline = centerline(road, attributes, line, collected);
             centerline.table = table;
             if let Some(widths_m) = &widths_m {

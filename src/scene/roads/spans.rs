@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use crate::FeatureKind;
 use crate::builder::SceneBuilder;
+use crate::feature::FeatureKind;
 use crate::feature_origin::FeatureOrigin;
 use crate::near;
 use crate::roads::centerline::{self, Centerline};
@@ -124,7 +124,7 @@ fn table_spans(
         let name = bridge.name.as_deref();
         let named = FeatureTable { kind: FeatureKind::Bridge, name, source: &bridge.source };
         let lines = sources.lines(&bridge.source)?;
-        for (attributes, line) in near::lines(lines, extent, REACH_M, &named, collected) {
+        for (attributes, line) in near::lines(lines, extent, REACH_M, &named, &mut collected.findings) {
             if line.range_within(extent).is_none() {
                 continue;
             }

@@ -15,11 +15,13 @@ use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 
 use crate::attributes::Attributes;
-use crate::builder::{SceneBuilder, described};
+use crate::builder::SceneBuilder;
 use crate::crossed_shapes::CrossedShapes;
+use crate::feature::{FeatureKind, described};
 use crate::feature_origin::FeatureOrigin;
 use crate::models::library::Library;
-use crate::models::{PlacedModels, within};
+use crate::models::placed_models::{PlacedModels, within};
+use crate::placed_model::{GroundFit, Placement};
 use crate::placement::outline;
 use crate::report::ScatterRow;
 use crate::scatter::bands::Bands;
@@ -28,7 +30,6 @@ use crate::scatter::pattern::{PatternPoint, PointPattern};
 use crate::scatter::taken::Taken;
 use crate::sources::{Sourced, Sources};
 use crate::world_frame::WorldFrame;
-use crate::{FeatureKind, GroundFit, Placement};
 use sandtable_base::limits::SCATTER_SQUARES;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
@@ -102,7 +103,7 @@ pub fn strew(
             areas += 1;
         }
         let outcome = "models stand in what an odd number of its turns runs around";
-        crossed.report(("scatter", outcome), table.source.span(), frame, collected);
+        crossed.report(("scatter", outcome), table.source.span(), frame, &mut collected.findings);
         // Areas that overlap give the same points.
         stood.sort_by(|a, b| a.at.y.total_cmp(&b.at.y).then(a.at.x.total_cmp(&b.at.x)));
         stood.dedup_by(|a, b| a.at == b.at);

@@ -1,8 +1,21 @@
-//! Levels that no lake has: far from all ground along the shore.
+//! The level of a lake, and levels that no lake has: far from all ground along the shore.
+
+use glam::DVec2;
 
 /// A level farther than this from all ground along the shore is a slip of the pen, or in another unit or of another datum,
 /// meters. Vertical datums differ by up to this, elevation models are off by a tenth of it.
 const ABSURD_M: f64 = 100.0;
+
+/// A lake's outline in world coordinates with its level in meters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LakeSurface {
+    /// Its outer shore.
+    pub outline: Vec<DVec2>,
+    /// Of the water.
+    pub level_m: f64,
+    /// Whether the scene states it.
+    pub is_stated: bool,
+}
 
 /// How far a level lies below the lowest or above the highest ground along its shore, in meters, where that is too far to
 /// be meant; below, less than 0.

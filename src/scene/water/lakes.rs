@@ -2,16 +2,15 @@
 
 use glam::DVec2;
 
-use crate::FeatureKind;
 use crate::attributes::{Attributes, count_default};
-use crate::builder::{SceneBuilder, described};
+use crate::builder::SceneBuilder;
+use crate::feature::{FeatureKind, described};
 use crate::feature_origin::FeatureOrigin;
 use crate::near::Clipped;
 use crate::report::LakeRow;
 use crate::sources::{Sourced, Sources};
-use crate::spot_heights::LakeSurface;
 use crate::symbols::LineSymbol;
-use crate::water::lake_level::{FAR_OFF_HELP, far_off_m, far_off_message};
+use crate::water::lake_level::{FAR_OFF_HELP, LakeSurface, far_off_m, far_off_message};
 use sandtable_base::limits::GROUND_POSTS;
 use sandtable_base::message::choice::Choice;
 use sandtable_description::diagnostic::Diagnostic;

@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-use crate::FeatureKind;
 use crate::attributes::Attributes;
 use crate::builder::SceneBuilder;
+use crate::feature::FeatureKind;
 use crate::near;
 use crate::scene_findings::FeatureTable;
 use crate::sources::Sources;
@@ -64,7 +64,7 @@ pub fn collect(
         let widths_m = lines.first().and_then(|line| near::widths_m(river.widths.as_deref(), &line.shape));
         let named =
             FeatureTable { kind: FeatureKind::River, name: river.name.as_deref(), source: &river.source };
-        for (attributes, line) in near::lines(lines, &extent, REACH_M, &named, collected) {
+        for (attributes, line) in near::lines(lines, &extent, REACH_M, &named, &mut collected.findings) {
             let widths = widths_m.as_ref();
             let widths = widths.and_then(|widths_m| Profile::new(line.stations().to_vec(), widths_m.clone()));
             drawn.push((river, attributes, line, widths));

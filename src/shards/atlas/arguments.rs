@@ -13,7 +13,8 @@ use sandtable_geom::rect::Rect;
 use sandtable_scene::paper_sheet::PaperSheet;
 use sandtable_scene::planned_pictures::{ElevationNeed, NearGround, PlannedCameras, PlannedPictures};
 use sandtable_scene::scene_file::{OpenSceneError, open_scene_for};
-use sandtable_scene::{ParallelView, SceneModel, SceneView, ViewAim};
+use sandtable_scene::scene_model::SceneModel;
+use sandtable_scene::scene_view::{ParallelView, SceneView, ViewAim};
 use sandtable_view::camera::INCH_M;
 
 /// The width of a pixel of a sheet at the scale 1:`scale` on the ground, meters.

@@ -13,7 +13,7 @@ use crate::planned_dataset::scene_inputs;
 use crate::shard::{Shard, ShardWindow, SheetNeighbors};
 use sandtable_base::limits::PLAN_SHARDS;
 use sandtable_geom::rect::Rect;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 
 /// Plans the atlas of a scene; writes the plan to `folder`, which is there, and returns the number of its sheets.
 ///

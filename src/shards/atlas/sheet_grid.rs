@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::atlas::arguments::{AtlasArguments, pixel_m};
 use sandtable_geom::rect::Rect;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_sheet::picture::{PictureSize, page_frame};
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::post_rect::PostRect;

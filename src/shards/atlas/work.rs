@@ -8,7 +8,7 @@ use crate::shard::{Shard, SheetNeighbors};
 use sandtable_description::document::FurnitureTable;
 use sandtable_geom::rect::Rect;
 use sandtable_render::RenderBackend;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_sheet::picture::{PictureSize, compose_view, draw_view};
 use sandtable_sheet::sheet_file::{picture_description, sheet_png};
 

@@ -14,7 +14,7 @@ use sandtable_description::words::GridName;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::mgrs::{GridSquare, GridZone};
 use sandtable_geom::rect::Rect;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 
 /// Points at which a line is transformed: a line of 100 km is off by less than a meter between them.
 const POINTS: u32 = 65;

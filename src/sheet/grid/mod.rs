@@ -22,7 +22,7 @@ use sandtable_annotate::grid::{GridLine, PictureGrid};
 use sandtable_description::words::GridName;
 use sandtable_picture::nested_ground::NestedHeights;
 use sandtable_render::picture::Rendering;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_view::camera::Camera;
 
 /// How far apart lines are in the middle of a picture 1080 pixels high where no interval is stated, in pixels: nearer

@@ -9,7 +9,7 @@ use sandtable_draw::list::FeatureId;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::mgrs::GridSquare;
 use sandtable_render::picture::Rendering;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_view::camera::Camera;
 
 /// The pixels from one place that is looked at to the next.

@@ -11,7 +11,7 @@ use sandtable_geom::rect::Rect;
 use sandtable_geom::simplify::simplified;
 use sandtable_picture::nested_ground::NestedHeights;
 use sandtable_render::picture::Rendering;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_view::camera::{Camera, Projected};
 
 /// The length of a piece on the picture in pixels: shorter ones cost more and show no more of the ground's shape.

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use egui::{CollapsingHeader, Key, ScrollArea, TextEdit, Ui};
 
 use sandtable_draw::list::FeatureId;
-use sandtable_scene::{FeatureKind, SceneFeature};
+use sandtable_scene::feature::{FeatureKind, SceneFeature};
 
 /// The most features listed under a kind; further ones are found by their names.
 const MOST_LISTED: usize = 200;

@@ -1,7 +1,7 @@
 //! Real places, whole: from the scene file to the finished scene and to its picture.
 
 use sandtable_render::RenderBackend;
-use sandtable_scene::FeatureKind;
+use sandtable_scene::feature::FeatureKind;
 use sandtable_sheet::picture::{PictureSize, render_view};
 
 use crate::tests_common::places::{PLACES, text_of};

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use sandtable_scene::FeatureKind;
+use sandtable_scene::feature::FeatureKind;
 
 use crate::tests_common::scratch::Scratch;
 use crate::{built, peak_mib, seconds};

@@ -2,7 +2,7 @@
 
 use sandtable_mesh::sink::VertexId;
 use sandtable_ribbon::texture::RibbonSurface;
-use sandtable_scene::SceneModel;
+use sandtable_scene::scene_model::SceneModel;
 
 use crate::common::scratch::Scratch;
 use crate::roads::{area_m2, built, check_laid, scene};

@@ -1,0 +1,56 @@
+//! The labels of a document, set on the ground.
+
+use glam::Vec3;
+
+use crate::attributes::Attributes;
+use crate::exact_ground::ExactGround;
+use crate::feature_labels;
+use crate::label_course::LabelCourse;
+use crate::scene_findings::SceneFindings;
+use crate::scene_label::{SceneLabel, whole_meters};
+use crate::sources::Sources;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::LabelTable;
+use sandtable_description::stated::Stated;
+
+/// The document's labels, `{height}` filled in; those of files with findings on the features without a label.
+///
+/// # Errors
+/// A label with `at` lies off the ground, or a file cannot be read or holds no feature that matches.
+pub(super) fn labels(
+    sources: &Sources<'_>,
+    exact: &ExactGround<'_>,
+    findings: &mut SceneFindings,
+) -> Result<Vec<SceneLabel>, Diagnostic> {
+    let mut labels = Vec::new();
+    for table in &sources.frame.document.labels {
+        match &table.at {
+            Some(at) => labels.push(label(table, at, exact)?),
+            None => labels.extend(feature_labels::labels(table, sources, exact, findings)?),
+        }
+    }
+    Ok(labels)
+}
+
+fn label(
+    table: &LabelTable,
+    at: &Stated<[f64; 2]>,
+    exact: &ExactGround<'_>,
+) -> Result<SceneLabel, Diagnostic> {
+    let (frame, lattice) = (exact.frame, exact.lattice);
+    let world = frame.point(at, table.crs.as_ref())?;
+    let ground = frame.on_ground(lattice, at, world)?;
+    let text = match table.text.contains("{height}") {
+        true => table.text.replace("{height}", &whole_meters(exact.elevation_m(world, ground.z)?)),
+        false => table.text.to_string(),
+    };
+    Ok(SceneLabel {
+        text,
+        stated: table.text.span().unwrap_or_default(),
+        ground,
+        anchor: ground + Vec3::Z * table.height as f32,
+        course: LabelCourse::Place,
+        kind: table.kind,
+        rank: feature_labels::rank(table, &Attributes::default()),
+    })
+}

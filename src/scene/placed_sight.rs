@@ -1,0 +1,209 @@
+//! The viewsheds, lines of sight and ranges of a document, placed; where the picture's ground is of means of samples, what is in
+//! sight is found here, on the part of all samples that it reaches.
+
+use glam::DVec2;
+
+use crate::all_samples::PartTooLarge;
+use crate::builder::SceneBuilder;
+use crate::exact_ground::{ExactGround, ExactPartError};
+use crate::feature::FeatureKind;
+use crate::feature_origin::FeatureOrigin;
+use crate::seen_ground::{SceneSight, SceneViewshed, SightedLine};
+use crate::sight_layers::{SceneRange, SightLayers};
+use crate::world_frame::WorldFrame;
+use sandtable_base::limits::RASTER_SAMPLES;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_description::stated::Stated;
+use sandtable_description::words::{RangeExtent, ViewshedTint};
+use sandtable_geom::crs::Crs;
+use sandtable_geom::rect::Rect;
+use sandtable_symbology::graphic::check::MOST_RANGES;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::sight::line::SightEnd;
+use sandtable_terrain::sight::viewshed::{Sector, ViewshedOptions};
+
+/// More observers of a viewshed take longer than anybody waits for a picture.
+const MOST_OBSERVERS: usize = 64;
+
+/// More lines of sight of one observer cannot be told from each other.
+const MOST_TARGETS: usize = 256;
+
+/// Places the document's layers of sight.
+///
+/// # Errors
+/// An observer or a target lies off the ground, or there are more than a picture can show.
+pub(super) fn lay(exact: &ExactGround<'_>, collected: &mut SceneBuilder) -> Result<SightLayers, Diagnostic> {
+    let (frame, lattice) = (exact.frame, exact.lattice);
+    let document = frame.document;
+    let mut layers = SightLayers::default();
+    let sector =
+        |azimuths: Option<[f64; 2]>| azimuths.map_or(Sector::ALL, |[from, to]| Sector::between(from, to));
+    for table in &document.viewsheds {
+        let observers = places(frame, lattice, &table.observers, table.crs.as_ref(), MOST_OBSERVERS)?;
+        let options = |at: &DVec2| ViewshedOptions {
+            target_above_m: table.target_height,
+            range_m: table.range.unwrap_or(f64::INFINITY),
+            sector: sector(table.azimuths),
+            ..ViewshedOptions::new(end(frame, *at, table.observer_height))
+        };
+        let name = table.name.clone().unwrap_or_default();
+        let feature =
+            collected.add(FeatureKind::Sight, name.clone(), FeatureOrigin::stated(table.observers.span()));
+        let observers = observers.iter().map(options).collect();
+        let layer = SceneViewshed::new(name, observers, table.tint, feature);
+        let help = if table.range.is_some() { "state a smaller `range`" } else { "state `range`, in meters" };
+        let part =
+            find_viewshed(&layer, exact).map_err(|error| failed(document, &table.observers, error, help))?;
+        if let Some(part) = part.filter(|_| table.range.is_none()) {
+            let (columns, rows) = (part.held().width(), part.held().height());
+            let message = format!(
+                "this viewshed has no `range`, and took all {columns} x {rows} samples of the elevation model"
+            );
+            let span = table.observers.span().unwrap_or_default();
+            collected.findings.add_with_help(FindingCode::RangeMissing, span, message, help);
+        }
+        layers.viewsheds.push(layer);
+    }
+    for table in &document.sights {
+        let observer = place(frame, lattice, &table.observer, table.crs.as_ref())?;
+        let targets = places(frame, lattice, &table.targets, table.crs.as_ref(), MOST_TARGETS)?;
+        let name = table.name.clone().unwrap_or_default();
+        let mut layer = SceneSight {
+            feature: collected.add(
+                FeatureKind::Sight,
+                name.clone(),
+                FeatureOrigin::stated(table.observer.span()),
+            ),
+            name,
+            observer: end(frame, observer, table.observer_height),
+            targets: targets.into_iter().map(|at| end(frame, at, table.target_height)).collect(),
+            found: None,
+        };
+        let help = "look less far";
+        find_sight(&mut layer, exact).map_err(|error| failed(document, &table.targets, error, help))?;
+        layers.sights.push(layer);
+    }
+    for table in &document.ranges {
+        let at = place(frame, lattice, &table.at, table.crs.as_ref())?;
+        let distances_m = distances(document, &table.distances)?;
+        let farthest_m = distances_m.last().copied().unwrap_or(0.0);
+        let name = table.name.clone().unwrap_or_default();
+        let feature = collected.add(FeatureKind::Sight, name.clone(), FeatureOrigin::stated(table.at.span()));
+        let sector = sector(table.azimuths);
+        let options = ViewshedOptions {
+            target_above_m: table.target_height,
+            range_m: farthest_m,
+            sector,
+            ..ViewshedOptions::new(end(frame, at, table.height))
+        };
+        let sight = SceneViewshed::new(String::new(), vec![options], ViewshedTint::Seen, feature);
+        let mut layer = SceneRange {
+            name,
+            at,
+            distances_m,
+            sector,
+            side: table.side,
+            fill: table.fill,
+            sight,
+            feature,
+            found: None,
+        };
+        if table.fill == RangeExtent::Seen {
+            let help = "state smaller `distances`";
+            let part = find_viewshed(&layer.sight, exact)
+                .map_err(|error| failed(document, &table.at, error, help))?;
+            layer.found = part.map(|part| layer.seen_on(&part, frame.origin));
+        }
+        layers.ranges.push(layer);
+    }
+    Ok(layers)
+}
+
+/// Finds what is in sight on all samples where the picture's ground is of means of them, and gives the ground that this
+/// took; `None` where it is not.
+///
+/// # Errors
+/// The range is too large, or the samples cannot be read.
+fn find_viewshed(layer: &SceneViewshed, exact: &ExactGround<'_>) -> Result<Option<Lattice>, ExactPartError> {
+    let Some(reach) = layer.reach() else { return Ok(None) };
+    let part = exact.part(&reach)?;
+    if let Some(part) = &part {
+        layer.seen(part);
+    }
+    Ok(part)
+}
+
+/// Finds what is in sight on all samples where the picture's ground is of means of them.
+///
+/// # Errors
+/// A line is too long, or the samples cannot be read.
+fn find_sight(layer: &mut SceneSight, exact: &ExactGround<'_>) -> Result<(), ExactPartError> {
+    let mut found = Vec::new();
+    for target in &layer.targets {
+        let Some(part) = exact.part(&Rect::around([layer.observer.at, target.at]))? else { return Ok(()) };
+        found.push(SightedLine::on(&part, layer.observer, *target));
+    }
+    layer.found = Some(found);
+    Ok(())
+}
+
+/// The error about a layer whose ground cannot be had; `help` says how it needs less.
+fn failed<T>(document: &Document, stated: &Stated<T>, error: ExactPartError, help: &str) -> Diagnostic {
+    match error {
+        ExactPartError::Failed(error) => error,
+        ExactPartError::TooLarge(PartTooLarge { columns, rows }) => {
+            let message = format!(
+                "{columns} x {rows} samples of the elevation model are within reach of this, more than the {RASTER_SAMPLES} that are \
+                 read at once"
+            );
+            document.error(stated, message).with_help(format!("{help}, or {RASTER_SAMPLES:#}"))
+        }
+    }
+}
+
+/// An end of a line of sight at a place in world space.
+fn end(frame: &WorldFrame<'_>, world: DVec2, above_m: f64) -> SightEnd {
+    SightEnd { at: world + frame.origin, above_m }
+}
+
+/// A place on the ground, world X and Y.
+fn place(
+    frame: &WorldFrame<'_>,
+    lattice: &Lattice,
+    at: &Stated<[f64; 2]>,
+    crs: Option<&Crs>,
+) -> Result<DVec2, Diagnostic> {
+    let world = frame.point(at, crs)?;
+    frame.on_ground(lattice, at, world)?;
+    Ok(world)
+}
+
+/// Places on the ground, at most `most`.
+fn places(
+    frame: &WorldFrame<'_>,
+    lattice: &Lattice,
+    stated: &Stated<Vec<[f64; 2]>>,
+    crs: Option<&Crs>,
+    most: usize,
+) -> Result<Vec<DVec2>, Diagnostic> {
+    if stated.len() > most {
+        let message = format!("{} places are more than the {most} allowed here", stated.len());
+        return Err(frame.document.error(stated, message).with_help("state fewer, or use several tables"));
+    }
+    let span = stated.span().unwrap_or_default();
+    stated.iter().map(|&at| place(frame, lattice, &Stated::new(at, span.clone()), crs)).collect()
+}
+
+fn distances(document: &Document, stated: &Stated<Vec<f64>>) -> Result<Vec<f64>, Diagnostic> {
+    if !(1..=MOST_RANGES).contains(&stated.len()) {
+        let message = format!("a range has 1 to {MOST_RANGES} distances, and {} are stated", stated.len());
+        return Err(document.error(stated, message).with_help("write distances = [1000, 2000]"));
+    }
+    if let Some(pair) = stated.windows(2).find(|pair| pair[0] >= pair[1]) {
+        let message = format!("distances are to rise, and {} follows {}", pair[1], pair[0]);
+        return Err(document.error(stated, message).with_help("sort them from the smallest to the largest"));
+    }
+    Ok(stated.to_vec())
+}

@@ -1,0 +1,29 @@
+//! A tactical graphic in its place, as pictures draw it.
+
+use glam::DVec2;
+
+use sandtable_description::words::{GraphicSide, GraphicStatus};
+use sandtable_draw::list::FeatureId;
+use sandtable_symbology::graphic::fields::GraphicFields;
+use sandtable_symbology::graphic::kind::GraphicKind;
+
+/// A tactical graphic in its place.
+#[derive(Clone, Debug)]
+pub struct SceneGraphic {
+    /// What it is.
+    pub kind: &'static GraphicKind,
+    /// Its points, world X and Y; of an area without repeating the first.
+    pub points: Vec<DVec2>,
+    /// The stated width in meters.
+    pub width_m: Option<f64>,
+    /// Its texts and numbers.
+    pub fields: GraphicFields,
+    /// Whose it is.
+    pub side: GraphicSide,
+    /// Whether it is there.
+    pub status: GraphicStatus,
+    /// The lowest and the highest elevation of airspace, meters.
+    pub elevations_m: Option<[f64; 2]>,
+    /// The feature it is.
+    pub feature: FeatureId,
+}

@@ -1,0 +1,263 @@
+//! The scene as it was built: the ground, the features on it, labels and views, with what pictures compute of them on first use.
+
+use std::sync::{Arc, OnceLock};
+
+use glam::Vec3;
+
+use crate::earthworks::water_beside;
+use crate::feature::{FEATURE_NOUNS, FeatureKind, SceneFeature};
+use crate::feature_meshes::{FeatureSolid, Ribbon, Solid};
+use crate::finer_elevation::FinerElevation;
+use crate::ground_map_cache::GroundMapCache;
+use crate::land_cover::CoverLines;
+use crate::military::SceneSymbol;
+use crate::placed_model::Placement;
+use crate::ramps::TintedGround;
+use crate::report::SceneReport;
+use crate::roads::profiles::{BridgeProfile, RoadProfile};
+use crate::scene_graphic::SceneGraphic;
+use crate::scene_label::SceneLabel;
+use crate::scene_view::SceneView;
+use crate::sight_layers::SightLayers;
+use crate::source_reach::SourceOverlap;
+use crate::style::RampSource;
+use crate::sunlight::Sunlight;
+use crate::symbols::LineSymbol;
+use crate::vertical_scale::VerticalScale;
+use sandtable_description::document::FurnitureTable;
+use sandtable_description::finding::Finding;
+use sandtable_description::words::{GridName, StylePreset, TableTop};
+use sandtable_draw::font::FontFile;
+use sandtable_draw::ground::{ColorRamp, Contours};
+use sandtable_draw::ground_cover::GroundCover;
+use sandtable_draw::ground_imagery::GroundImagery;
+use sandtable_draw::list::FeatureId;
+use sandtable_earthworks::brush::Change;
+use sandtable_earthworks::held_posts::HeldPosts;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::declination::CalendarDay;
+use sandtable_model::Model;
+use sandtable_model::detail::ModelDetail;
+use sandtable_roam::layout::PatchLayout;
+use sandtable_roam::measured_ground::MeasuredGround;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::query::service::HeightService;
+use sandtable_terrain::water_cover::WaterCover;
+
+/// A digital terrain model: the ground, the features on it, labels and views.
+pub struct SceneModel {
+    /// The picture's title.
+    pub title: Option<String>,
+    /// A second line under it.
+    pub subtitle: Option<String>,
+    /// The phase that it shows; `None` where it has none.
+    pub phase: Option<String>,
+    /// The map coordinates' system.
+    pub crs: Crs,
+    /// The system that the scene file or its elevation states in meters: that of inline points unless `points_crs` names
+    /// another. It is `crs` but where its lengths are not true.
+    pub stated_crs: Crs,
+    /// The elevations of the ground, true to scale.
+    pub lattice: Arc<Lattice>,
+    /// What has more samples than the lattice has posts.
+    pub finer: Option<FinerElevation>,
+    /// The lowest and the highest of them, meters.
+    pub height_range_m: (f32, f32),
+    /// How they are drawn.
+    pub scale: VerticalScale,
+    /// The box of the drawn ground in world space: its least and its greatest corner.
+    pub bounds: (Vec3, Vec3),
+    /// The greatest error of the drawn ground in pixels.
+    pub tolerance_px: f32,
+    /// Whether the edges of its triangles show.
+    pub wireframe: bool,
+    pub(crate) layout: PatchLayout,
+    pub(crate) ground: OnceLock<MeasuredGround>,
+    /// The posts under water, which earthworks leave as they are.
+    pub held: Arc<HeldPosts>,
+    /// The posts that its earthworks changed, with their heights before.
+    pub(crate) dug: Vec<Change>,
+    /// Answers height queries in map coordinates.
+    pub heights: HeightService,
+    pub(crate) ramp: RampSource,
+    /// The latitude of the middle of its ground; `None` where the map coordinates have no place on Earth.
+    pub latitude_deg: Option<f64>,
+    pub(crate) land_cover: bool,
+    /// Whether it is there to carry symbols and graphics.
+    pub(crate) is_base_map: bool,
+    /// The picture draped over the ground.
+    pub imagery: Option<Arc<GroundImagery>>,
+    /// Lines of equal height on the ground.
+    pub contours: Option<Contours>,
+    /// Where the light comes from.
+    pub sunlight: Sunlight,
+    /// How strongly its texture shows, 0..=1.
+    pub texture: f32,
+    /// The distance in meters from the near edge of the scene at which 63 % of what is seen is haze, 0 for clear air;
+    /// `None` fits haze to each view.
+    pub haze_m: Option<f32>,
+    /// What the block stands on where it is seen as a whole.
+    pub table: TableTop,
+    pub(crate) maps: GroundMapCache,
+    pub(crate) infers_water: bool,
+    /// The water that the elevations themselves show, once it is found; see [`SceneModel::water`].
+    pub water: OnceLock<WaterCover>,
+    pub(crate) has_voids: OnceLock<bool>,
+    /// Areas, rivers, lakes and roads, in drawing order.
+    pub ribbons: Vec<Ribbon>,
+    /// Roads and rivers, as lines for pictures in which their ribbons are too narrow.
+    pub symbols: Vec<LineSymbol>,
+    /// Tactical graphics, in drawing order.
+    pub graphics: Vec<SceneGraphic>,
+    /// Viewsheds, lines of sight and ranges.
+    pub sight: SightLayers,
+    /// Solids with fixed heights: buildings, bridges.
+    pub solids: Vec<Solid>,
+    /// Solids that each picture sets on its displayed ground: walls, fences, lines, footings.
+    pub uprights: Vec<FeatureSolid>,
+    /// Model files, each loaded once.
+    pub models: Vec<Model>,
+    /// Simpler forms of each model, made when a picture first needs them.
+    pub details: Vec<OnceLock<ModelDetail>>,
+    /// Models in their places.
+    pub placements: Vec<Placement>,
+    /// Names and heights.
+    pub labels: Vec<SceneLabel>,
+    /// Military symbols.
+    pub military: Vec<SceneSymbol>,
+    /// Views; at least one.
+    pub cameras: Vec<SceneView>,
+    /// The font for characters that the embedded fonts lack.
+    pub font: Option<FontFile>,
+    /// Legend, scale bar and the like.
+    pub furniture: FurnitureTable,
+    /// The look in one word that its pictures have.
+    pub preset: Option<StylePreset>,
+    /// The coordinate grid on the ground.
+    pub grid: GridName,
+    /// The day of its information.
+    pub sheet_day: Option<CalendarDay>,
+    /// Every feature, in the order of ids from 2 up.
+    pub features: Vec<SceneFeature>,
+    /// What building it found: features off the model, missing textures, earth moved.
+    pub findings: Vec<Finding>,
+    /// How much of each source lies off the ground.
+    pub overlaps: Vec<SourceOverlap>,
+    /// Measures of single features.
+    pub report: SceneReport,
+    /// The longitudinal profiles of the roads that the ground follows.
+    pub profiles: Vec<RoadProfile>,
+    /// The longitudinal profiles of bridges.
+    pub bridge_profiles: Vec<BridgeProfile>,
+    /// The files it was made of, besides the scene file itself.
+    pub files: Vec<std::path::PathBuf>,
+}
+
+impl SceneModel {
+    /// The ground as it is drawn, made on first use; what is measured of it is measured when it is first asked for.
+    pub fn ground(&self) -> &MeasuredGround {
+        self.ground.get_or_init(|| MeasuredGround::with_layout(self.scale.drawn(&self.lattice), self.layout))
+    }
+
+    /// The water that the elevations themselves show, found on first use; none where the scene file forbids it.
+    pub fn water(&self) -> &WaterCover {
+        self.water.get_or_init(|| {
+            if self.infers_water { water_beside(&self.dug, &self.lattice) } else { WaterCover::default() }
+        })
+    }
+
+    /// The colors of the ground by height. Where there is a sea they begin at 0 m: its bed has colors of its own,
+    /// [`bathymetry`](sandtable_draw::bathymetry::bathymetry).
+    pub fn ramp(&self) -> ColorRamp {
+        let (low, high) = self.height_range_m;
+        let low = if self.has_sea() && high > 0.0 { low.max(0.0) } else { low };
+        self.ramp.over(&TintedGround { range_m: (low, high), latitude_deg: self.latitude_deg })
+    }
+
+    /// Where the covers of natural ground change; `None` where the picture shows none.
+    pub fn cover(&self) -> Option<GroundCover> {
+        let lines = CoverLines::at(self.latitude_deg);
+        self.land_cover.then(|| GroundCover {
+            tree_m: lines.tree_m as f32,
+            snow_m: lines.snow_m as f32,
+            true_rise: self.scale.0.recip(),
+            shady_north: if self.latitude_deg.is_some_and(|degrees| degrees < 0.0) { -1.0 } else { 1.0 },
+        })
+    }
+
+    /// Whether part of the ground is drawn as sea.
+    pub fn has_sea(&self) -> bool {
+        self.water().sea_posts > 0
+    }
+
+    /// Whether enough of the model's rectangle is without data to be hatched: more than the ragged border that is left
+    /// where a raster was warped.
+    pub fn has_voids(&self) -> bool {
+        /// Posts without data, as a share of all.
+        const RAGGED: f64 = 0.002;
+        *self.has_voids.get_or_init(|| {
+            let missing = self.lattice.heights().iter().filter(|height| height.is_nan()).count();
+            missing as f64 > RAGGED * self.lattice.heights().len() as f64
+        })
+    }
+
+    /// The sentences of its findings, for the user.
+    pub fn notes(&self) -> Vec<&str> {
+        self.findings.iter().map(|finding| finding.message.as_str()).collect()
+    }
+
+    /// What a picture shows that no file states, for the user.
+    pub fn inferred_notes(&self) -> Vec<String> {
+        let WaterCover { sea_posts, lakes, .. } = self.water();
+        let area = |posts: usize| format!("{:.2} km²", posts as f64 * self.lattice.cell_m2() / 1e6);
+        let sea = (*sea_posts > 0).then(|| {
+            format!(
+                "{} are drawn as sea: ground at or below 0 m that is connected to the border",
+                area(*sea_posts)
+            )
+        });
+        let lakes = (!lakes.is_empty()).then(|| {
+            let area = area(lakes.iter().sum());
+            format!("{} level basins are drawn as lakes, {area} in all", lakes.len())
+        });
+        let off = |note| format!("{note} (inferred; `infer_water = false` in [terrain] switches it off)");
+        sea.into_iter().chain(lakes).map(off).collect()
+    }
+
+    /// Whether [`SceneModel::map`] has been made.
+    pub fn is_lit(&self) -> bool {
+        !self.maps.is_empty()
+    }
+
+    /// The view called `name`, or the first where no name is given.
+    pub fn view(&self, name: Option<&str>) -> Option<&SceneView> {
+        match name {
+            Some(name) => self.cameras.iter().find(|view| view.name == name),
+            None => self.cameras.first(),
+        }
+    }
+
+    /// What a feature is called: its kind and its name; empty for nothing.
+    pub fn feature_name(&self, feature: FeatureId) -> String {
+        match feature {
+            FeatureId::GROUND => return "ground".into(),
+            FeatureId::PLINTH => return "plinth".into(),
+            _ => {}
+        }
+        let feature = feature.index().and_then(|index| self.features.get(index));
+        feature.map_or_else(String::new, |SceneFeature { kind, name, .. }| match name.as_str() {
+            "" => kind.noun(1).to_owned(),
+            name => format!("{} {name}", kind.noun(1)),
+        })
+    }
+
+    /// The number of features of each kind that is present, in the order of [`FeatureKind`].
+    pub fn census(&self) -> Vec<(FeatureKind, usize)> {
+        let count = |kind| self.features.iter().filter(|feature| feature.kind == kind).count();
+        FEATURE_NOUNS
+            .map(|(kind, ..)| (kind, count(kind)))
+            .into_iter()
+            .filter(|&(_, count)| count > 0)
+            .collect()
+    }
+}

@@ -1,0 +1,104 @@
+//! A view of the scene: from where it looks, and whereto.
+
+use glam::{DVec2, Vec3};
+
+use crate::paper_sheet::PaperSheet;
+use sandtable_geom::rect::Rect;
+
+/// A view of the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneView {
+    /// Its name on the command line.
+    pub name: String,
+    /// From where it looks, and whereto.
+    pub aim: ViewAim,
+    /// Vertical field of view in radians; without effect on parallel rays.
+    pub fov_y_rad: f32,
+    /// The paper that it fills, where it is meant for print.
+    pub paper: Option<PaperSheet>,
+}
+
+impl SceneView {
+    /// Pixels per inch of its print; `None` where it has no print in mind.
+    pub fn dpi(&self) -> Option<f64> {
+        match self.aim {
+            ViewAim::Parallel(ParallelView { dpi, .. }) => Some(dpi),
+            _ => self.paper.map(|paper| paper.dpi),
+        }
+    }
+}
+
+impl SceneView {
+    /// The part of the ground that it is fitted to, world X and Y; `None` where that is all, and where it has an eye.
+    pub fn shown(&self) -> Option<Rect> {
+        match self.aim {
+            ViewAim::At { .. } => None,
+            ViewAim::Fitted(FittedView { shown, .. }) | ViewAim::Parallel(ParallelView { shown, .. }) => {
+                shown
+            }
+        }
+    }
+
+    /// This view with all of its places moved.
+    pub fn moved(&self, by: DVec2) -> Self {
+        let rect = |rect: Rect| Rect { min: rect.min + by, max: rect.max + by };
+        let point = |at: Vec3| at + by.as_vec2().extend(0.0);
+        let aim = match self.aim {
+            ViewAim::At { eye, target } => ViewAim::At { eye: point(eye), target: point(target) },
+            ViewAim::Fitted(view) => ViewAim::Fitted(FittedView { shown: view.shown.map(rect), ..view }),
+            ViewAim::Parallel(view) => ViewAim::Parallel(ParallelView {
+                shown: view.shown.map(rect),
+                middle: view.middle.map(|middle| middle + by),
+                ..view
+            }),
+        };
+        Self { aim, ..self.clone() }
+    }
+}
+
+/// From where a view looks, and whereto.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ViewAim {
+    /// From a place to a place, world space.
+    At {
+        /// The eye.
+        eye: Vec3,
+        /// The point in the picture's middle.
+        target: Vec3,
+    },
+    /// From as near as what it shows fits into the picture.
+    Fitted(FittedView),
+    /// By parallel rays, with one scale.
+    Parallel(ParallelView),
+}
+
+/// A view whose eye depends on the picture's shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FittedView {
+    /// Where it looks, clockwise from north, radians; `None` for north, or for the east or the west where ground that is
+    /// long from south to north fills the picture better so.
+    pub azimuth_rad: Option<f32>,
+    /// How far it looks down from the horizon, radians; `None` for what fills the picture best.
+    pub pitch_rad: Option<f32>,
+    /// The ground that it shows, world X and Y; `None` for all of it.
+    pub shown: Option<Rect>,
+}
+
+/// A view by parallel rays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParallelView {
+    /// Where it looks, clockwise from north, radians.
+    pub azimuth_rad: f32,
+    /// How far it looks down from the horizon, radians; a right angle at most.
+    pub pitch_rad: f32,
+    /// How many times as many pixels a meter spans up the picture as across it.
+    pub stretch: f32,
+    /// `n` of its scale 1:n; `None` for the largest at which what it shows fits into the picture.
+    pub scale: Option<f64>,
+    /// Pixels per inch of the print on which that scale is true.
+    pub dpi: f64,
+    /// The ground that it shows, world X and Y; `None` for all of it.
+    pub shown: Option<Rect>,
+    /// The ground in the middle of the picture, world X and Y; `None` for the middle of what it shows.
+    pub middle: Option<DVec2>,
+}

@@ -1,0 +1,80 @@
+//! The ground of a document, shaped by what levels, cuts and fills it: lakes, rivers, roads, pads, earthworks.
+//!
+//! Parts of a ground are shaped by the same passes as the whole, so that they are the same where they overlap.
+
+use crate::areas;
+use crate::assets::Assets;
+use crate::bridges;
+use crate::builder::SceneBuilder;
+use crate::buildings::{self, Plot};
+use crate::earthworks;
+use crate::fences::{self, FenceLine};
+use crate::ground::{self, LoadedGround};
+use crate::models;
+use crate::planned_pictures::ElevationNeed;
+use crate::roads::centerline::{self, Centerline};
+use crate::roads::conform;
+use crate::sources::Sources;
+use crate::water::{lakes, rivers};
+use crate::world_frame::WorldFrame;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_earthworks::brush::Change;
+use sandtable_earthworks::held_posts::HeldPosts;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::triangle_surface::SurfaceTriangle;
+
+/// The ground of a part of a scene by all samples of its elevation, with what shapes it. `document` is that of the part.
+///
+/// # Errors
+/// The first file that cannot be read or table that does not fit, at its place in the scene file.
+pub(super) fn part_ground(document: &Document, assets: &Assets) -> Result<Lattice, Diagnostic> {
+    let mut loaded = ground::load(document, assets, ElevationNeed::Nested { step: 1 })?;
+    shape_loaded(document, assets, &mut loaded)?;
+    Ok(loaded.lattice)
+}
+
+/// Shapes the ground as it was loaded, and returns the decks over it. Of the models, only those that have the ground leveled are
+/// read.
+pub(super) fn shape_loaded(
+    document: &Document,
+    assets: &Assets,
+    loaded: &mut LoadedGround,
+) -> Result<Vec<SurfaceTriangle>, Diagnostic> {
+    let frame = WorldFrame::new(document, &loaded.crs, &loaded.stated_crs, loaded.lattice.origin());
+    let sources = Sources::new(&frame, assets);
+    let mut collected = SceneBuilder::new(loaded.findings.clone());
+    shape(document, &sources, &mut loaded.lattice, &mut collected)?;
+    models::level_pads(&sources, &mut loaded.lattice)?;
+    Ok(collected.decks)
+}
+
+/// Features that shaped the ground and are not built yet.
+pub(super) struct ShapedFeatures {
+    pub roads: Vec<Centerline>,
+    pub plots: Vec<Plot>,
+    pub lines: Vec<FenceLine>,
+    pub held: HeldPosts,
+    pub dug: Vec<Change>,
+}
+
+/// Shapes the ground for everything but models, and builds the decks over it.
+pub(super) fn shape(
+    document: &Document,
+    sources: &Sources<'_>,
+    lattice: &mut Lattice,
+    collected: &mut SceneBuilder,
+) -> Result<ShapedFeatures, Diagnostic> {
+    let extent = lattice.extent();
+    lakes::lay(document, sources, lattice, collected)?;
+    rivers::lay(document, sources, lattice, collected)?;
+    let held = HeldPosts::pinned(lattice);
+    areas::lay(document, sources, &extent, collected)?;
+    let mut roads = centerline::collect(document, sources, &extent, collected)?;
+    conform::conform(document, lattice, &mut roads, collected)?;
+    let plots = buildings::lay_out(document, sources, lattice, collected)?;
+    let lines = fences::lay_out(document, sources, lattice, collected)?;
+    bridges::build(document, sources, lattice, &mut roads, collected)?;
+    let dug = earthworks::build(document, sources, lattice, &held, collected)?;
+    Ok(ShapedFeatures { roads, plots, lines, held, dug })
+}
