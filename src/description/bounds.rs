@@ -14,6 +14,8 @@ pub enum Bounds {
 impl Bounds {
     /// Heights in meters: from below any sea to above the orbit of any camera.
     pub const ELEVATION: Self = Self::Within(-1e7, 1e7);
+    /// Compass directions in degrees.
+    pub const DIRECTION: Self = Self::Within(-360.0, 360.0);
     /// Every finite number.
     pub const FINITE: Self = Self::Within(f64::MIN, f64::MAX);
 

@@ -40,10 +40,11 @@ use crate::color::{Color, RampChoice};
 use crate::declaration::{KeyDeclaration, Presence};
 use crate::diagnostic::Diagnostic;
 use crate::earthworks::EarthworkTable;
+use crate::feature_source::FeatureSource;
 use crate::feature_value::DefaultedValue;
 use crate::features::{
-    AreaTable, BridgeTable, BuildingTable, FeatureSource, FenceTable, LakeTable, ModelPlacement, RiverTable,
-    RoadTable, ScatterTable,
+    AreaTable, BridgeTable, BuildingTable, FenceTable, LakeTable, ModelPlacement, RiverTable, RoadTable,
+    ScatterTable,
 };
 use crate::finding_code::FindingCode;
 use crate::graphics::{GraphicTable, RangeTable, SightTable, ViewshedTable};
@@ -54,14 +55,12 @@ use crate::source_text::SourceText;
 use crate::stated::Stated;
 use crate::symbols::SymbolTable;
 use crate::table::Table;
+use crate::table_key;
 use crate::unused::UnusedDefinitions;
 use crate::words::{
     CameraProjection, GridName, HeightEncodingWord, LabelKind, PaperName, SheetLayout, StylePreset, TableTop,
 };
 use sandtable_geom::crs::Crs;
-
-/// Compass directions in degrees.
-pub(super) const DIRECTION: Bounds = Within(-360.0, 360.0);
 
 table! {
     /// A whole scene file.
@@ -84,51 +83,51 @@ table! {
         /// Greek and Cyrillic.
         font: Option<Stated<String>> = key::file(), otherwise "none; characters that the built-in font lacks are boxes, and reported";
         /// The ground.
-        terrain: TerrainTable = key::table::<TerrainTable>(), required;
+        terrain: TerrainTable = table_key::table::<TerrainTable>(), required;
         /// How the ground looks.
-        style: StyleTable = key::table::<StyleTable>(), default {};
+        style: StyleTable = table_key::table::<StyleTable>(), default {};
         /// Named sets of keys: a table of features takes those of the style that its key `style` names.
         styles: Vec<String> = key::styles(), default {};
         /// Roads, in drawing order.
-        roads as "road": Vec<RoadTable> = key::styled_tables::<RoadTable>(), default [];
+        roads as "road": Vec<RoadTable> = table_key::styled_tables::<RoadTable>(), default [];
         /// Bridges that belong to no road of the scene.
-        bridges as "bridge": Vec<BridgeTable> = key::styled_tables::<BridgeTable>(), default [];
+        bridges as "bridge": Vec<BridgeTable> = table_key::styled_tables::<BridgeTable>(), default [];
         /// Rivers, in drawing order.
-        rivers as "river": Vec<RiverTable> = key::styled_tables::<RiverTable>(), default [];
+        rivers as "river": Vec<RiverTable> = table_key::styled_tables::<RiverTable>(), default [];
         /// Still water: level, and cut out of the ground or filled up to it.
-        lakes as "lake": Vec<LakeTable> = key::styled_tables::<LakeTable>(), default [];
+        lakes as "lake": Vec<LakeTable> = table_key::styled_tables::<LakeTable>(), default [];
         /// What covers the ground, in drawing order.
-        areas as "area": Vec<AreaTable> = key::styled_tables::<AreaTable>(), default [];
+        areas as "area": Vec<AreaTable> = table_key::styled_tables::<AreaTable>(), default [];
         /// Ground that is dug, leveled and filled.
-        earthworks as "earthwork": Vec<EarthworkTable> = key::styled_tables::<EarthworkTable>(), default [];
+        earthworks as "earthwork": Vec<EarthworkTable> = table_key::styled_tables::<EarthworkTable>(), default [];
         /// Footprints raised to a height.
-        buildings as "building": Vec<BuildingTable> = key::styled_tables::<BuildingTable>(), default [];
+        buildings as "building": Vec<BuildingTable> = table_key::styled_tables::<BuildingTable>(), default [];
         /// What stands or runs along a line.
-        fences as "fence": Vec<FenceTable> = key::styled_tables::<FenceTable>(), default [];
+        fences as "fence": Vec<FenceTable> = table_key::styled_tables::<FenceTable>(), default [];
         /// A model file, once or many times.
-        models as "model": Vec<ModelPlacement> = key::styled_tables::<ModelPlacement>(), default [];
+        models as "model": Vec<ModelPlacement> = table_key::styled_tables::<ModelPlacement>(), default [];
         /// Models strewn over areas.
-        scatters as "scatter": Vec<ScatterTable> = key::styled_tables::<ScatterTable>(), default [];
+        scatters as "scatter": Vec<ScatterTable> = table_key::styled_tables::<ScatterTable>(), default [];
         /// Tactical graphics, laid over everything else on the ground.
-        graphics as "graphic": Vec<GraphicTable> = key::styled_tables::<GraphicTable>(), default [];
+        graphics as "graphic": Vec<GraphicTable> = table_key::styled_tables::<GraphicTable>(), default [];
         /// What observers see, as a tint of the ground.
-        viewsheds as "viewshed": Vec<ViewshedTable> = key::styled_tables::<ViewshedTable>(), default [];
+        viewsheds as "viewshed": Vec<ViewshedTable> = table_key::styled_tables::<ViewshedTable>(), default [];
         /// Lines of sight.
-        sights as "sight": Vec<SightTable> = key::styled_tables::<SightTable>(), default [];
+        sights as "sight": Vec<SightTable> = table_key::styled_tables::<SightTable>(), default [];
         /// Rings and fans of range.
-        ranges as "range": Vec<RangeTable> = key::styled_tables::<RangeTable>(), default [];
+        ranges as "range": Vec<RangeTable> = table_key::styled_tables::<RangeTable>(), default [];
         /// Names and heights on the picture.
-        labels as "label": Vec<LabelTable> = key::styled_tables::<LabelTable>(), default [];
+        labels as "label": Vec<LabelTable> = table_key::styled_tables::<LabelTable>(), default [];
         /// What the scene shows one after the other: one picture each.
-        phases as "phase": Vec<PhaseTable> = key::tables::<PhaseTable>(), default [];
+        phases as "phase": Vec<PhaseTable> = table_key::tables::<PhaseTable>(), default [];
         /// Military symbols, standing on the ground.
-        symbols as "symbol": Vec<SymbolTable> = key::styled_tables::<SymbolTable>(), default [];
+        symbols as "symbol": Vec<SymbolTable> = table_key::styled_tables::<SymbolTable>(), default [];
         /// Views; the first is the default. Without any, one is fitted to the whole ground.
-        cameras as "camera": Vec<CameraTable> = key::tables::<CameraTable>(), default [];
+        cameras as "camera": Vec<CameraTable> = table_key::tables::<CameraTable>(), default [];
         /// Paths through the scene that `sandtable fly` follows.
-        flights as "flight": Vec<FlightTable> = key::tables::<FlightTable>(), default [];
+        flights as "flight": Vec<FlightTable> = table_key::tables::<FlightTable>(), default [];
         /// What frames the picture.
-        furniture: FurnitureTable = key::table::<FurnitureTable>(), default {};
+        furniture: FurnitureTable = table_key::table::<FurnitureTable>(), default {};
     }
     check(reader) {
         let cameras = cameras.iter().flatten().map(|camera: &CameraTable| &camera.name);
@@ -183,19 +182,19 @@ table! {
         /// Colors by height: the name of a ramp, or from 2 to 256 stops `[[height, "#rrggbb"], ...]`.
         ramp: Stated<RampChoice> = key::ramp(), default "atlas";
         /// Contour lines.
-        contours: Option<ContourTable> = key::table::<ContourTable>(), otherwise "no contour lines";
+        contours: Option<ContourTable> = table_key::table::<ContourTable>(), otherwise "no contour lines";
         /// How many summits, saddles and lakes without a label show their elevation, the most prominent first. Of a model of which
         /// pictures show means, hills smaller than these are missed; the elevation of those that are found is the file's.
         spot_heights: u32 = key::integer(0, 1000), default 0;
         /// A picture of the ground over the colors by height, such as an aerial photograph.
-        imagery: Option<ImageryTable> = key::table::<ImageryTable>(), otherwise "no picture";
+        imagery: Option<ImageryTable> = table_key::table::<ImageryTable>(), otherwise "no picture";
         /// Whether meadow, scree, rock and snow tint the ground by its elevation, slope and aspect, by at most 6 of lightness;
         /// the tree line and the snow line are those of the latitude.
         land_cover: Stated<bool> = key::switch(), default false;
         /// Whether the edges of the drawn triangles of the ground show, as papers on terrain print their meshes.
         wireframe: bool = key::switch(), default false;
         /// Where the light comes from.
-        light: LightTable = key::table::<LightTable>(), default {};
+        light: LightTable = table_key::table::<LightTable>(), default {};
         /// Distance from the near edge of the scene at which 63 % of what is seen is haze; 0 for clear air. Fitted
         /// to the view where it is not stated: faint in an overview, more where the horizon shows, none in plan.
         haze: Option<f64> = key::number(Within(0.0, 1e9), "m"),
@@ -229,7 +228,7 @@ table! {
     /// `[style.light]`.
     struct LightTable {
         /// Direction of the sun.
-        azimuth: Option<f64> = key::number(DIRECTION, "°"),
+        azimuth: Option<f64> = key::number(Bounds::DIRECTION, "°"),
             otherwise "the left of the picture, the upper left in a view from above: hills lit from below look like holes";
         /// Height of the sun above the horizon.
         altitude: Option<f64> = key::number(Above(0.0, 90.0), "°"), otherwise "40";
@@ -284,7 +283,7 @@ table! {
         /// Name for `--flight`; no two flights share one.
         name: Stated<String> = key::filled_text(), required;
         /// The path; of a file's lines the longest.
-        source: FeatureSource = key::source::<2>(), inline;
+        source: FeatureSource = table_key::source::<2>(), inline;
         /// Height of the eye above the highest ground around it. Bends are rounded over twice as much.
         height: f64 = key::number(Above(0.0, 1e6), "m"), default 300;
         /// How fast the eye moves.

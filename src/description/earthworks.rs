@@ -13,12 +13,13 @@
 
 use crate::bounds::Bounds::{self, Above, Within};
 use crate::declaration::{KeyDeclaration, Presence};
+use crate::feature_source::FeatureSource;
 use crate::feature_value::FeatureValue;
-use crate::features::FeatureSource;
 use crate::key;
 use crate::reader::TableReader;
 use crate::stated::Stated;
 use crate::table::Table;
+use crate::table_key;
 use crate::words::EarthworkKind;
 use sandtable_base::message::choice::Choice;
 
@@ -41,7 +42,7 @@ table! {
         kind: Stated<EarthworkKind> = key::word::<EarthworkKind>(), required;
         /// Centers of craters; centerlines of trenches, tracks and banks, where one point makes a mound; outlines of level
         /// ground.
-        source: FeatureSource = key::source::<1>(), inline;
+        source: FeatureSource = table_key::source::<1>(), inline;
         /// Of a crater: from its center to the crest of its rim.
         radius: Option<FeatureValue<f64>> = key::feature_number(SIZE, "m"), otherwise "10";
         /// Of a crater, a trench or a track: from the old ground down to the bottom.

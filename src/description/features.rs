@@ -7,19 +7,18 @@
 //! Every table of features may have the key `style` ([`crate::styles`]).
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 use crate::bounds::Bounds::{self, Above, Within};
 use crate::color::Color;
 use crate::declaration::{KeyDeclaration, Presence};
-use crate::document::DIRECTION;
 use crate::expression::Expression;
+use crate::feature_source::FeatureSource;
 use crate::feature_value::{DefaultedValue, FeatureValue};
 use crate::key;
 use crate::reader::TableReader;
-use crate::selection::Selection;
 use crate::stated::Stated;
 use crate::table::Table;
+use crate::table_key;
 use crate::words::{
     Anchor, BaseRule, Border, Clamp, Cover, FenceKind, Footing, Join, LevelRule, Markings, ProfileMode,
     RoadSurface, RoofShape, Water,
@@ -46,34 +45,12 @@ const RING: usize = 3;
 const BUILT_IN: [&str; 8] = ["conifer", "broadleaf", "shrub", "rock", "walnut", "beech", "poplar", "pine"];
 
 table! {
-    /// Where the coordinates of a feature come from: inline `points`, or a `file`. The keys stand in the feature's own table.
-    struct FeatureSource [const LEAST: usize] {
-        /// Inline coordinates, each in ±10⁹. The last point of a ring may repeat its first.
-        points: Option<Stated<Vec<[f64; 2]>>> = key::points(LEAST), otherwise "by `file`", unless ["file"];
-        /// A vector file, or its address: GeoJSON, shapefile, GeoPackage, FlatGeobuf, GPX, KML or OpenStreetMap.
-        file: Option<Stated<String>> = key::file(), otherwise "by `points`", unless ["points"];
-        /// With `file`: the layer of a file that holds several.
-        layer: Option<Stated<String>> = key::filled_text(), otherwise "the file's only layer", unless ["points"];
-        /// With `file`: the features that are taken, by the values of their properties,
-        /// such as `{ highway = ["primary", "trunk"] }`, or by an expression that holds for them.
-        selection as "where": Option<Stated<Selection>> = key::selection(), otherwise "all features", unless ["points"];
-        /// Coordinate system of `points`, or of a file that names none or a wrong one.
-        crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`, or what the file names";
-    }
-    check(reader) {
-        reader.exclude("file", "points");
-        reader.need_either("points", "file", "add `points = [[x, y], ...]` or `file = \"name.geojson\"`");
-        if reader.key_span("file").is_none() && reader.key_span("points").is_some() {
-            reader.without_effect(&["layer", "where"], "on inline `points`", "name a `file`, or remove it");
-        }
-    }
-
     /// `[[road]]`.
     struct RoadTable {
         /// Name for messages and the feature list.
         name: Option<String> = key::text(), otherwise "the property `name`";
         /// The centerline.
-        source: FeatureSource = key::source::<LINE>(), inline;
+        source: FeatureSource = table_key::source::<LINE>(), inline;
         /// Width of the carriageway.
         width: DefaultedValue<f64> = key::feature_number(WIDTH, "m"), default 6, unless ["widths"];
         /// With `points`: the width of the carriageway at each point; counts before `width`.
@@ -124,7 +101,7 @@ table! {
         /// Name for messages and the feature list.
         name: Option<String> = key::text(), otherwise "the property `name`";
         /// The centerline, from abutment to abutment.
-        source: FeatureSource = key::source::<LINE>(), inline;
+        source: FeatureSource = table_key::source::<LINE>(), inline;
         /// Width between the parapets: a road with its footways.
         width: DefaultedValue<f64> = key::feature_number(WIDTH, "m"), default 8;
         /// The paving of the deck.
@@ -141,7 +118,7 @@ table! {
         /// Name for messages and the feature list.
         name: Option<String> = key::text(), otherwise "the property `name`";
         /// The centerline.
-        source: FeatureSource = key::source::<LINE>(), inline;
+        source: FeatureSource = table_key::source::<LINE>(), inline;
         /// Width of the water.
         width: DefaultedValue<f64> = key::feature_number(WIDTH, "m"), default 8, unless ["widths"];
         /// Width of the water at its lower end; between the ends the width grows evenly.
@@ -172,7 +149,7 @@ table! {
         /// Name for messages and the feature list.
         name: Option<String> = key::text(), otherwise "the property `name`";
         /// The shore.
-        source: FeatureSource = key::source::<RING>(), inline;
+        source: FeatureSource = table_key::source::<RING>(), inline;
         /// Elevation of the water.
         level: Option<FeatureValue<f64>> = key::feature_number(Bounds::ELEVATION, "m"), otherwise "by `level_rule`",
             unless ["level_rule"];
@@ -190,7 +167,7 @@ table! {
         /// Name for messages and the feature list.
         name: Option<String> = key::text(), otherwise "the property `name`";
         /// The outline.
-        source: FeatureSource = key::source::<RING>(), inline;
+        source: FeatureSource = table_key::source::<RING>(), inline;
         /// What covers the area.
         cover: FeatureValue<Cover> = key::feature_word::<Cover>(), required;
         /// Color that multiplies the texture; its alpha lets the ground through.
@@ -206,7 +183,7 @@ table! {
         /// Name for messages and the feature list.
         name: Option<String> = key::text(), otherwise "the property `name`";
         /// The footprints.
-        source: FeatureSource = key::source::<RING>(), inline;
+        source: FeatureSource = table_key::source::<RING>(), inline;
         /// Height from the base to the ridge.
         height: Option<FeatureValue<f64>> = key::feature_number(SIZE, "m"),
             otherwise "the property `height`, else 3 m for each of `building:levels` or `levels`, else 6 m";
@@ -229,7 +206,7 @@ table! {
         /// Name for messages and the feature list.
         name: Option<String> = key::text(), otherwise "the property `name`";
         /// The line.
-        source: FeatureSource = key::source::<LINE>(), inline;
+        source: FeatureSource = table_key::source::<LINE>(), inline;
         /// What stands along the line.
         kind: Option<FeatureValue<FenceKind>> = key::feature_word::<FenceKind>(),
             otherwise "by the properties `barrier`, `power` and `boundary` as OpenStreetMap has them, else `fence`";
@@ -262,13 +239,13 @@ table! {
         /// With `at`: its coordinate system.
         crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`", unless ["instances"];
         /// Instead of `at`: one model at each point of a source; expressions see the point's properties.
-        instances: Option<FeatureSource> = key::source_table::<1>(), otherwise "by `at`", unless ["at"];
+        instances: Option<FeatureSource> = table_key::source_table::<1>(), otherwise "by `at`", unless ["at"];
         /// With `instances`: other models, named as in `file`, by the value of `variant`.
         variants: Option<Stated<BTreeMap<String, String>>> = key::named_files(), otherwise "none";
         /// With `variants`: which of them stands at a point; `file` where it is none of them.
         variant: Option<Expression> = key::expression(), otherwise "none";
         /// Direction of its front.
-        heading: DefaultedValue<f64> = key::feature_number(DIRECTION, "°"), default 0;
+        heading: DefaultedValue<f64> = key::feature_number(Bounds::DIRECTION, "°"), default 0;
         /// Meters per unit of the model file.
         scale: DefaultedValue<f64> = key::feature_number(SCALE, "m"), default 1;
         /// How its height is found.
@@ -309,7 +286,7 @@ table! {
         /// Name for messages and the feature list.
         name: Option<String> = key::text(), otherwise "none";
         /// The areas.
-        source: FeatureSource = key::source::<RING>(), inline;
+        source: FeatureSource = table_key::source::<RING>(), inline;
         /// Models, named as in `file` of `[[model]]`; one or up to 256, equally often. `broadleaf` and `conifer` are trees of
         /// several forms.
         models as "of": Stated<Vec<String>> = key::files(&BUILT_IN), required;
@@ -326,27 +303,6 @@ table! {
         elevation: Option<[f64; 2]> = key::number_range(Bounds::ELEVATION, "m"), otherwise "anywhere";
         /// Another number strews otherwise.
         seed: u32 = key::integer(0, u32::MAX), default 0;
-    }
-}
-
-impl FeatureSource {
-    /// The features of a table whose own keys name a file; `None` where it names none.
-    pub fn of_file(
-        file: &Option<Stated<String>>,
-        layer: &Option<Stated<String>>,
-        selection: &Option<Stated<Selection>>,
-        crs: &Option<Crs>,
-    ) -> Option<Self> {
-        let (layer, selection, crs) = (layer.clone(), selection.clone(), crs.clone());
-        let of =
-            |file: &Stated<String>| Self { points: None, file: Some(file.clone()), layer, selection, crs };
-        file.as_ref().map(of)
-    }
-
-    /// The bytes of the scene file that state the coordinates or the file's name, for messages.
-    pub fn span(&self) -> Range<usize> {
-        let points = self.points.as_ref().and_then(Stated::span);
-        points.or_else(|| self.file.as_ref().and_then(Stated::span)).unwrap_or_default()
     }
 }
 

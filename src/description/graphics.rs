@@ -2,12 +2,12 @@
 
 use crate::bounds::Bounds::{self, Above, Within};
 use crate::declaration::{KeyDeclaration, Presence};
-use crate::document::DIRECTION;
-use crate::features::FeatureSource;
+use crate::feature_source::FeatureSource;
 use crate::key;
 use crate::reader::TableReader;
 use crate::stated::Stated;
 use crate::table::Table;
+use crate::table_key;
 use crate::words::{GraphicSide, GraphicStatus, RangeExtent, ViewshedTint};
 use sandtable_geom::crs::Crs;
 
@@ -26,7 +26,7 @@ table! {
         /// Symbol identification code of symbol set 25, 20 or 30 digits: its kind, side, status and echelon.
         sidc: Option<Stated<String>> = key::filled_text(), otherwise "by `kind`; with `file` the property `sidc`";
         /// Its points, in the order of its draw rule; of a file's feature those of its shape.
-        source: FeatureSource = key::source::<1>(), inline;
+        source: FeatureSource = table_key::source::<1>(), inline;
         /// Width of a corridor or lane; of an axis of advance the width of its head, instead of a last point.
         width: Option<f64> = key::number(Above(0.0, 1e6), "m"), otherwise "by its points";
         /// Whose it is; decides its color.
@@ -56,7 +56,7 @@ table! {
         /// Field AM: radius of a circle, or the rising ranges of a fan.
         distances: Option<Stated<Vec<f64>>> = key::numbers(REACH, "m"), otherwise "none";
         /// Field AN: of a sector, the left and the right azimuth of each range.
-        azimuths: Option<Stated<Vec<f64>>> = key::numbers(DIRECTION, "°"), otherwise "none";
+        azimuths: Option<Stated<Vec<f64>>> = key::numbers(Bounds::DIRECTION, "°"), otherwise "none";
     }
     check(reader) {
         reader.exclude("sidc", "kind");
@@ -80,7 +80,7 @@ table! {
         /// How far they look. All samples of the elevation model within it are read, however large the model is.
         range: Option<f64> = key::number(REACH, "m"), otherwise "as far as the ground reaches";
         /// Directions in which they look, from the first clockwise to the second.
-        azimuths: Option<[f64; 2]> = key::directions(DIRECTION, "°"), otherwise "all around";
+        azimuths: Option<[f64; 2]> = key::directions(Bounds::DIRECTION, "°"), otherwise "all around";
         /// Which ground is tinted.
         tint: ViewshedTint = key::word::<ViewshedTint>(), default "both";
     }
@@ -112,7 +112,7 @@ table! {
         /// Rising distances, each with a ring.
         distances: Stated<Vec<f64>> = key::numbers(REACH, "m"), required;
         /// The sector, from the first azimuth clockwise to the second.
-        azimuths: Option<[f64; 2]> = key::directions(DIRECTION, "°"), otherwise "all around";
+        azimuths: Option<[f64; 2]> = key::directions(Bounds::DIRECTION, "°"), otherwise "all around";
         /// Whose it is; decides its color.
         side: GraphicSide = key::word::<GraphicSide>(), default "friend";
         /// Whether the ground within it is filled, all of it or what is in sight.

@@ -1,4 +1,4 @@
-//! The types of values that a key may be declared to have.
+//! The types of values that a key may be declared to have; [`crate::table_key`] has those that are tables.
 //!
 //! To add a type: a variant of [`KeyKind`], a line here, the method of [`KeyValue`] that reads it, and its shape in the
 //! schema ([`crate::schema`]).
@@ -11,9 +11,7 @@ use crate::color::{Color, RampChoice};
 use crate::declaration::KeyKind;
 use crate::expression::Expression;
 use crate::feature_value::{FeatureValue, FeatureWord};
-use crate::features::FeatureSource;
 use crate::selection::Selection;
-use crate::table::Table;
 use crate::value::KeyValue;
 use crate::words::declarations;
 use sandtable_base::message::choice::Choice;
@@ -102,37 +100,11 @@ keys! {
     styles() -> Vec<String> = KeyKind::Styles;
 }
 
-pub(super) const fn table<T: Table>() -> Key<T> {
-    Key { kind: KeyKind::Table(T::KEYS), unit: "", arguments: (), read: |value, ()| value.table::<T, 0>() }
-}
-
-/// A table with the keys of a source of at least `LEAST` points.
-pub(super) const fn source_table<const LEAST: usize>() -> Key<FeatureSource> {
-    let kind = KeyKind::Table(<FeatureSource as Table<LEAST>>::KEYS);
-    Key { kind, unit: "", arguments: (), read: |value, ()| value.table::<_, LEAST>() }
-}
-
-pub(super) const fn tables<T: Table>() -> Key<Vec<T>> {
-    let read = |value: KeyValue<'_, '_>, ()| value.tables(Styling::Plain);
-    Key { kind: KeyKind::Tables(T::KEYS), unit: "", arguments: (), read }
-}
-
-/// A list of tables, each of which may take keys from a style.
-pub(super) const fn styled_tables<T: Table>() -> Key<Vec<T>> {
-    let read = |value: KeyValue<'_, '_>, ()| value.tables(Styling::Styled);
-    Key { kind: KeyKind::StyledTables(T::KEYS), unit: "", arguments: (), read }
-}
-
 /// Several keys in the table that they are declared in.
 pub(super) struct Group<T, const N: usize> {
     pub kind: KeyKind,
     pub unit: &'static str,
-    of: PhantomData<T>,
-}
-
-/// The keys of a source of at least `LEAST` points.
-pub(super) const fn source<const LEAST: usize>() -> Group<FeatureSource, LEAST> {
-    Group { kind: KeyKind::Group(<FeatureSource as Table<LEAST>>::KEYS), unit: "", of: PhantomData }
+    pub of: PhantomData<T>,
 }
 
 /// Whether tables may name a style.

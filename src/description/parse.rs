@@ -6,12 +6,13 @@ use std::sync::Arc;
 use toml::Spanned;
 use toml::de::DeTable;
 
+use crate::decode_context::DecodeContext;
 use crate::diagnostic::{Diagnostic, DiagnosticSink, Diagnostics};
 use crate::document::Document;
 use crate::finding_code::FindingCode;
 use crate::include::{LoadFile, files_with_values, gather, merged, moved};
 use crate::phases::Phases;
-use crate::reader::{DecodeContext, TableReader};
+use crate::reader::TableReader;
 use crate::source_text::SourceText;
 use crate::stated::Stated;
 use crate::styles::Styles;
@@ -82,9 +83,9 @@ pub fn parse_in_phase(
     let (parsed, report) = match &root {
         Some(root) => {
             let styles = Styles::read(root, &mut report);
-            let mut context =
-                DecodeContext { report, styles, phases: Phases::read(root, phase), unused_includes };
-            (TableReader::read_root(&mut context, root), context.report)
+            let (phases, scene_keys) = (Phases::read(root, phase), Document::DECLARATIONS);
+            let mut context = DecodeContext { report, styles, phases, unused_includes, scene_keys };
+            (TableReader::read_root::<Document>(&mut context, root), context.report)
         }
         None => (None, report),
     };

@@ -22,20 +22,17 @@ use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
-use crate::declaration::{KeyDeclaration, Presence};
+use crate::declaration::{KeyDeclaration, KeyKind, Presence};
 use crate::diagnostic::DiagnosticSink;
 use crate::finding_code::FindingCode;
-use crate::key::{Key, text_list};
 use crate::stated::Stated;
 use sandtable_base::message::suggest::{quoted, remedy};
-
-pub(super) const PHASES_TYPE: Key<Vec<String>> = text_list();
 
 /// The key `phases` of every table of features.
 pub const PHASES_KEY: KeyDeclaration = KeyDeclaration {
     name: "phases",
     doc: "Names of the phases in which it is there.",
-    kind: PHASES_TYPE.kind,
+    kind: KeyKind::TextList,
     unit: "",
     presence: Presence::Otherwise("all of them"),
     rivals: &[],

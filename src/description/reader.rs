@@ -10,51 +10,19 @@ use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
 use crate::declaration::{KeyDeclaration, Presence};
-use crate::diagnostic::DiagnosticSink;
-use crate::document::Document;
+use crate::decode_context::DecodeContext;
 use crate::finding_code::FindingCode;
-use crate::key::{Group, Key, Styling};
-use crate::phases::{PHASES_KEY, PHASES_TYPE, Phases};
+use crate::key::{Group, Key, Styling, filled_text, text_list};
+use crate::phases::PHASES_KEY;
 use crate::source_text::SourceText;
 use crate::stated::Stated;
-use crate::styles::{STYLE_KEY, STYLE_TYPE, Styles};
+use crate::styles::STYLE_KEY;
 use crate::table::{DefaultedField, Field, Table};
-use crate::unused::{UnusedDefinitions, UnusedInclude};
+use crate::table_name::TableName;
+use crate::unused::UnusedDefinitions;
 use crate::value::{KeyValue, type_name};
 use sandtable_base::limits::SCENE_TABLES;
 use sandtable_base::message::suggest::{listed, nearest, quoted};
-
-/// The state that the readers of all tables share.
-pub(super) struct DecodeContext<'t> {
-    pub report: DiagnosticSink,
-    pub styles: Styles<'t>,
-    pub phases: Phases<'t>,
-    /// The included files without effect.
-    pub unused_includes: Vec<UnusedInclude>,
-}
-
-/// The name of a table.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct TableName {
-    dotted: String,
-    repeated: bool,
-}
-
-impl TableName {
-    fn inner(&self, key: &str, repeated: bool) -> Self {
-        let dot = if self.dotted.is_empty() { "" } else { "." };
-        Self { dotted: format!("{}{dot}{key}", self.dotted), repeated }
-    }
-
-    /// `[style.light]`, `[[road]]` or `the scene file`.
-    pub fn title(&self) -> String {
-        match (self.dotted.as_str(), self.repeated) {
-            ("", _) => "the scene file".into(),
-            (dotted, true) => format!("[[{dotted}]]"),
-            (dotted, false) => format!("[{dotted}]"),
-        }
-    }
-}
 
 type TableEntry<'r> = (&'r Spanned<DeString<'r>>, &'r Spanned<DeValue<'r>>);
 
@@ -73,7 +41,7 @@ pub(super) struct TableReader<'r, 't> {
 
 impl<'r, 't> TableReader<'r, 't> {
     /// Reads the tables of a whole scene file.
-    pub fn read_root(context: &'r mut DecodeContext<'t>, table: &'r DeTable<'r>) -> Option<Document> {
+    pub fn read_root<T: Table>(context: &'r mut DecodeContext<'t>, table: &'r DeTable<'r>) -> Option<T> {
         TableReader::read(context, table, (TableName::default(), 0..0), Styling::Plain)
     }
 
@@ -99,7 +67,7 @@ impl<'r, 't> TableReader<'r, 't> {
         if self.styling == Styling::Plain {
             return true;
         }
-        let stated = self.stated(&PHASES_KEY, &PHASES_TYPE);
+        let stated = self.stated(&PHASES_KEY, &text_list());
         let DecodeContext { phases, report, .. } = &mut *self.context;
         stated.is_none_or(|stated| phases.hold(&stated, report))
     }
@@ -111,7 +79,7 @@ impl<'r, 't> TableReader<'r, 't> {
 
     /// What no table uses; of the whole scene once all its tables are read.
     pub fn unused(&mut self) -> UnusedDefinitions {
-        let DecodeContext { report, styles, phases, unused_includes } = &mut *self.context;
+        let DecodeContext { report, styles, phases, unused_includes, .. } = &mut *self.context;
         let source = report.source();
         let is_own = |name: &Stated<String>| {
             name.span().is_some_and(|span| source.name_at(span.start) == source.name())
@@ -261,8 +229,9 @@ impl<'r, 't> TableReader<'r, 't> {
     }
 
     fn take_style(&mut self) {
-        if let Some(name) = self.stated(&STYLE_KEY, &STYLE_TYPE) {
-            self.style = self.context.take_style(&name);
+        if let Some(name) = self.stated(&STYLE_KEY, &filled_text()) {
+            let DecodeContext { styles, report, .. } = &mut *self.context;
+            self.style = styles.take(&name, report);
         }
     }
 
@@ -304,10 +273,10 @@ impl<'r, 't> TableReader<'r, 't> {
     }
 
     fn help_for_unknown(&self, key: &str, meant: Option<&str>) -> String {
-        let at_the_top = Document::DECLARATIONS.iter().filter(|top| top.inner().is_empty());
+        let at_the_top = self.context.scene_keys.iter().filter(|top| top.inner().is_empty());
         match meant {
             Some(meant) => format!("did you mean `{meant}`?"),
-            None if !self.name.dotted.is_empty() && at_the_top.clone().any(|top| top.name == key) => {
+            None if !self.name.is_root() && at_the_top.clone().any(|top| top.name == key) => {
                 format!("`{key}` belongs to the whole scene: write it at the top, before the first [table]")
             }
             None => {
@@ -318,7 +287,7 @@ impl<'r, 't> TableReader<'r, 't> {
 
     fn report_missing(&mut self, key: &str) {
         let title = self.name.title();
-        let (message, help) = if self.name.dotted.is_empty() {
+        let (message, help) = if self.name.is_root() {
             (
                 format!("{title} has no [{key}] table"),
                 format!("add a line [{key}] and the keys it needs below it"),
@@ -368,7 +337,7 @@ impl KeyValue<'_, '_> {
     fn table_named<T: Table<N>, const N: usize>(&mut self, name: TableName, styling: Styling) -> Option<T> {
         let DeValue::Table(table) = self.value.get_ref() else {
             let found = type_name(self.value.get_ref());
-            let message = format!("`{}` must be a table, but this is {found}", name.dotted);
+            let message = format!("`{}` must be a table, but this is {found}", name.dotted());
             return self.wrong_as(FindingCode::WrongType, message, format!("start it with {}", name.title()));
         };
         TableReader::read(self.context, table, (name, self.value.span()), styling)

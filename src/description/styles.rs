@@ -20,23 +20,18 @@ use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
-use crate::declaration::{KeyDeclaration, Presence};
+use crate::declaration::{KeyDeclaration, KeyKind, Presence};
 use crate::diagnostic::DiagnosticSink;
 use crate::finding_code::FindingCode;
-use crate::key::{Key, filled_text};
-use crate::reader::DecodeContext;
 use crate::stated::Stated;
-use crate::value::KeyValue;
 use sandtable_base::limits::STYLE_BYTES;
 use sandtable_base::message::suggest::{quoted, remedy};
-
-pub(super) const STYLE_TYPE: Key<String> = filled_text();
 
 /// The key `style` of every table that may name one.
 pub const STYLE_KEY: KeyDeclaration = KeyDeclaration {
     name: "style",
     doc: "Name of a style: the keys of `[styles.NAME]` that this table does not state count as its own.",
-    kind: STYLE_TYPE.kind,
+    kind: KeyKind::FilledText,
     unit: "",
     presence: Presence::Otherwise("none"),
     rivals: &[],
@@ -87,38 +82,32 @@ impl<'t> Styles<'t> {
         let unused = self.styles.iter().filter(|(_, style)| !style.is_used);
         unused.map(|(name, style)| Stated::new((*name).to_owned(), style.name_span.clone())).collect()
     }
-}
 
-const WRONG_STYLES: &str = "`styles` must hold tables";
-
-impl<'t> DecodeContext<'t> {
     /// The keys of a style. Reports an error and returns `None` where there is no such style, or styles add too many
     /// bytes.
-    pub fn take_style(&mut self, name: &Stated<String>) -> Option<&'t DeTable<'t>> {
+    pub fn take(&mut self, name: &Stated<String>, report: &mut DiagnosticSink) -> Option<&'t DeTable<'t>> {
         let span = name.span().unwrap_or_default();
-        let Some(style) = self.styles.styles.get_mut(name.as_str()) else {
-            let (message, help) = self.styles.unknown(name);
-            self.report.coded(FindingCode::UnknownName, span, message, help);
+        let Some(style) = self.styles.get_mut(name.as_str()) else {
+            let (message, help) = self.unknown(name);
+            report.coded(FindingCode::UnknownName, span, message, help);
             return None;
         };
         style.is_used = true;
         let style = style.keys;
         let bytes: usize = style.values().map(|value| value.span().len()).sum();
-        match self.styles.bytes_left.checked_sub(bytes) {
-            Some(left) => self.styles.bytes_left = left,
+        match self.bytes_left.checked_sub(bytes) {
+            Some(left) => self.bytes_left = left,
             None => {
                 let help = format!(
                     "put long lists of points in a vector file, and name it once with `file`, or {STYLE_BYTES:#}"
                 );
-                self.report.error(span, format!("styles add more than {STYLE_BYTES} bytes in all"), help);
+                report.error(span, format!("styles add more than {STYLE_BYTES} bytes in all"), help);
                 return None;
             }
         }
         Some(style)
     }
-}
 
-impl Styles<'_> {
     fn unknown(&self, name: &str) -> (String, String) {
         let names: Vec<&str> = self.styles.keys().copied().take(20).collect();
         let help = match names[..] {
@@ -129,10 +118,4 @@ impl Styles<'_> {
     }
 }
 
-impl KeyValue<'_, '_> {
-    /// The names of the styles; [`Styles::read`] checks them.
-    pub fn styles(self) -> Option<Vec<String>> {
-        let styles = self.value.get_ref().as_table()?;
-        Some(styles.keys().map(|name| name.get_ref().to_string()).collect())
-    }
-}
+const WRONG_STYLES: &str = "`styles` must hold tables";

@@ -1,10 +1,9 @@
 //! The scene file's table of military symbols.
 
-use crate::bounds::Bounds::{Above, Within};
+use crate::bounds::Bounds::{self, Above, Within};
 use crate::declaration::{KeyDeclaration, Presence};
-use crate::document::DIRECTION;
+use crate::feature_source::FeatureSource;
 use crate::feature_value::{DefaultedValue, FeatureValue};
-use crate::features::FeatureSource;
 use crate::key;
 use crate::reader::TableReader;
 use crate::selection::Selection;
@@ -37,7 +36,7 @@ table! {
         /// The lower, the more important: symbols that find no place beside more important ones are left out.
         rank: DefaultedValue<f64> = key::feature_number(Within(-1e9, 1e9), ""), default 0;
         /// Field Q: the direction of movement, as an arrow from the place.
-        direction: Option<Stated<FeatureValue<f64>>> = key::feature_number(DIRECTION, "°"), otherwise "no arrow";
+        direction: Option<Stated<FeatureValue<f64>>> = key::feature_number(Bounds::DIRECTION, "°"), otherwise "no arrow";
         /// Field C: how many, over the frame.
         quantity: Option<Stated<String>> = key::filled_text(), otherwise "none";
         /// Field F: `(+)`, `(-)` or `(±)`.

@@ -9,12 +9,13 @@ use toml::de::{DeArray, DeString, DeTable, DeValue};
 
 use crate::bounds::{Bounds, ShortNumber};
 use crate::color::{Color, RampChoice};
+use crate::decode_context::DecodeContext;
 use crate::expression::{Expression, ExpressionError};
 use crate::feature_value::{FeatureValue, FeatureWord};
 use crate::finding_code::FindingCode;
 use crate::include::joined;
-use crate::reader::{DecodeContext, TableName};
 use crate::scalar::Scalar;
+use crate::table_name::TableName;
 use sandtable_base::limits::INLINE_POINTS;
 use sandtable_base::limits::SCENE_LIST;
 use sandtable_base::limits::SCENE_TEXT;
@@ -445,6 +446,12 @@ impl<'t> KeyValue<'_, 't> {
             return self.wrong(format!("`{}` has {count} of the {least} points it needs", self.key), help);
         }
         Some(points)
+    }
+
+    /// The names of the styles; [`Styles::read`](crate::styles::Styles::read) checks them.
+    pub fn styles(self) -> Option<Vec<String>> {
+        let styles = self.value.get_ref().as_table()?;
+        Some(styles.keys().map(|name| name.get_ref().to_string()).collect())
     }
 }
 

@@ -4,7 +4,7 @@ use std::fmt;
 
 use glam::DVec2;
 
-use crate::view_snapshot::ViewedCamera;
+use crate::viewed_camera::ViewedCamera;
 
 /// A place in a scene file: outside tables, or a table of a list such as `[[model]]`, by its number there counted from 0.
 /// Tables of included files are not counted.

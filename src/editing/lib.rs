@@ -21,4 +21,5 @@ mod scene_text;
 mod text_change;
 pub mod tool;
 pub mod view_snapshot;
+pub mod viewed_camera;
 pub mod viewing;

@@ -5,9 +5,10 @@
 
 use std::path::{Path, PathBuf};
 
-use glam::{DVec2, Vec3};
+use glam::Vec3;
 
 use crate::editor::SceneSource;
+use crate::viewed_camera::ViewedCamera;
 use sandtable_files::disk::{self, WriteFileError};
 use sandtable_files::output_files::OutputFiles;
 use sandtable_render::RenderBackend;
@@ -95,21 +96,6 @@ pub fn camera_table(scene: &SceneModel, camera: &Camera, name: &str) -> Result<S
          look_at = [{:?}, {:?}]\nlook_at_height = {look_at_height_m:?}\n{system}field_of_view = {field_of_view_deg:?}\n",
         eye.x, eye.y, look_at.x, look_at.y,
     ))
-}
-
-/// A camera in perspective as a scene file states it. Places are map coordinates.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ViewedCamera {
-    /// Where the eye is.
-    pub eye: DVec2,
-    /// Its elevation in meters, true to scale.
-    pub eye_elevation_m: f64,
-    /// What it looks at.
-    pub look_at: DVec2,
-    /// Meters above the ground there, as drawn.
-    pub look_at_height_m: f64,
-    /// The vertical field of view, degrees.
-    pub field_of_view_deg: f64,
 }
 
 impl ViewedCamera {

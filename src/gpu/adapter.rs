@@ -7,7 +7,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::error::{DriverError, GpuError};
-use crate::pipelines::{COLOR, DEPTH};
+use crate::formats::{COLOR, DEPTH};
 
 /// The most readings of a texture along a pixel seen at a grazing angle; on a software adapter those of the CPU renderer,
 /// since each costs time there.

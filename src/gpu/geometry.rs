@@ -3,33 +3,17 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use bytemuck::{Pod, Zeroable, cast_slice};
+use bytemuck::{Zeroable, cast_slice};
 use glam::{Mat4, Vec3};
 
 use crate::error::GpuError;
-use crate::materials::MaterialRow;
 use crate::memory::Loader;
+use crate::merged_vertex::{MergedVertex, SurfaceOwner};
 use crate::plan::{DrawShape, Plan};
 use crate::uniforms::Instance;
-use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh, DrawVertex, FeatureId};
+use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh, DrawVertex};
 use sandtable_mesh::sink::VertexId;
 use sandtable_view::camera::Camera;
-
-/// A corner in world space: `Corner` and `Owner` in the shader.
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-#[repr(C)]
-pub struct MergedVertex {
-    pub corner: DrawVertex,
-    pub owner: SurfaceOwner,
-}
-
-/// Whose a corner is: `Owner` in the shader.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-#[repr(C)]
-pub struct SurfaceOwner {
-    pub feature: FeatureId,
-    pub material: MaterialRow,
-}
 
 /// What the texture coordinates of merged corners are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -249,7 +233,7 @@ fn instances(loader: &Loader<'_>, list: &DrawList, plan: &Plan) -> Result<wgpu::
 mod tests {
     use super::*;
     use sandtable_draw::color::Srgba;
-    use sandtable_draw::list::MaterialId;
+    use sandtable_draw::list::{FeatureId, MaterialId};
     use sandtable_mesh::sink::MeshSink;
 
     #[test]

@@ -15,8 +15,8 @@ use bytemuck::cast_slice;
 use rayon::prelude::*;
 
 use crate::error::GpuError;
+use crate::layouts::Layouts;
 use crate::memory::{Loader, bind, texture, view};
-use crate::pipelines::Layouts;
 use crate::uniforms::SurfaceConstants;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DrawList, MaterialId};
@@ -35,17 +35,6 @@ pub struct ArrayId(pub u32);
 impl ArrayId {
     /// No texture.
     pub const NONE: Self = Self(0);
-}
-
-/// The row of a material in the table.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(transparent)]
-pub struct MaterialRow(pub u32);
-
-impl From<MaterialId> for MaterialRow {
-    fn from(id: MaterialId) -> Self {
-        Self(id.0 + 1)
-    }
 }
 
 /// Where the textures of materials lie.
@@ -272,6 +261,7 @@ mod tests {
     use bytemuck::bytes_of;
 
     use super::*;
+    use crate::merged_vertex::MaterialRow;
     use glam::Mat4;
     use sandtable_draw::list::{DepthLayer, DrawItem, DrawMesh, FeatureId};
 

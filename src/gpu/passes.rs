@@ -6,8 +6,9 @@
 use crate::geometry::GpuGeometry;
 use crate::materials::{ArrayId, GpuMaterials};
 use crate::parts::ShaderParts;
+use crate::pipeline_key::PipelineKey;
 use crate::pipelines::Pipelines;
-use crate::plan::{DrawCall, PipelineKey};
+use crate::plan::DrawCall;
 
 /// What a pass draws of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,18 +1,14 @@
-//! The fixed part of drawing: shaders, bindings and one pipeline for each kind of draw call.
+//! The fixed part of drawing: shaders and one pipeline for each kind of draw call.
 
 use std::collections::BTreeMap;
 
 use crate::adapter::{Gpu, GpuApi};
-use crate::geometry::MergedVertex;
-use crate::plan::{DepthRule, PipelineKey, VertexSource};
-use crate::uniforms::{FrameUniforms, Instance};
+use crate::formats::DEPTH;
+use crate::layouts::Layouts;
+use crate::merged_vertex::MergedVertex;
+use crate::pipeline_key::{DepthRule, PipelineKey, VertexSource};
+use crate::uniforms::Instance;
 use sandtable_draw::list::{DRAPE_TOLERANCE, DrawVertex};
-
-pub const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
-/// The format of depth. Reversed depth needs floats: their resolution near zero is why it is reversed.
-pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-/// Feature numbers and the bits of depths in meters: integers, because OpenGL ES need not draw to floats.
-pub const FEATURE: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 
 /// The factor by which a drape counts as nearer than it is.
 const DRAPE_NEARER: f64 = 1.0 + DRAPE_TOLERANCE;
@@ -71,16 +67,6 @@ const PATCH_BUFFERS: [Option<wgpu::VertexBufferLayout>; 1] = [Some(wgpu::VertexB
     attributes: &wgpu::vertex_attr_array![0 => Float32x3],
 })];
 
-#[derive(Debug)]
-pub struct Layouts {
-    /// Group 0: constants, ground posts, ramp, shadows, the draped picture and its sampler, windows of finer posts.
-    pub frame: wgpu::BindGroupLayout,
-    /// Group 1: the table of materials, an array of textures and its sampler.
-    pub materials: wgpu::BindGroupLayout,
-    /// Group 2 where the ground is shaded pixel by pixel: its depths.
-    pub depths: wgpu::BindGroupLayout,
-}
-
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum GpuPass {
     /// Colors, several samples per pixel.
@@ -106,65 +92,6 @@ pub struct Pipelines {
     sky: wgpu::PipelineLayout,
     pixels: wgpu::PipelineLayout,
     by_key: BTreeMap<PipelineKey, wgpu::RenderPipeline>,
-}
-
-impl Layouts {
-    pub fn new(gpu: &Gpu) -> Self {
-        let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
-        let fragment = wgpu::ShaderStages::FRAGMENT;
-        let texture = |sample_type| wgpu::BindingType::Texture {
-            sample_type,
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        };
-        let uniform = |size: usize| wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: wgpu::BufferSize::new(size as u64),
-        };
-        let group = |label: &'static str, bindings: &[(wgpu::ShaderStages, wgpu::BindingType)]| {
-            let entry = |(binding, &(visibility, ty))| wgpu::BindGroupLayoutEntry {
-                binding,
-                visibility,
-                ty,
-                count: None,
-            };
-            let entries: Vec<_> = (0..).zip(bindings).map(entry).collect();
-            let descriptor = wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries };
-            gpu.device.create_bind_group_layout(&descriptor)
-        };
-        Self {
-            frame: group(
-                "frame",
-                &[
-                    (both, uniform(size_of::<FrameUniforms>())),
-                    (fragment, texture(wgpu::TextureSampleType::Uint)),
-                    (fragment, texture(wgpu::TextureSampleType::Float { filterable: false })),
-                    (fragment, texture(wgpu::TextureSampleType::Uint)),
-                    (fragment, texture(wgpu::TextureSampleType::Float { filterable: false })),
-                    (fragment, texture(wgpu::TextureSampleType::Float { filterable: true })),
-                    (fragment, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
-                    (fragment, texture(wgpu::TextureSampleType::Uint)),
-                ],
-            ),
-            materials: group(
-                "materials",
-                &[
-                    (fragment, texture(wgpu::TextureSampleType::Uint)),
-                    (
-                        fragment,
-                        wgpu::BindingType::Texture {
-                            sample_type: wgpu::TextureSampleType::Float { filterable: true },
-                            view_dimension: wgpu::TextureViewDimension::D2Array,
-                            multisampled: false,
-                        },
-                    ),
-                    (fragment, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
-                ],
-            ),
-            depths: group("depths", &[(fragment, texture(wgpu::TextureSampleType::Depth))]),
-        }
-    }
 }
 
 impl Pipelines {
@@ -326,7 +253,7 @@ mod tests {
     use wgpu::naga;
 
     use super::*;
-    use crate::uniforms::SurfaceConstants;
+    use crate::uniforms::{FrameUniforms, SurfaceConstants};
 
     #[test]
     fn the_shader_is_valid_without_any_gpu() {

@@ -19,6 +19,7 @@ use glam::Vec3;
 
 use crate::materials::{ArrayId, TexturePlaces};
 use crate::parts::ShaderParts;
+use crate::pipeline_key::{DepthRule, PipelineKey, VertexSource};
 use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, MeshId};
 use sandtable_draw::material::AlphaMode;
 use sandtable_view::camera::Camera;
@@ -26,37 +27,6 @@ use sandtable_view::camera::Camera;
 /// The most triangles that one merged buffer holds: 72 MiB at the most, where no two triangles share a corner. Larger
 /// buffers save few calls, and some drivers cannot hold them.
 pub const MERGED_TRIANGLES: u32 = 1 << 19;
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum DepthRule {
-    /// Drawn where nearer; writes its depth.
-    Solid,
-    /// Blended where nearer; writes no depth.
-    Blend,
-    /// Blended where not farther by more than the drape tolerance; writes no depth.
-    Drape,
-    /// Lines blended where not farther than a little behind; writes no depth.
-    Lines,
-    /// Drawn where nothing has written its depth; writes none.
-    Sky,
-    /// Writes its depth where nearer, and no color.
-    DepthOnly,
-    /// Drawn where something has written its depth; writes none.
-    Seen,
-}
-
-/// Where a vertex shader reads corners from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum VertexSource {
-    /// Many items, in world space.
-    Merged,
-    /// A mesh, placed by instances.
-    Placed,
-    /// Positions of bare ground.
-    Patch,
-    /// None: the shader makes them.
-    None,
-}
 
 /// What is drawn by one call.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -77,19 +47,6 @@ pub struct DrawCall {
     rule: DepthRule,
     two_sided: bool,
     masked: bool,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct PipelineKey {
-    pub source: VertexSource,
-    pub rule: DepthRule,
-    pub two_sided: bool,
-    /// Whether alpha cuts holes.
-    pub masked: bool,
-    /// Whether a texture is read.
-    pub textured: bool,
-    /// None where the color is not drawn.
-    pub parts: ShaderParts,
 }
 
 /// A range of an item's triangles in a merged buffer; parts lie there one after the other.
@@ -118,41 +75,6 @@ pub struct Plan {
 struct TransparentCall {
     center: Vec3,
     call: DrawCall,
-}
-
-impl PipelineKey {
-    pub const SKY: Self = Self {
-        source: VertexSource::None,
-        rule: DepthRule::Sky,
-        two_sided: true,
-        masked: false,
-        textured: false,
-        parts: ShaderParts::NONE,
-    };
-
-    /// Bare ground by patches.
-    pub const PATCH: Self = Self {
-        source: VertexSource::Patch,
-        rule: DepthRule::Solid,
-        two_sided: false,
-        masked: false,
-        textured: false,
-        parts: ShaderParts::NONE,
-    };
-
-    /// The depth of bare ground by patches.
-    pub const PATCH_DEPTHS: Self = Self { rule: DepthRule::DepthOnly, ..Self::PATCH };
-
-    /// The color of bare ground whose depth is drawn.
-    pub const GROUND_PIXELS: Self = Self { rule: DepthRule::Seen, ..Self::SKY };
-
-    /// The edges of bare ground by patches.
-    pub const PATCH_LINES: Self = Self { rule: DepthRule::Lines, two_sided: true, ..Self::PATCH };
-
-    /// The same with parts of the shading.
-    pub fn with_parts(self, parts: ShaderParts) -> Self {
-        Self { parts, ..self }
-    }
 }
 
 impl DrawCall {

@@ -8,8 +8,8 @@ use std::sync::mpsc;
 
 use crate::adapter::Gpu;
 use crate::error::{DriverError, GpuError};
+use crate::formats::{COLOR, DEPTH, FEATURE};
 use crate::memory::{Loader, texture};
-use crate::pipelines::{COLOR, DEPTH, FEATURE};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::FeatureId;
 use sandtable_draw::pixels::Pixels;

@@ -3,8 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
-use crate::geometry::SurfaceOwner;
 use crate::ground::{MOST_LEVELS, levels};
+use crate::merged_vertex::SurfaceOwner;
 use crate::shadow::ShadowView;
 use crate::windows::{MOST_WINDOWS, WindowPlace};
 use sandtable_draw::backdrop::Backdrop;

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use sandtable_description::document::Document;
-use sandtable_description::features::FeatureSource;
+use sandtable_description::feature_source::FeatureSource;
 
 /// A table with a source.
 pub struct TableSource<'a> {

@@ -22,7 +22,8 @@ use sandtable_symbology::code::SymbolCode;
 use sandtable_symbology::fields::{SymbolIdentity, SymbolSet, SymbolStatus};
 use sandtable_symbology::graphic::check::{GraphicError, MOST_RANGES, PlacedGraphic, check};
 use sandtable_symbology::graphic::fields::{ECHELONS, GraphicFields, echelon_mark};
-use sandtable_symbology::graphic::kind::{GRAPHIC_KINDS, GraphicKind};
+use sandtable_symbology::graphic::kind::GraphicKind;
+use sandtable_symbology::graphic::kind_table::GRAPHIC_KINDS;
 use sandtable_vector::feature::Geometry;
 
 /// Adds the document's graphics to `collected`; those of files that lie off the ground are left out with a note.

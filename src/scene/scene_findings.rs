@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::feature::FeatureKind;
 use sandtable_base::message::suggest::quoted;
 use sandtable_description::document::Document;
-use sandtable_description::features::FeatureSource;
+use sandtable_description::feature_source::FeatureSource;
 use sandtable_description::finding::Finding;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::source_text::SourceText;

@@ -14,7 +14,7 @@ use sandtable_base::limits::{ASSET_BYTES, RING_CROSSINGS};
 use sandtable_base::message::suggest::quoted;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::expression::Expression;
-use sandtable_description::features::FeatureSource;
+use sandtable_description::feature_source::FeatureSource;
 use sandtable_description::scalar::Scalar;
 use sandtable_description::selection::Selection;
 use sandtable_description::stated::Stated;

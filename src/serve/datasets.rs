@@ -8,8 +8,8 @@ use axum::Json;
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 
-use crate::query::Service;
 use crate::reply::{HttpError, OK, quoted};
+use crate::service::Service;
 use sandtable_base::message::chain::error_text;
 use sandtable_query::dataset::{Dataset, OpenError, QueryError};
 use sandtable_query::ground::QueriedGround;

@@ -13,7 +13,7 @@ use axum::http::{HeaderMap, HeaderValue, Method, StatusCode};
 use axum::middleware::Next;
 use axum::response::Response;
 
-use crate::query::Service;
+use crate::service::Service;
 use crate::{health, ready};
 use sandtable_files::fingerprint::content_hash;
 

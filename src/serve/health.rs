@@ -5,8 +5,8 @@ use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 
 use crate::datasets::{DatasetFacts, ServedDataset};
-use crate::query::Service;
 use crate::reply::OK;
+use crate::service::Service;
 use sandtable_base::message::chain::error_text;
 
 /// Its path.

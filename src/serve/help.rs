@@ -5,7 +5,7 @@ use std::fmt::Write;
 use axum::response::{IntoResponse, Response};
 
 use crate::api::{ADDRESSES, ApiAddress, ApiMethods, ApiNeed};
-use crate::query::Service;
+use crate::service::Service;
 
 /// The columns before the second one of an address and of a parameter.
 const WIDTH: usize = 34;

@@ -14,8 +14,8 @@ use axum::http::{StatusCode, Version};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 
-use crate::query::Service;
 use crate::reply::{HttpError, quoted};
+use crate::service::Service;
 
 /// The name that every machine has for itself.
 const LOCALHOST: &str = "localhost";

@@ -6,7 +6,7 @@
 //!         ├─ host, clients, answers                        who may ask, and for how much at once
 //!         ├─ parameters, coordinates, polyline, samples    reading
 //!         ├─ heights, los, profile, viewshed               the queries (`query` is what they share)
-//!         ├─ datasets                                      the rasters and scenes that are served
+//!         ├─ service, datasets                             the state of the service, and what it serves
 //!         ├─ api ─► help, openapi                          what may be asked, as a table and as pages
 //!         └─ reply, health, ready, etag                    writing
 //! ```
@@ -36,6 +36,7 @@ mod ready;
 mod reply;
 mod router;
 mod samples;
+mod service;
 mod viewshed;
 
 use std::io;
@@ -52,8 +53,8 @@ use crate::clients::{ClientShares, Clients};
 use crate::datasets::Datasets;
 use crate::listener::{Gate, RequestConnection};
 use crate::parameters::{LONG_BODIES, LONG_BODIES_OF_CLIENT};
-use crate::query::Service;
 use crate::ready::Readiness;
+use crate::service::Service;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::geoid::Geoid;
 use sandtable_query::dataset::OpenError;

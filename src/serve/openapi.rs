@@ -6,8 +6,8 @@ use serde_json::{Map, Value, json};
 
 use crate::api::{ADDRESSES, ApiAddress, ApiMethods, ApiNeed, ApiParameter, ApiValue, HEIGHTS};
 use crate::parameters::BODY_TYPES;
-use crate::query::Service;
 use crate::ready;
+use crate::service::Service;
 
 /// The part of a path that is a parameter, in the table and in the document.
 const DATASET: (&str, &str) = ("DATASET", "{dataset}");

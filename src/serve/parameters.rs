@@ -20,8 +20,8 @@ use tokio::sync::SemaphorePermit;
 
 use crate::answers::taking_from_slow;
 use crate::clients::{Connection, HeldResource};
-use crate::query::Service;
 use crate::reply::{HttpError, quoted};
+use crate::service::Service;
 use sandtable_base::message::choice::Choice;
 
 /// The most parameters: no query has as many.

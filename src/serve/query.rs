@@ -1,23 +1,15 @@
-//! The trait of all queries, the state of the service, and parameters that several queries have.
-
-use std::sync::Arc;
+//! The trait of all queries, and parameters that several queries have.
 
 use axum::response::Response;
 use glam::DVec2;
-use tokio::sync::Semaphore;
 
-use crate::answers::AnswerMemory;
 use crate::api::ApiAddress;
-use crate::clients::Clients;
 use crate::coordinates::{Coordinates, Location};
-use crate::datasets::{Datasets, ServedDataset};
+use crate::datasets::ServedDataset;
 use crate::parameters::Parameters;
-use crate::ready::Readiness;
 use crate::reply::HttpError;
-use sandtable_geom::crs::Crs;
-use sandtable_geom::geoid::Geoid;
+use crate::service::Service;
 use sandtable_query::ground::QueriedGround;
-use sandtable_query::service::{PathPrefix, RequestLog, ServiceLimits};
 use sandtable_query::windowed_elevation::GroundReach;
 use sandtable_terrain::sight::Curvature;
 use sandtable_terrain::stop_flag::StopFlag;
@@ -27,32 +19,6 @@ const HIGHEST_M: f64 = 100_000.0;
 
 /// The default height of an observer's eye, as in GDAL's viewsheds.
 pub const OBSERVER_M: f64 = 2.0;
-
-/// The service, one for the whole program.
-pub struct Service {
-    pub datasets: Datasets,
-    pub limits: ServiceLimits,
-    /// WGS 84, the system of most requests.
-    pub wgs84: Crs,
-    /// The names under which it is asked for, beside its addresses.
-    pub hosts: Vec<String>,
-    /// What paths begin with.
-    pub prefix: PathPrefix,
-    pub readiness: Readiness,
-    pub clients: Arc<Clients>,
-    pub answers: AnswerMemory,
-    /// The geoid, with the nodes that requests have needed.
-    pub geoid: Geoid,
-    /// Permits for long bodies that are being received.
-    pub long_bodies: Arc<Semaphore>,
-    /// Permits for heavy queries that are worked on.
-    pub heavy: Arc<Semaphore>,
-    /// Permits for expensive queries that are worked on: each may take all cores and a byte a post.
-    pub expensive: Arc<Semaphore>,
-    pub log: RequestLog,
-    /// Writes a line for the user.
-    pub write_line: fn(&str),
-}
 
 /// The thread that executes a query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

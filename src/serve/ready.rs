@@ -13,8 +13,8 @@ use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 
 use crate::datasets::ServedDataset;
-use crate::query::Service;
 use crate::reply::{HttpError, OK};
+use crate::service::Service;
 use sandtable_base::message::chain::error_text;
 use sandtable_query::dataset::QueryError;
 use sandtable_terrain::query::{Interpolation, Surface};

@@ -9,7 +9,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
 use crate::app::{ViewerApp, ViewerStage, WindowRequest};
-use crate::ghost::DragTarget;
+use crate::picked_part::DragTarget;
 use crate::recent::RecentFiles;
 use sandtable_editing::viewing::ViewerOptions;
 

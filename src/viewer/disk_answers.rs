@@ -5,39 +5,20 @@ use std::sync::Arc;
 use egui::Context;
 use glam::Vec2;
 
+use crate::active_tool::ActiveTool;
 use crate::app::ViewerApp;
+use crate::awaited_answers::PickJob;
 use crate::finer_ground::FinerGround;
 use crate::loading::opening_error;
 use crate::measuring::{MeasureKind, Measuring};
 use crate::opened::OpenedScene;
 use crate::paging::{DiskQuestions, PagedTerrain, PagingStage};
 use crate::place::PlaceText;
-use crate::tool_use::ActiveTool;
 use crate::worker::WorkerJob;
 use sandtable_geom::rect::Rect;
 use sandtable_terrain::sight::ground::SightGround;
 use sandtable_view::camera::Camera;
-use sandtable_walk::disk_ground::DiskGroundError;
 use sandtable_walk::pick::{PickedWorld, WalkPick, described, pixel_ray};
-
-/// What a click comes to; `None` where there is no ground after all.
-type PickJob = WorkerJob<Result<Option<WalkPick>, DiskGroundError>>;
-
-/// Answers that are awaited; a newer question takes the place of the one before.
-#[derive(Default)]
-pub struct DiskAnswers {
-    /// What was clicked at.
-    pub pick: Option<PickJob>,
-    /// What was measured last.
-    pub measuring: Option<WorkerJob<Measuring>>,
-}
-
-impl DiskAnswers {
-    /// Whether an answer is awaited.
-    pub fn is_busy(&self) -> bool {
-        self.pick.is_some() || self.measuring.is_some()
-    }
-}
 
 impl OpenedScene {
     /// Whether the terrain on disk is being measured or read.

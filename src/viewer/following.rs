@@ -11,7 +11,7 @@ use crate::loading::{LoadedFile, opening_error};
 use crate::paging::PagingStage;
 use crate::panels::light::LightPanel;
 use crate::panels::tree::TreePanel;
-use crate::saving::Leaving;
+use crate::saving_question::Leaving;
 use crate::session::EditingSession;
 use crate::watch::{FileWatch, WatchState};
 use crate::worker::{WorkerJob, drop_apart};

@@ -1,26 +1,17 @@
 //! The ghost of what is being dragged: the edges of a model's box, the frame of a label, where it will stand.
 
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, vec2};
-use glam::{DVec2, Vec3};
+use glam::Vec3;
 
-use crate::moving::{PickedPart, heading_deg};
 use crate::opened::OpenedScene;
-use crate::view_area::{GrabTarget, ViewArea};
+use crate::picked_part::{DragTarget, GrabTarget, PickedPart, heading_deg};
+use crate::view_area::ViewArea;
 use sandtable_picture::models::PlacementMove;
 use sandtable_view::camera::Camera;
 
 /// Wide and dark below, narrow and light above, so that it shows on any ground.
 const STROKES: [(f32, Color32); 2] =
     [(3.0, Color32::from_black_alpha(150)), (1.4, Color32::from_rgb(255, 214, 64))];
-
-/// Where something is dragged to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DragTarget {
-    /// Map coordinates of the ground under the pointer.
-    pub to: DVec2,
-    /// Whether what is dragged turns where it is.
-    pub turns: bool,
-}
 
 impl OpenedScene {
     /// The edges of a model's box as a drag would leave it, in world space; none where it would have no ground.

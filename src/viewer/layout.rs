@@ -14,7 +14,7 @@ use crate::panels::paging::paging_panel;
 use crate::panels::timing::timing_panel;
 use crate::panels::tree::{TreeEvent, tree_panel};
 use crate::place::PlaceText;
-use crate::saving::Leaving;
+use crate::saving_question::Leaving;
 use crate::viewsheds::ViewshedOverlay;
 use sandtable_files::disk;
 use sandtable_view::navigation::NavigationMode;

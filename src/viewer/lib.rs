@@ -13,9 +13,11 @@
 //! `app` is all of the window but its surface: `show` draws panels and takes input, `advance` moves the camera and asks the
 //! walk what changed. `window` lends it a surface and the clock.
 
+mod active_tool;
 mod app;
 #[cfg(all(test, feature = "viewer-tests"))]
 mod app_tests;
+mod awaited_answers;
 mod commands;
 mod disk_answers;
 mod drawing_job;
@@ -41,16 +43,20 @@ mod paging;
 #[cfg(all(test, feature = "viewer-tests"))]
 mod paging_tests;
 mod panels;
+mod picked_part;
 mod place;
 mod reaching;
 mod recent;
 mod relisting;
 mod saving;
+mod saving_question;
 mod scene_graphics;
+mod scene_jobs;
 mod scene_load;
 mod script;
 mod script_run;
 mod session;
+mod shadow_state;
 mod shadowing;
 mod snapshots;
 mod symbol_layer;

@@ -7,24 +7,9 @@ use egui::{DragValue, Ui};
 use glam::DVec2;
 
 use crate::app::ViewerApp;
-use crate::view_area::GrabTarget;
+use crate::picked_part::{GrabTarget, PickedPart, heading_deg};
 use sandtable_draw::list::FeatureId;
 use sandtable_editing::edit::{EditPlace, EditValue, SceneEdit};
-
-/// The table that states what was picked.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PickedPart {
-    /// The table.
-    pub place: EditPlace,
-    /// What can be dragged; `None` for what lies on the ground.
-    pub grab: Option<GrabTarget>,
-    /// The map coordinates of what can be dragged.
-    pub at: DVec2,
-    /// Its width in meters, where its table states one or may.
-    pub width_m: Option<f64>,
-    /// The file that its table names, with others in it.
-    pub file: Option<String>,
-}
 
 /// What was done with a picked part.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,10 +111,4 @@ impl ViewerApp {
             picked.part = Some(PickedPart { at: to, ..part });
         }
     }
-}
-
-/// The heading from a place toward another, whole degrees clockwise from north.
-pub fn heading_deg(from: DVec2, to: DVec2) -> f64 {
-    let ahead = to - from;
-    libm::atan2(ahead.x, ahead.y).to_degrees().rem_euclid(360.0).round()
 }

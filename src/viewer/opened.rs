@@ -9,10 +9,9 @@ use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use crate::finer_ground::FinerGround;
 use crate::paging::PagedTerrain;
-use crate::reaching::Reaching;
-use crate::relisting::Relisting;
+use crate::scene_jobs::{Reaching, Relisting};
 use crate::scene_load::{LoaderSlot, SceneLoad};
-use crate::shadowing::{ShadowState, ShadowedView};
+use crate::shadow_state::{ShadowState, ShadowedView};
 use sandtable_draw::lighting::Lighting;
 use sandtable_draw::list::{DrawList, FeatureId};
 use sandtable_draw::patches::{GroundChanges, PatchId};

@@ -8,13 +8,13 @@ use std::{env, fs, thread};
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::{DVec2, DVec3, Vec2};
 
+use crate::active_tool::ActiveTool;
 use crate::app_tests::{AppHarness, IN_VIEW, app, click, until, window};
 use crate::loading::load_paged;
 use crate::measuring::{MeasureKind, Measuring};
 use crate::opened::{OpenedScene, OpeningView};
 use crate::paging::{MOST_PAGES, PagingStage};
 use crate::scene_load::LoaderSlot;
-use crate::tool_use::ActiveTool;
 use sandtable_dem::formats::DemFormat;
 use sandtable_dem::raster::{Raster, Samples, north_up_nodes};
 use sandtable_dem::write;

@@ -4,10 +4,6 @@ use egui::Context;
 
 use crate::opened::OpenedScene;
 use crate::worker::{WorkerFailure, WorkerJob, drop_apart};
-use sandtable_walk::reach::ReachedGround;
-
-/// The ground that is being made.
-pub type Reaching = WorkerJob<ReachedGround>;
 
 impl OpenedScene {
     /// Whether the ground is being made anew.

@@ -4,36 +4,16 @@
 use std::sync::Arc;
 
 use egui::Context;
-use glam::Vec3;
 
 use crate::opened::{FIRST_SIZE, OpenedScene};
+use crate::scene_jobs::{RelistedScene, Relisting};
 use crate::scene_load::{LoaderSlot, SceneLoad};
-use crate::shadowing::ShadowedView;
+use crate::shadow_state::ShadowedView;
 use crate::worker::{WorkerFailure, WorkerJob, drop_apart};
-use sandtable_draw::list::DrawList;
 use sandtable_draw::patches::GroundChanges;
 use sandtable_gpu::error::GpuError;
 use sandtable_gpu::live::KeptPatches;
-use sandtable_gpu::live::prepared::PreparedScene;
-use sandtable_view::camera::Camera;
 use sandtable_walk::pick::StandingIndex;
-use sandtable_walk::standing_task::StandingTask;
-
-/// A list that is being made.
-pub struct Relisting {
-    task: StandingTask,
-    job: WorkerJob<Result<RelistedScene, GpuError>>,
-}
-
-/// A list that was made.
-struct RelistedScene {
-    list: Arc<DrawList>,
-    standing: StandingIndex,
-    prepared: Option<PreparedScene>,
-    eye: Vec3,
-    /// The camera that its shadows are for.
-    seen: Camera,
-}
 
 /// Why a list cannot be shown; the one before stays.
 #[derive(Debug, thiserror::Error)]

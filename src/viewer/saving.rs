@@ -1,33 +1,12 @@
 //! Saving, and the questions before edits could be lost.
 
-use std::path::PathBuf;
-
 use egui::{Context, Id, Modal};
 
 use crate::app::{ViewerApp, WindowRequest};
 use crate::loading::opening_error;
+use crate::saving_question::{Leaving, SavingQuestion};
 use sandtable_editing::editor::{OnConflict, SaveError};
 use sandtable_files::disk;
-
-/// What leaves the scene as it is edited.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Leaving {
-    /// Closing the window.
-    Close,
-    /// Opening another file.
-    Open(PathBuf),
-    /// Reading the file again.
-    Reload,
-}
-
-/// What the user is asked.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum SavingQuestion {
-    /// Whether to save edits before they would be lost.
-    Unsaved(Leaving),
-    /// Whether to save over what another program wrote.
-    Conflict(String),
-}
 
 impl ViewerApp {
     /// Leaves the scene, after a question where edits would be lost.

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::shadowing::ShadowedView;
+use crate::shadow_state::ShadowedView;
 use sandtable_draw::list::DrawList;
 use sandtable_draw::patches::GroundChanges;
 use sandtable_gpu::error::GpuError;

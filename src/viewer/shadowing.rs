@@ -3,7 +3,7 @@
 //! A shadow map is right wherever it reaches, whatever the eye does; only how fine it is depends on where the eye was. So it
 //! stays while the camera moves, and is made anew when that rests elsewhere.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use egui::Context;
 use glam::Vec3;
@@ -11,13 +11,9 @@ use glam::Vec3;
 use crate::opened::OpenedScene;
 use crate::relisting::RelistingError;
 use crate::scene_load::LoaderSlot;
+use crate::shadow_state::ShadowedView;
 use crate::worker::WorkerJob;
-use sandtable_draw::list::DrawList;
-use sandtable_gpu::error::GpuError;
-use sandtable_gpu::live::LiveShadows;
-use sandtable_gpu::live::prepared::PreparedShadows;
 use sandtable_view::camera::Camera;
-use sandtable_walk::shown_ground::ShownGround;
 
 /// How long the camera rests before shadows are made for it: shorter makes them during a flight with pauses.
 const REST: Duration = Duration::from_millis(200);
@@ -27,64 +23,6 @@ const STALE_SHARE: f32 = 0.1;
 const STALE_COSINE: f32 = 0.9976;
 /// The least height above the ground that is counted with, in meters.
 const LEAST_HEIGHT_M: f32 = 20.0;
-
-/// What shadows are made of.
-pub struct ShadowedView {
-    /// How it is seen.
-    pub camera: Camera,
-    /// The ground as it is shown.
-    pub ground: ShownGround,
-}
-
-/// The shadows of an open scene.
-#[derive(Default)]
-pub struct ShadowState {
-    /// The camera that they were made for last; `None` where they are to be made anew.
-    made_for: Option<Camera>,
-    /// The camera of the frame before, and since when it is the same.
-    rests: Option<(Camera, Instant)>,
-    job: Option<WorkerJob<Result<Option<PreparedShadows>, GpuError>>>,
-    /// What the renderer is to take over.
-    ready: Option<PreparedShadows>,
-}
-
-impl ShadowedView {
-    /// The shadows of a list.
-    ///
-    /// # Errors
-    /// [`GpuError::List`] where the list is unsound, [`GpuError::Memory`] where there is not the memory for them.
-    pub fn shadows(&self, list: &DrawList) -> Result<LiveShadows, GpuError> {
-        LiveShadows::new(&self.ground.with_list(list), &self.camera)
-    }
-}
-
-impl ShadowState {
-    /// The renderer gets shadows for `camera` with a list.
-    pub fn made_for(&mut self, camera: Camera) {
-        (self.made_for, self.job, self.ready) = (Some(camera), None, None);
-    }
-
-    /// What stands or the ground is otherwise now.
-    pub fn forget(&mut self) {
-        self.made_for = None;
-    }
-
-    /// Shadows that the renderer has not taken over.
-    pub fn take_ready(&mut self) -> Option<PreparedShadows> {
-        self.ready.take()
-    }
-
-    /// How long `camera` is the same.
-    fn rest(&mut self, camera: &Camera) -> Duration {
-        match &self.rests {
-            Some((before, since)) if before == camera => since.elapsed(),
-            _ => {
-                self.rests = Some((*camera, Instant::now()));
-                Duration::ZERO
-            }
-        }
-    }
-}
 
 impl OpenedScene {
     /// Takes over the shadows that were made meanwhile, and begins to make others where the camera rests elsewhere.

@@ -6,7 +6,8 @@ use crate::app::ViewerApp;
 use crate::drawing_job::DrawingJob;
 use crate::loading::opening_error;
 use sandtable_editing::edit::SceneEdit;
-use sandtable_editing::view_snapshot::{self, ViewSnapshot, ViewedCamera};
+use sandtable_editing::view_snapshot::{self, ViewSnapshot};
+use sandtable_editing::viewed_camera::ViewedCamera;
 use sandtable_sheet::picture::PictureSize;
 
 impl ViewerApp {

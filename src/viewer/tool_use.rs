@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use egui::{CollapsingHeader, Color32, Painter, Pos2, Rect, RichText, Stroke, Ui, vec2};
 use glam::{DVec2, Vec2};
 
+use crate::active_tool::{ActiveTool, ToolPreview};
 use crate::app::ViewerApp;
 use crate::ghost::show_ghost;
 use crate::measuring::{MeasureKind, Measuring, volume_text};
@@ -24,24 +25,6 @@ const PREVIEW_EVERY: Duration = Duration::from_millis(150);
 const LEG_PIECES: u16 = 24;
 /// A double click with no tool goes to this share of the distance.
 const APPROACH: f64 = 0.35;
-
-/// The tool in use.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ActiveTool {
-    /// Draws into the scene.
-    Draw(DrawingTool),
-    /// Measures.
-    Measure(Measuring),
-}
-
-/// The earth of an edit that is being drawn, and when it was computed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ToolPreview {
-    /// The earth.
-    pub preview: EditPreview,
-    /// When.
-    pub since: Instant,
-}
 
 /// How points are joined over the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

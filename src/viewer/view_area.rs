@@ -7,14 +7,13 @@ use egui::{
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use crate::commands::{HeldMotion, held};
-use crate::ghost::DragTarget;
 use crate::labels::{self, LabelLayer, LabelPicture, PlacedLabel};
 use crate::lettering::font;
 use crate::line_names::LineNames;
 use crate::line_piece::LinePicture;
 use crate::opened::OpenedScene;
+use crate::picked_part::{DragTarget, GrabTarget};
 use crate::symbol_layer::SymbolLayer;
-use sandtable_draw::list::FeatureId;
 use sandtable_scene::scene_label::SceneLabel;
 use sandtable_view::camera::Camera;
 use sandtable_view::navigation::{NavigationMode, NavigationSteps};
@@ -61,15 +60,6 @@ pub struct ViewArea {
     labels: LabelLayer,
     names: LineNames,
     symbols: SymbolLayer,
-}
-
-/// What can be moved by dragging from it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GrabTarget {
-    /// A model.
-    Model(FeatureId),
-    /// A label, by its number.
-    Label(usize),
 }
 
 /// A part of the scene that is being moved.

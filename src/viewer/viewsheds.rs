@@ -3,9 +3,9 @@
 
 use glam::DVec2;
 
+use crate::active_tool::ActiveTool;
 use crate::app::ViewerApp;
 use crate::measuring::{MeasureKind, seen_facts, viewshed_from};
-use crate::tool_use::ActiveTool;
 use crate::worker::WorkerJob;
 use sandtable_picture::recut::SeenTint;
 use sandtable_query::viewshed::ViewshedSummary;

@@ -11,7 +11,8 @@ use sandtable_ribbon::drape::check_clearance;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
 use sandtable_scene::scene_model::SceneModel;
-use sandtable_symbology::graphic::kind::{GRAPHIC_KINDS, GraphicKind, GraphicShape, MOST_POINTS};
+use sandtable_symbology::graphic::kind::{GraphicKind, GraphicShape, MOST_POINTS};
+use sandtable_symbology::graphic::kind_table::GRAPHIC_KINDS;
 use sandtable_terrain::sight::viewshed::{PostVisibility, viewshed};
 
 use crate::common::forest::seen_from;

@@ -12,15 +12,16 @@ use glam::{Mat4, Vec3};
 
 use crate::adapter::Gpu;
 use crate::error::GpuError;
-use crate::geometry::{CornerUv, MergedTriangles, SurfaceOwner};
+use crate::geometry::{CornerUv, MergedTriangles};
 use crate::live::arena::{Arena, StoredRange};
 use crate::live::ground_calls::{GroundCall, GroundCalls};
 use crate::live::{LiveStatistics, UploadedBytes};
 use crate::materials::{ArrayId, TexturePlaces};
+use crate::merged_vertex::SurfaceOwner;
 use crate::parts::ShaderParts;
 use crate::passes::ScenePass;
+use crate::pipeline_key::{DepthRule, PipelineKey, VertexSource};
 use crate::pipelines::GpuPass;
-use crate::plan::{DepthRule, PipelineKey, VertexSource};
 use sandtable_draw::list::{DrawList, DrawListError, MaterialId};
 use sandtable_draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use sandtable_draw::patches::{

@@ -2,8 +2,9 @@
 //! them.
 
 use crate::error::GpuError;
+use crate::formats::{COLOR, DEPTH};
+use crate::layouts::Layouts;
 use crate::memory::{Loader, bind, texture, view};
-use crate::pipelines::{COLOR, DEPTH, Layouts};
 
 /// The textures for frames of one size.
 #[derive(Debug)]

@@ -16,7 +16,7 @@ use crate::report::{InstancesRow, ModelRow};
 use crate::scene_findings::SceneFindings;
 use crate::vertical_scale::DrawnGround;
 use crate::world_frame::WorldFrame;
-use sandtable_description::features::FeatureSource;
+use sandtable_description::feature_source::FeatureSource;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::words::Clamp;
 use sandtable_terrain::lattice::Lattice;

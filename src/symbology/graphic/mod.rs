@@ -6,8 +6,9 @@
 //! heights, so that a graphic looks the same on a sheet of any scale.
 //!
 //! ```text
-//! kind ─► check ─► lines, teeth, wire, axis, area, fires, task, crossing, corridor, point ─► drawing
-//!                                             └── plane ──┘
+//! kind_table ─► lines, teeth, wire, axis, area, fires, task, crossing, corridor, point ─► kind, drawing
+//!                                                     └── plane ──┘
+//! check ─► kind
 //! ```
 
 mod area;
@@ -19,6 +20,7 @@ pub mod drawing;
 pub mod fields;
 mod fires;
 pub mod kind;
+pub mod kind_table;
 mod lines;
 #[cfg(test)]
 mod oracle;

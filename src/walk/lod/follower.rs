@@ -1,11 +1,5 @@
 //! The interface of every method: follow a camera, return the triangles shown.
 
-use crate::lod::deferred::DeferredFollower;
-use crate::lod::full::FullFollower;
-use crate::lod::geomipmap::GeomipmapFollower;
-use crate::lod::lod_ground::LodGround;
-use crate::lod::method::LodMethod;
-use crate::lod::refining::RefiningFollower;
 use sandtable_roam::shown::PatchList;
 use sandtable_view::camera::Camera;
 
@@ -22,18 +16,4 @@ pub trait LodFollower {
 
     /// The lists of the patches in view, after an update; lists that were not written are the same as before.
     fn shown(&mut self) -> Vec<PatchList>;
-}
-
-impl LodMethod {
-    /// The method at work on `ground`. `budget` is the most triangles, for a method that keeps a budget.
-    pub fn follower(self, ground: &LodGround, budget: Option<usize>) -> Box<dyn LodFollower + '_> {
-        match self {
-            Self::Full => Box::new(FullFollower::new(&ground.measured)),
-            Self::Geomipmap => Box::new(GeomipmapFollower::new(ground)),
-            Self::Refining { lists, criterion, refiner } => {
-                Box::new(RefiningFollower::new(ground, lists, criterion, refiner, budget))
-            }
-            Self::Deferred { spheres } => Box::new(DeferredFollower::new(ground, spheres)),
-        }
-    }
 }

@@ -1,0 +1,73 @@
+//! The bindings of shaders: what each group holds, for all pipelines alike.
+
+use crate::adapter::Gpu;
+use crate::uniforms::FrameUniforms;
+
+#[derive(Debug)]
+pub struct Layouts {
+    /// Group 0: constants, ground posts, ramp, shadows, the draped picture and its sampler, windows of finer posts.
+    pub frame: wgpu::BindGroupLayout,
+    /// Group 1: the table of materials, an array of textures and its sampler.
+    pub materials: wgpu::BindGroupLayout,
+    /// Group 2 where the ground is shaded pixel by pixel: its depths.
+    pub depths: wgpu::BindGroupLayout,
+}
+
+impl Layouts {
+    pub fn new(gpu: &Gpu) -> Self {
+        let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
+        let fragment = wgpu::ShaderStages::FRAGMENT;
+        let texture = |sample_type| wgpu::BindingType::Texture {
+            sample_type,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let uniform = |size: usize| wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: wgpu::BufferSize::new(size as u64),
+        };
+        let group = |label: &'static str, bindings: &[(wgpu::ShaderStages, wgpu::BindingType)]| {
+            let entry = |(binding, &(visibility, ty))| wgpu::BindGroupLayoutEntry {
+                binding,
+                visibility,
+                ty,
+                count: None,
+            };
+            let entries: Vec<_> = (0..).zip(bindings).map(entry).collect();
+            let descriptor = wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries };
+            gpu.device.create_bind_group_layout(&descriptor)
+        };
+        Self {
+            frame: group(
+                "frame",
+                &[
+                    (both, uniform(size_of::<FrameUniforms>())),
+                    (fragment, texture(wgpu::TextureSampleType::Uint)),
+                    (fragment, texture(wgpu::TextureSampleType::Float { filterable: false })),
+                    (fragment, texture(wgpu::TextureSampleType::Uint)),
+                    (fragment, texture(wgpu::TextureSampleType::Float { filterable: false })),
+                    (fragment, texture(wgpu::TextureSampleType::Float { filterable: true })),
+                    (fragment, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+                    (fragment, texture(wgpu::TextureSampleType::Uint)),
+                ],
+            ),
+            materials: group(
+                "materials",
+                &[
+                    (fragment, texture(wgpu::TextureSampleType::Uint)),
+                    (
+                        fragment,
+                        wgpu::BindingType::Texture {
+                            sample_type: wgpu::TextureSampleType::Float { filterable: true },
+                            view_dimension: wgpu::TextureViewDimension::D2Array,
+                            multisampled: false,
+                        },
+                    ),
+                    (fragment, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+                ],
+            ),
+            depths: group("depths", &[(fragment, texture(wgpu::TextureSampleType::Depth))]),
+        }
+    }
+}

@@ -1,0 +1,45 @@
+//! What was picked as a part of the scene file, and where it is dragged to.
+
+use glam::DVec2;
+
+use sandtable_draw::list::FeatureId;
+use sandtable_editing::edit::EditPlace;
+
+/// The table that states what was picked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PickedPart {
+    /// The table.
+    pub place: EditPlace,
+    /// What can be dragged; `None` for what lies on the ground.
+    pub grab: Option<GrabTarget>,
+    /// The map coordinates of what can be dragged.
+    pub at: DVec2,
+    /// Its width in meters, where its table states one or may.
+    pub width_m: Option<f64>,
+    /// The file that its table names, with others in it.
+    pub file: Option<String>,
+}
+
+/// What can be moved by dragging from it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GrabTarget {
+    /// A model.
+    Model(FeatureId),
+    /// A label, by its number.
+    Label(usize),
+}
+
+/// Where something is dragged to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DragTarget {
+    /// Map coordinates of the ground under the pointer.
+    pub to: DVec2,
+    /// Whether what is dragged turns where it is.
+    pub turns: bool,
+}
+
+/// The heading from a place toward another, whole degrees clockwise from north.
+pub fn heading_deg(from: DVec2, to: DVec2) -> f64 {
+    let ahead = to - from;
+    libm::atan2(ahead.x, ahead.y).to_degrees().rem_euclid(360.0).round()
+}

@@ -1,0 +1,23 @@
+//! What the user is asked before edits could be lost.
+
+use std::path::PathBuf;
+
+/// What leaves the scene as it is edited.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Leaving {
+    /// Closing the window.
+    Close,
+    /// Opening another file.
+    Open(PathBuf),
+    /// Reading the file again.
+    Reload,
+}
+
+/// What the user is asked.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SavingQuestion {
+    /// Whether to save edits before they would be lost.
+    Unsaved(Leaving),
+    /// Whether to save over what another program wrote.
+    Conflict(String),
+}
