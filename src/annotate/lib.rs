@@ -46,6 +46,8 @@ mod occupied;
 pub mod paint;
 mod paragraph;
 pub mod pdf;
+mod pdf_font;
+mod pdf_stream;
 mod pixel_box;
 mod place;
 mod point_label;
