@@ -10,17 +10,14 @@ use glam::{DVec2, Vec3};
 
 use crate::nested_plan::{NestedPlan, nested_plans};
 use sandtable_description::diagnostic::Diagnostic;
-use sandtable_description::document::Document;
-use sandtable_description::stated::Stated;
 use sandtable_description::words::TableTop;
 use sandtable_geom::rect::Rect;
-use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build_with;
 use sandtable_scene::finer_elevation::{FinerElevation, part_document};
 use sandtable_scene::planned_pictures::ElevationNeed;
 use sandtable_scene::scene_label::SceneLabel;
 use sandtable_scene::scene_model::SceneModel;
-use sandtable_scene::scene_view::{FittedView, ParallelView, SceneView, ViewAim};
+use sandtable_scene::scene_view::{SceneView, ViewAim};
 use sandtable_scene::world_frame::WorldFrame;
 use sandtable_terrain::full_resolution::FullResolution;
 use sandtable_terrain::lattice::Lattice;

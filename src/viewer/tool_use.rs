@@ -15,7 +15,6 @@ use crate::panels::tools::{ToolEvent, ToolsPanel, tools_panel};
 use crate::session::EditOutcome;
 use crate::view_area::ViewEvent;
 use sandtable_editing::edit::SceneEdit;
-use sandtable_editing::effect::EditPreview;
 use sandtable_editing::tool::{DrawingTool, ToolKind, ToolSettings, ToolShape};
 use sandtable_view::camera::Camera;
 

@@ -1,34 +1,18 @@
 //! Zhang, Wang and Wu: the digital terrain model.
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
 use glam::{DVec2, Vec2, Vec3};
-use sandtable_description::parse::parse_bytes;
-use sandtable_draw::list::{DepthLayer, DrawMesh};
-use sandtable_earthworks::alignment::Alignment;
-use sandtable_geom::polyline::Polyline;
-use sandtable_picture::{build_draw_list, camera as scene_camera};
-use sandtable_ribbon::drape::{check_clearance, drape};
-use sandtable_ribbon::plan::PlanMesh;
-use sandtable_ribbon::stroke::{StrokeOptions, StrokePath, stroke};
 use sandtable_roam::active::ActiveSet;
 use sandtable_roam::block::{BlockSource, WholeGround};
 use sandtable_roam::criterion::Criterion;
 use sandtable_roam::criterion::midpoint::Midpoint;
-use sandtable_roam::criterion::screen::ScreenError;
 use sandtable_roam::culling::patches_in_view;
-use sandtable_roam::displayed::DisplayedTerrain;
 use sandtable_roam::errors::ErrorMap;
 use sandtable_roam::graph::Vertex;
 use sandtable_roam::refine::deferred::Deferred;
-use sandtable_roam::refine::rebuild::rebuild;
 use sandtable_roam::spheres::{SphereMap, reach};
-use sandtable_scene::assets::Assets;
-use sandtable_scene::build::build;
-use sandtable_scene::feature::FeatureKind;
 use sandtable_terrain::query::{Interpolation, ground_height};
-use sandtable_terrain::triangle_surface::TriangleSurface;
 use sandtable_view::flight::{CircularFlight, GroundClearance};
 use sandtable_view::frustum::Frustum;
 
