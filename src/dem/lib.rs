@@ -40,3 +40,8 @@ pub mod vrt_source;
 pub mod warp;
 pub mod windows;
 pub mod write;
+
+/// The program of the README runs as a test.
+#[cfg(doctest)]
+#[doc = include_str!("README.md")]
+pub struct DemReadme;

@@ -51,3 +51,8 @@ pub mod shown;
 mod sphere_nest;
 pub mod sphere_task;
 pub mod spheres;
+
+/// The program of the README runs as a test.
+#[cfg(doctest)]
+#[doc = include_str!("README.md")]
+pub struct RoamReadme;

@@ -7,8 +7,8 @@ use glam::DVec2;
 
 use crate::feature_origin::FeatureOrigin;
 use sandtable_description::expression::Expression;
-use sandtable_description::feature_value::{DefaultedValue, FeatureValue, FromScalar};
 use sandtable_description::feature_source::FeatureSource;
+use sandtable_description::feature_value::{DefaultedValue, FeatureValue, FromScalar};
 use sandtable_description::scalar::Scalar;
 use sandtable_vector::feature::{Geometry, VectorLayer};
 

@@ -16,3 +16,8 @@ pub mod modifiers;
 mod pieces;
 pub mod symbol;
 pub mod texts;
+
+/// The program of the README runs as a test.
+#[cfg(doctest)]
+#[doc = include_str!("README.md")]
+pub struct SymbologyReadme;

@@ -15,7 +15,7 @@
 
 mod active_tool;
 mod app;
-#[cfg(all(test, feature = "viewer-tests"))]
+#[cfg(test)]
 mod app_tests;
 mod awaited_answers;
 mod commands;
@@ -40,7 +40,7 @@ mod name_lines;
 mod notices;
 mod opened;
 mod paging;
-#[cfg(all(test, feature = "viewer-tests"))]
+#[cfg(test)]
 mod paging_tests;
 mod panels;
 mod picked_part;

@@ -95,7 +95,7 @@ impl ViewerNotices {
     }
 }
 
-#[cfg(all(test, feature = "viewer-tests"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use egui_kittest::Harness;

@@ -194,6 +194,7 @@ impl ShadowLevel {
         self.first as usize..(self.first + self.columns * self.rows) as usize
     }
 
+    /// The box that it covers along the map's first two axes, meters from the eye.
     pub fn bounds(&self) -> LightBox {
         let low = Vec2::from(self.origin);
         let side = Vec2::new(self.columns as f32, self.rows as f32) * (PAGE as f32 * self.texel_m);

@@ -74,11 +74,14 @@ const NOTHING: f32 = -1e30;
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct ShadowTexel {
+    /// That of solids.
     pub solid: f32,
+    /// That of the ground.
     pub ground: f32,
 }
 
 impl ShadowTexel {
+    /// A texel where nothing is.
     pub const EMPTY: Self = Self { solid: NOTHING, ground: NOTHING };
 
     fn highest(self, other: Self) -> Self {
@@ -101,8 +104,11 @@ pub struct ShadowPage {
 pub struct ShadowLevel {
     /// Meters along the map's first two axes from the eye to the corner of the first texel.
     pub origin: [f32; 2],
+    /// The side of a texel, meters.
     pub texel_m: f32,
+    /// Pages from west to east of the map.
     pub columns: u32,
+    /// Pages from south to north of the map.
     pub rows: u32,
     /// Its first entry in [`ShadowMap::pages`].
     pub first: u32,
@@ -111,7 +117,9 @@ pub struct ShadowLevel {
 /// The map's right-handed axes: two across the light and one toward it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightAxes {
+    /// Two unit vectors across the light.
     pub across: [Vec3; 2],
+    /// The unit vector toward the light.
     pub toward: Vec3,
 }
 
@@ -124,14 +132,20 @@ pub struct LevelScale {
     pub least: i32,
 }
 
+/// The shadows of one light in levels of finer and coarser texels around the eye.
 #[derive(Clone, Debug)]
 pub struct ShadowMap {
+    /// The eye of the picture, world space.
     pub eye: Vec3,
+    /// Where it looks, a unit vector.
     pub forward: Vec3,
+    /// The map's axes.
     pub axes: LightAxes,
+    /// Which level a depth is read from.
     pub scale: LevelScale,
     /// The finest first; at least one.
     pub levels: Vec<ShadowLevel>,
+    /// The pages of all levels, level by level and row by row.
     pub pages: Vec<ShadowPage>,
     /// Page by page, row by row.
     pub texels: Vec<ShadowTexel>,

@@ -208,6 +208,7 @@ mod tests {
 
     use super::*;
     use crate::graphic::check::{PlacedGraphic, check};
+    use crate::graphic::drawing::GraphicInput;
     use crate::graphic::fields::GraphicFields;
 
     #[test]

@@ -39,7 +39,7 @@ pub fn detail_panel(ui: &mut Ui, settings: &mut DetailSettings) {
     ));
 }
 
-#[cfg(all(test, feature = "viewer-tests"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use egui_kittest::Harness;

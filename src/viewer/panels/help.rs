@@ -48,7 +48,7 @@ fn keys_of(binding: &KeyBinding) -> String {
     keys.map(|other| shortcut_text(&other.key)).collect::<Vec<_>>().join(", ")
 }
 
-#[cfg(all(test, feature = "viewer-tests"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use egui_kittest::Harness;

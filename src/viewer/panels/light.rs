@@ -118,7 +118,7 @@ pub fn light_panel(ui: &mut Ui, panel: &mut LightPanel, crs: &Crs, middle: DVec2
     event
 }
 
-#[cfg(all(test, feature = "viewer-tests"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use egui_kittest::Harness;

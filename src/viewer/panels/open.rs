@@ -137,7 +137,7 @@ pub fn open_panel(ui: &mut Ui, panel: &mut OpenPanel, recent: &RecentFiles) -> O
     chosen
 }
 
-#[cfg(all(test, feature = "viewer-tests"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use egui_kittest::Harness;

@@ -29,7 +29,7 @@ pub fn paging_panel(ui: &mut Ui, size: (u32, u32), stage: &PagingStage, kept: &P
     }
 }
 
-#[cfg(all(test, feature = "viewer-tests"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use egui_kittest::Harness;

@@ -54,7 +54,7 @@ pub fn timing_panel(ui: &mut Ui, frames: &FrameTimes) {
     ui.label(format!("{} patches changed, {:.1} kB sent", load.changed_patches, load.bytes as f64 / 1e3));
 }
 
-#[cfg(all(test, feature = "viewer-tests"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::frame_times::FrameLoad;

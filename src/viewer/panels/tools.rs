@@ -193,7 +193,7 @@ fn profile_chart(ui: &mut Ui, profile: &[ProfileStation]) {
     }
 }
 
-#[cfg(all(test, feature = "viewer-tests"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use egui_kittest::Harness;

@@ -126,7 +126,7 @@ fn kind_rows(
     event
 }
 
-#[cfg(all(test, feature = "viewer-tests"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use egui_kittest::Harness;
