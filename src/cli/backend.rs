@@ -37,7 +37,7 @@ impl BackendName {
 /// The renderer for adapters is not built in.
 #[derive(Debug, thiserror::Error)]
 #[error(
-    "this program is built without the Cargo feature `gpu`; run `cargo run --release --features gpu -- …`, or draw with \
+    "this program is built without the Cargo feature `gpu`; run `cargo run --features gpu -- …`, or draw with \
      --backend cpu, the default"
 )]
 struct NoGpuRenderer;

@@ -34,7 +34,7 @@ pub struct ViewArguments {
 pub fn run(arguments: &ViewArguments, view: Option<ViewProgram>) -> Result<(), CliError> {
     let view = view.ok_or_else(|| {
         CliError::usage(
-            "this build has no window; build it with the feature `viewer`: cargo build --release --features viewer",
+            "this build has no window; build it with the feature `viewer`: cargo build --features viewer",
         )
     })?;
     let options = ViewerOptions {

@@ -7,7 +7,7 @@ use std::time::Duration;
 #[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum RemoteError {
     #[error(
-        "this program was built without reading by address; build it with `cargo build --release --features cloud`, or \
+        "this program was built without reading by address; build it with `cargo build --features cloud`, or \
          fetch the file"
     )]
     NotBuilt,
