@@ -2,7 +2,8 @@
 
 use std::process::ExitCode;
 
-use sandtable_cli::{BuiltInPrograms, OtherRenderer, ServeProgram, ViewProgram};
+use sandtable_cli::{BuiltInPrograms, ServeProgram, ViewProgram};
+use sandtable_render::OtherRenderer;
 
 #[cfg(feature = "serve")]
 const SERVE: Option<ServeProgram> = Some(|options| Ok(sandtable_serve::run(options)?));

@@ -54,7 +54,7 @@ use crate::arguments::{Arguments, Command, DemCommand, ModelCommand};
 use crate::error::CliError;
 use sandtable_editing::viewing::ViewerOptions;
 use sandtable_query::service::ServiceOptions;
-pub use sandtable_render::OtherRenderer;
+use sandtable_render::OtherRenderer;
 
 /// A height service: serves until a signal ends it.
 pub type ServeProgram = fn(&ServiceOptions) -> Result<(), Box<dyn Error + Send + Sync>>;

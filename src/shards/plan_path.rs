@@ -50,10 +50,10 @@ mod tests {
 
     #[test]
     fn paths_are_relative_to_the_plan_where_they_were_stated_relative() {
-        assert_eq!(written(Path::new("src/lib.rs"), Path::new("src/pipeline")), Path::new("../lib.rs"));
-        assert_eq!(written(Path::new("src/lib.rs"), Path::new(".")), Path::new("src/lib.rs"));
-        assert_eq!(written(Path::new("src/../tests"), Path::new("src")), Path::new("../tests"));
-        assert_eq!(written(Path::new("src"), Path::new("src")), Path::new("."));
+        assert_eq!(written(Path::new("tiles/plan.rs"), Path::new("tiles/meshes")), Path::new("../plan.rs"));
+        assert_eq!(written(Path::new("tiles/plan.rs"), Path::new(".")), Path::new("tiles/plan.rs"));
+        assert_eq!(written(Path::new("tiles/../atlas"), Path::new("tiles")), Path::new("../atlas"));
+        assert_eq!(written(Path::new("tiles"), Path::new("tiles")), Path::new("."));
         assert_eq!(written(Path::new("/a/b.tif"), Path::new("src")), Path::new("/a/b.tif"));
     }
 

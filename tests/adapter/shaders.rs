@@ -6,7 +6,7 @@ use std::path::Path;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 /// The folder of the shaders.
-const FOLDER: &str = concat!(env!("SANDTABLE_ROOT"), "src/render/gpu");
+const FOLDER: &str = concat!(env!("SANDTABLE_ROOT"), "src/gpu");
 
 /// The modules, as files that are joined.
 const MODULES: [&[&str]; 2] = [
