@@ -69,7 +69,10 @@ impl WorkPlan {
     /// [`Error::Plan`]; other shards may still be done.
     pub fn work(&self, shard: usize) -> Result<(), Error> {
         let idle = self.idle().pop();
-        let mut worker = idle.map_or_else(|| ShardWorker::open(&self.plan), Ok)?;
+        let mut worker = match idle {
+            Some(worker) => worker,
+            None => ShardWorker::open(&self.plan)?,
+        };
         worker.work(shard)?;
         self.idle().push(worker);
         Ok(())

@@ -15,7 +15,6 @@ use sandtable_picture::{build_draw_list, camera as scene_camera};
 use sandtable_ribbon::drape::{check_clearance, drape};
 use sandtable_ribbon::plan::PlanMesh;
 use sandtable_ribbon::stroke::{StrokeOptions, StrokePath, stroke};
-use sandtable_roam::block::BlockSource;
 use sandtable_roam::criterion::screen::ScreenError;
 use sandtable_roam::displayed::DisplayedTerrain;
 use sandtable_roam::refine::rebuild::rebuild;
