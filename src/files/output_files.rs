@@ -2,7 +2,7 @@
 //!
 //! Each is written as a [part](crate::part_file) beside its place. When all are whole and on the disk, they get
 //! their names, one right after the other. An error or a signal before that leaves what was there before; so does
-//! `kill -9`. Between the first name and the last it leaves a [record](crate::set_record), by which the next program
+//! `kill -9`. Between the first name and the last it leaves a record, by which the next program
 //! that writes into the folder gives the remaining names.
 
 use std::fs::{self, File};

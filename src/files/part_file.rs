@@ -9,7 +9,7 @@
 //! kill -9, or power lost ─► the next program that writes into the folder
 //! ```
 //!
-//! Parts that belong together are completed there rather than removed where their [record](crate::set_record) is.
+//! Parts that belong together are completed there rather than removed where their record is.
 //!
 //! The last is safe because a writer holds a lock on its part (`flock` on Unix), which the system releases with the
 //! process: a part whose lock is free has no writer. The number of a process is no proof, since it comes back, and is

@@ -15,7 +15,7 @@
 //!   texel: [greatest height toward the light of a solid, of the displayed ground]
 //! ```
 //!
-//! [`casters`] turns triangles to the map's space, [`levels`] finds the pages, [`fill`] and [`coverage`] rasterize them with integer
+//! `casters` turns triangles to the map's space, `levels` finds the pages, `fill` and `coverage` rasterize them with integer
 //! coverage, row of pages by row of pages in parallel; the greatest height does not depend on the order. [`filter`]
 //! reads them. Both renderers read the same map, so that they show the same shadows.
 //!
