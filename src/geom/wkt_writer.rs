@@ -210,7 +210,7 @@ mod tests {
         let mut methods = BTreeMap::new();
         for code in 2000..=32766 {
             let Ok(crs) = Crs::from_epsg(code) else { continue };
-            let registered = crs_definitions::from_code(code as u16).expect("in the table").wkt;
+            let registered = crs_definitions_wkt::from_code(code as u16).expect("in the table").wkt;
             if crs.definition().is_some() || registered.is_empty() {
                 continue;
             }
