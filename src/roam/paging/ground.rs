@@ -13,12 +13,13 @@ use crate::paging::region::{PagedFrame, PagedRegion, Patches};
 use crate::paging::summary::{self, PatchSummary};
 use crate::patched_ground::PatchedGround;
 use crate::spheres::SphereMap;
-use sandtable_dem::cache::LruCache;
-use sandtable_dem::error::DemError;
-use sandtable_dem::formats::FileContent;
 use sandtable_dem::tiff::windows::GeoTiffWindows;
-use sandtable_dem::warp::{self, WarpError};
-use sandtable_dem::windows::Windows;
+use sandtable_raster::cache::LruCache;
+use sandtable_raster::content::FileContent;
+use sandtable_raster::error::DemError;
+use sandtable_raster::warp;
+use sandtable_raster::warp::error::WarpError;
+use sandtable_raster::windows::Windows;
 use sandtable_terrain::lattice::{Lattice, LatticeError};
 
 /// The parameters of paging.
