@@ -16,7 +16,7 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use crate::error::DemErrorKind;
+use crate::error::{DemError, DemErrorKind};
 use crate::raster::{Raster, Samples, scaled};
 use crate::sample::SampleGrid;
 
@@ -193,6 +193,21 @@ pub trait Windows {
     fn size(&self) -> (u32, u32) {
         (self.metadata().width, self.metadata().height)
     }
+}
+
+/// A raster in windows whose file holds overviews: the same ground with samples further apart.
+pub trait WithOverviews: Windows + Sized {
+    /// Samples per row and rows of each overview, in the order of the file.
+    fn overview_sizes(&self) -> Vec<(u32, u32)>;
+
+    /// Opens an overview by its index in [`WithOverviews::overview_sizes`].
+    ///
+    /// # Errors
+    /// The overview is broken, or stored in a way that is not read.
+    ///
+    /// # Panics
+    /// There is no such overview.
+    fn at_overview_size(&self, index: usize) -> Result<Self, DemError>;
 }
 
 impl Windows for Raster {

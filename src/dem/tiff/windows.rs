@@ -36,7 +36,7 @@ use sandtable_raster::cache::LruCache;
 use sandtable_raster::content::FileContent;
 use sandtable_raster::error::{DemError, DemErrorKind};
 use sandtable_raster::raster::{Raster, Samples};
-use sandtable_raster::windows::{RasterWindow, Windows};
+use sandtable_raster::windows::{RasterWindow, Windows, WithOverviews};
 
 /// A GeoTIFF, read in windows.
 pub struct GeoTiffWindows<R> {
@@ -265,6 +265,16 @@ impl<R: FileContent> GeoTiffWindows<R> {
             }
         }
         Ok(())
+    }
+}
+
+impl<R: FileContent> WithOverviews for GeoTiffWindows<R> {
+    fn overview_sizes(&self) -> Vec<(u32, u32)> {
+        self.overviews().iter().map(|overview| (overview.width, overview.height)).collect()
+    }
+
+    fn at_overview_size(&self, index: usize) -> Result<Self, DemError> {
+        self.at_overview(&self.overviews()[index])
     }
 }
 
