@@ -26,7 +26,6 @@ pub enum Status {
 
 impl Status {
     /// `Ok`, `NoData` or `Outside`.
-    #[inline]
     pub fn name(self) -> &'static str {
         match self {
             Self::Ok => "Ok",
@@ -36,7 +35,6 @@ impl Status {
     }
 
     /// The answer of this status and the height beside it.
-    #[inline]
     pub fn with_height(self, height: f64) -> Answer {
         match self {
             Self::Ok => Answer::Height(height),
@@ -48,13 +46,11 @@ impl Status {
 
 impl Answer {
     /// The answer of a sample, which is NaN where the raster holds no data.
-    #[inline]
     pub fn from_sample(value: f64) -> Self {
         if value.is_nan() { Self::NoData } else { Self::Height(value) }
     }
 
     /// The height, where there is one.
-    #[inline]
     pub fn height_m(self) -> Option<f64> {
         match self {
             Self::Height(height) => Some(height),
@@ -63,13 +59,11 @@ impl Answer {
     }
 
     /// `Ok`, `NoData` or `Outside`.
-    #[inline]
     pub fn status(self) -> &'static str {
         self.kind().name()
     }
 
     /// The status alone.
-    #[inline]
     pub fn kind(self) -> Status {
         match self {
             Self::Height(_) => Status::Ok,
@@ -79,7 +73,6 @@ impl Answer {
     }
 
     /// The height, NaN where there is none, and the status beside it.
-    #[inline]
     pub fn parts(self) -> (f64, Status) {
         (self.height_m().unwrap_or(f64::NAN), self.kind())
     }

@@ -124,11 +124,13 @@ impl Samples {
     }
 
     /// All values in order, NaN where there is no data.
+    #[inline]
     pub fn iter(&self) -> impl Iterator<Item = f64> + '_ {
         (0..self.len()).map(|index| self.get(index))
     }
 
     /// All values that are data, in order.
+    #[inline]
     pub fn valid(&self) -> impl Iterator<Item = f64> + '_ {
         self.iter().filter(|value| !value.is_nan())
     }
@@ -268,7 +270,6 @@ impl Raster {
     }
 
     /// The value at `column`, `row`, NaN where there is no data. Panics outside the raster.
-    #[inline]
     pub fn at(&self, column: u32, row: u32) -> f64 {
         assert!(column < self.width && row < self.height, "sample ({column}, {row}) is outside the raster");
         self.samples.get(row as usize * self.width as usize + column as usize)
@@ -343,7 +344,6 @@ impl Raster {
     }
 
     /// Samples per row and rows: the grid position of the corner opposite to the first.
-    #[inline]
     pub fn grid_size(&self) -> DVec2 {
         DVec2::new(f64::from(self.width), f64::from(self.height))
     }

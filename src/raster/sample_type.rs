@@ -2,7 +2,7 @@
 
 /// The type of a stored sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names are those of Rust's types")]
+#[allow(missing_docs, reason = "the names are those of the types of numbers")]
 pub enum SampleType {
     U8,
     I8,

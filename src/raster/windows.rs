@@ -61,6 +61,7 @@ impl RasterWindow {
     }
 
     /// For each row that this window shares with another, its samples as ranges of indices in either.
+    #[inline]
     pub fn shared_rows(self, other: Self) -> impl Iterator<Item = (Range<usize>, Range<usize>)> {
         let first = self.column.max(other.column);
         let last = (self.column + self.width).min(other.column + other.width).max(first);
@@ -95,6 +96,7 @@ impl RasterWindow {
     }
 
     /// The window in bands of whole rows, of about `samples` each and at least a row.
+    #[inline]
     pub fn bands(self, samples: u32) -> impl Iterator<Item = Self> {
         let rows = (samples / self.width).max(1);
         (0..self.height).step_by(rows as usize).map(move |first| {
