@@ -283,7 +283,7 @@ mod tests {
     use super::*;
     use crate::chart_ground::ChartPoint;
     use crate::chart_profile::{ProfileChart, paint};
-    use sandtable_dem::answer::Answer;
+    use sandtable_raster::answer::Answer;
 
     fn chart(heights: &[f64]) -> ProfileChart {
         let point = |(index, &height): (usize, &f64)| ChartPoint {

@@ -7,8 +7,8 @@ use crate::drawing::{polygon, polyline};
 use crate::pixel_box::{PixelBox, PixelSegment};
 use crate::sheet::SOFT_INK;
 use crate::text::TextStyle;
-use sandtable_dem::answer::Answer;
 use sandtable_draw::color::Srgba;
+use sandtable_raster::answer::Answer;
 
 /// The ground's line.
 const RIM: Srgba = Srgba::opaque(0x4a, 0x3f, 0x30);

@@ -7,9 +7,9 @@ use crate::chart::{Chart, ChartText, LabelSide};
 use crate::chart_ground::{ChartPoint, fill, hatch_gaps, height_range, rim};
 use crate::pixel_box::PixelSegment;
 use crate::sheet::{INK, WATER_INK};
-use sandtable_dem::answer::Answer;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::pixels::Pixels;
+use sandtable_raster::answer::Answer;
 
 /// Visible ground.
 const LIT: Srgba = Srgba::opaque(0xe2, 0xd3, 0xa8);

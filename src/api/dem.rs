@@ -5,13 +5,13 @@ use std::sync::Arc;
 
 use crate::api::error::Error;
 use sandtable_base::limits::RASTER_SAMPLES;
-use sandtable_dem::formats::DemFormat;
-use sandtable_dem::georef;
-use sandtable_dem::raster::{Raster, Samples};
-use sandtable_dem::read::DemOptions;
+use sandtable_dem::dem_format::DemFormat;
+use sandtable_dem::hints::DemOptions;
 use sandtable_files::{disk, raster_file};
 use sandtable_geom::crs::Crs;
 use sandtable_query::dem;
+use sandtable_raster::georef;
+use sandtable_raster::raster::{Raster, Samples};
 
 /// An elevation model as read: a raster of heights and where it lies.
 #[derive(Clone)]

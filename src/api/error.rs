@@ -6,7 +6,6 @@ use glam::DVec2;
 
 use crate::api::dem::SamplesError;
 use sandtable_base::message::chain::error_text;
-use sandtable_dem::answer::Status;
 use sandtable_dem::formats::WRITTEN_EXTENSIONS;
 use sandtable_description::finding::Finding;
 use sandtable_files::disk::WriteFileError;
@@ -17,6 +16,7 @@ use sandtable_query::dataset::{OpenError, QueryError};
 use sandtable_query::dem::OpenDemError;
 use sandtable_query::ground::GroundError;
 use sandtable_query::profile::ProfileError;
+use sandtable_raster::answer::Status;
 use sandtable_scene::scene_file::OpenSceneError;
 use sandtable_shards::error::ShardError;
 use sandtable_sheet::picture::PictureError;

@@ -7,13 +7,13 @@ use glam::{DVec2, DVec3, Vec3};
 
 use crate::api::dem::Dem;
 use crate::api::error::Error;
-use sandtable_dem::answer::Answer;
 use sandtable_geom::crs::Crs;
 use sandtable_mesh::trimesh::TriMesh;
 use sandtable_query::bounded_mesh::{BoundedMesh, MeshError};
 use sandtable_query::ground;
 use sandtable_query::post_raster::hillshade_raster;
 use sandtable_query::viewshed::raster;
+use sandtable_raster::answer::Answer;
 use sandtable_roam::layout::DEFAULT_PATCH;
 use sandtable_roam::measured_ground::MeasuredGround;
 use sandtable_scene::vertical_scale::VerticalScale;

@@ -13,18 +13,18 @@ use crate::progress::StepTimer;
 use crate::values::number;
 use sandtable_base::limits::RASTER_SAMPLES;
 use sandtable_base::message::chain::error_text;
-use sandtable_dem::formats::DemFormat;
-use sandtable_dem::read::DemOptions;
-use sandtable_dem::warp::WarpError;
-use sandtable_dem::warp::reproject::Resampling;
-use sandtable_dem::windows::MOST_KEPT_SAMPLES;
-use sandtable_dem::write::{WrittenDem, WrittenWindows};
+use sandtable_dem::dem_format::DemFormat;
+use sandtable_dem::hints::DemOptions;
+use sandtable_dem::written::{WrittenDem, WrittenWindows};
 use sandtable_files::raster_file;
 use sandtable_geom::crs::Crs;
 use sandtable_query::convert::{
     ConvertError, ConvertOptions, Converted, VoidHandling, convert, convert_windows,
 };
 use sandtable_query::dem::{self, OpenedDem};
+use sandtable_raster::warp::error::WarpError;
+use sandtable_raster::warp::reproject::Resampling;
+use sandtable_raster::windows::MOST_KEPT_SAMPLES;
 
 #[derive(Debug, Args)]
 #[command(

@@ -9,12 +9,12 @@ use crate::error::CliError;
 use crate::options::HeightArguments;
 use crate::output::{print, print_lines, row};
 use sandtable_base::limits::RASTER_SAMPLES;
-use sandtable_dem::error::DemErrorKind;
-use sandtable_dem::raster::Raster;
-use sandtable_dem::stats::Stats;
-use sandtable_dem::void_counts::VoidCounts;
 use sandtable_files::error::FileError;
 use sandtable_query::dem::{self, OpenedDem};
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::raster::Raster;
+use sandtable_raster::stats::Stats;
+use sandtable_raster::void_counts::VoidCounts;
 
 #[derive(Debug, Args)]
 #[command(after_help = "\

@@ -10,15 +10,17 @@ use crate::output::print;
 use crate::output_format::raster_format;
 use crate::progress::StepTimer;
 use crate::values::{choice, numbers};
-use sandtable_dem::cell_grid::CellGrid;
-use sandtable_dem::gridding::{self, BeyondHull, GridError, Gridded, GriddingMethod};
-use sandtable_dem::points::PointCloud;
-use sandtable_dem::write::WrittenDem;
+use sandtable_dem::gridding::error::GridError;
+use sandtable_dem::gridding::method::GriddingMethod;
+use sandtable_dem::gridding::{self, BeyondHull, Gridded};
+use sandtable_dem::points::cloud::PointCloud;
+use sandtable_dem::written::WrittenDem;
 use sandtable_files::error::FileError;
 use sandtable_files::raster_file;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::rect::Rect;
 use sandtable_query::gridding::PointSources;
+use sandtable_raster::cell_grid::CellGrid;
 
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]

@@ -11,14 +11,14 @@ use crate::error::CliError;
 use crate::options::DatasetArguments;
 use crate::output::{stream, warn};
 use crate::values::choice;
-use sandtable_dem::answer::Answer;
-use sandtable_dem::height_datum::HeightDatum;
 use sandtable_files::disk;
 use sandtable_files::error::FileError;
 use sandtable_geom::geoid::Geoid;
 use sandtable_query::heights_above::bring_heights;
 use sandtable_query::outside_note::outside_note;
 use sandtable_query::positions::{WrittenPosition, parse_positions};
+use sandtable_raster::answer::Answer;
+use sandtable_raster::height_datum::HeightDatum;
 use sandtable_shards::heights::csv::{HEADER, write_row};
 use sandtable_terrain::query::{Interpolation, Surface};
 

@@ -8,15 +8,15 @@ use crate::error::CliError;
 use crate::output::warn;
 use crate::values::picture_size;
 use sandtable_dem::formats::height_encoding::HeightEncoding;
-use sandtable_dem::formats::raw::RawLayout;
-use sandtable_dem::height_datum::HeightDatum;
-use sandtable_dem::read::DemOptions;
+use sandtable_dem::formats::raw_layout::RawLayout;
+use sandtable_dem::hints::DemOptions;
 use sandtable_files::disk;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::datum_shift::DatumShift;
 use sandtable_query::dataset::{Dataset, DatasetOptions};
 use sandtable_query::ground::QueriedGround;
 use sandtable_query::windowed_elevation::GroundReach;
+use sandtable_raster::height_datum::HeightDatum;
 use sandtable_sheet::picture::PictureSize;
 
 /// The scene file of a command, and the files it may read.

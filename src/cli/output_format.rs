@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use crate::error::CliError;
-use sandtable_dem::formats::{DemFormat, WRITTEN_EXTENSIONS};
+use sandtable_dem::dem_format::DemFormat;
+use sandtable_dem::formats::WRITTEN_EXTENSIONS;
 use sandtable_files::disk;
 
 /// The format that `from_extension` finds for the extension of `path`, where a file could be written there that

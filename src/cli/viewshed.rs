@@ -15,7 +15,7 @@ use crate::output::{print, print_lines, row};
 use crate::output_format::raster_format;
 use crate::progress::StepTimer;
 use crate::values::{number, number_pair};
-use sandtable_dem::formats::DemFormat;
+use sandtable_dem::dem_format::DemFormat;
 use sandtable_files::{disk, raster_file};
 use sandtable_geom::crs::Crs;
 use sandtable_query::dataset::{QueryError, transform};

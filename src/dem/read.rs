@@ -2,65 +2,21 @@
 
 use std::cell::OnceCell;
 
-use crate::error::{DemError, DemErrorKind};
-use crate::formats::height_encoding::HeightEncoding;
-use crate::formats::raw::RawLayout;
-use crate::formats::{DemFormat, FORMATS, FileContent, Recognition, raw};
-use crate::raster::{Raster, Samples};
-use crate::windows::{RasterWindow, Windows};
+use crate::dem_file::DemFile;
+use crate::dem_format::{DemFormat, Recognition};
+use crate::file_name::{file_name, split_extension, unpacked_name};
+use crate::formats::{self, FORMATS, raw};
+use crate::hints::DemHints;
 use sandtable_base::archive::{self, ArchiveError, ZipReader};
 use sandtable_base::limits::COMPANION_BYTES;
 use sandtable_base::limits::UNPACKED_RASTER_BYTES;
-use sandtable_geom::crs::Crs;
+use sandtable_raster::content::FileContent;
+use sandtable_raster::error::{DemError, DemErrorKind};
+use sandtable_raster::raster::{Raster, Samples};
+use sandtable_raster::windows::{RasterWindow, Windows};
 
 /// The bytes of a packed file that are unpacked before it is known what it is.
 pub const HEAD_BYTES: u64 = 64 << 10;
-
-/// What a caller states of elevation, in place of what the file does or besides it.
-#[derive(Clone, Debug, Default)]
-pub struct DemOptions {
-    /// Meters per gray value of a PNG, which is refused without it, or per value of a RAW file (default 1).
-    pub height_scale: Option<f64>,
-    /// Elevation in meters of value 0. Default 0.
-    pub height_offset: Option<f64>,
-    /// A value that means no data, besides the one that the file declares, in the file's vertical unit.
-    pub nodata: Option<f64>,
-    /// The encoding of heights in the colors of a PNG; a color PNG is refused without it.
-    pub height_encoding: Option<HeightEncoding>,
-    /// The layout of the file, which is RAW.
-    pub raw: Option<RawLayout>,
-    /// The vertical datum, in place of the file's.
-    pub vertical_datum: Option<String>,
-    /// Meters between samples of a file without georeference, whose south-west sample is then at (0, 0).
-    pub cell: Option<f64>,
-    /// The coordinate system, in place of the file's.
-    pub crs: Option<Crs>,
-}
-
-/// How one elevation file is read.
-#[derive(Clone)]
-pub struct DemHints<'a> {
-    /// What is stated of it.
-    pub options: DemOptions,
-    /// Called with the system that the file states where the stated one takes its place.
-    pub overridden: &'a dyn Fn(&Crs),
-    /// The bytes of a companion by its name: the name given to [`read`] with another extension, such as `.prj`; `None`
-    /// where there is none.
-    pub companions: &'a dyn Fn(&str) -> Option<Vec<u8>>,
-}
-
-impl Default for DemHints<'_> {
-    fn default() -> Self {
-        DemOptions::default().into()
-    }
-}
-
-impl From<DemOptions> for DemHints<'_> {
-    /// The hints for a file without companions.
-    fn from(options: DemOptions) -> Self {
-        Self { options, overridden: &|_| (), companions: &|_| None }
-    }
-}
 
 /// Whether the name of a file in a folder or an archive is that of a tile of elevation. Extensions that pictures and
 /// tables have as well do not count.
@@ -69,98 +25,6 @@ pub fn is_tile_name(name: &str) -> bool {
     let unpacked = unpacked_name(&file);
     let extension = split_extension(&unpacked).1;
     !file.starts_with('.') && FORMATS.iter().any(|format| format.extensions.contains(&extension))
-}
-
-/// An elevation file while it is read: its name, bytes and hints.
-pub(crate) struct DemFile<'a> {
-    /// The name as given, for the extension and the companions.
-    pub name: &'a str,
-    /// The content.
-    pub bytes: &'a [u8],
-    pub hints: &'a DemHints<'a>,
-}
-
-impl DemFile<'_> {
-    /// The extension in lower case, without the dot; empty where there is none.
-    pub fn extension(&self) -> String {
-        split_extension(self.name).1.to_ascii_lowercase()
-    }
-
-    pub fn stem(&self) -> &str {
-        split_extension(file_name(self.name)).0
-    }
-
-    /// The bytes of the companion with another extension, in lower or in upper case.
-    pub fn companion(&self, extension: &str) -> Option<Vec<u8>> {
-        let base = split_extension(self.name).0;
-        let read = |extension: &str| (self.hints.companions)(&format!("{base}.{extension}"));
-        read(extension).or_else(|| read(&extension.to_ascii_uppercase()))
-    }
-
-    /// The content of the `.hdr` beside the file: `a.hdr` for `a.bil`, or `a.img.hdr` for `a.img`.
-    pub fn header(&self) -> Option<Vec<u8>> {
-        self.companion("hdr").or_else(|| (self.hints.companions)(&format!("{}.hdr", self.name)))
-    }
-
-    /// The coordinate system of the hints, else of a `.prj` companion; `None` where there is neither.
-    pub fn crs(&self) -> Result<Option<Crs>, DemErrorKind> {
-        self.crs_or(|| Ok(None))
-    }
-
-    /// The coordinate system of the hints, else the one that the file states, else that of a `.prj` companion.
-    pub fn crs_or(
-        &self,
-        stated: impl FnOnce() -> Result<Option<Crs>, DemErrorKind>,
-    ) -> Result<Option<Crs>, DemErrorKind> {
-        let Some(crs) = &self.hints.options.crs else { return self.own_crs(stated) };
-        // What the file states may be unreadable: another is stated for that.
-        if let Ok(Some(own)) = self.own_crs(stated) {
-            (self.hints.overridden)(&own);
-        }
-        Ok(Some(crs.clone()))
-    }
-
-    fn own_crs(
-        &self,
-        stated: impl FnOnce() -> Result<Option<Crs>, DemErrorKind>,
-    ) -> Result<Option<Crs>, DemErrorKind> {
-        if let Some(crs) = stated()? {
-            return Ok(Some(crs));
-        }
-        let Some(bytes) = self.companion("prj") else { return Ok(None) };
-        Ok(Some(Crs::parse(&String::from_utf8_lossy(&bytes))?))
-    }
-
-    /// The hinted meters per value, checked.
-    pub fn height_scale(&self) -> Result<Option<f64>, DemErrorKind> {
-        let is_sound = |scale: f64| scale.is_finite() && scale != 0.0;
-        checked("height_scale", self.hints.options.height_scale, is_sound, "a finite number other than 0")
-    }
-
-    /// The hinted height of value 0, checked; 0 where there is none.
-    pub fn height_offset(&self) -> Result<f64, DemErrorKind> {
-        let offset =
-            checked("height_offset", self.hints.options.height_offset, f64::is_finite, "a finite number");
-        Ok(offset?.unwrap_or(0.0))
-    }
-
-    /// The hinted distance between samples, checked.
-    pub fn cell(&self) -> Result<Option<f64>, DemErrorKind> {
-        let is_sound = |cell: f64| cell.is_finite() && cell > 0.0;
-        checked("cell", self.hints.options.cell, is_sound, "a positive number of meters")
-    }
-}
-
-fn checked(
-    what: &'static str,
-    hint: Option<f64>,
-    is_sound: impl Fn(f64) -> bool,
-    wanted: &'static str,
-) -> Result<Option<f64>, DemErrorKind> {
-    match hint.filter(|&value| !is_sound(value)) {
-        Some(value) => Err(DemErrorKind::Hint { what, value, wanted }),
-        None => Ok(hint),
-    }
 }
 
 /// Reads an elevation file.
@@ -356,7 +220,7 @@ fn not_recognized(bytes: &[u8], extension: &str) -> DemErrorKind {
 }
 
 fn unknown(found: impl Into<String>) -> DemErrorKind {
-    DemErrorKind::UnknownFormat(found.into())
+    DemErrorKind::UnknownFormat { found: found.into(), known: formats::list() }
 }
 
 fn describe(bytes: &[u8], extension: &str) -> String {
@@ -374,27 +238,6 @@ fn describe(bytes: &[u8], extension: &str) -> String {
         (_, true, _) => "the file is empty".into(),
         (.., "") => "neither its content nor its name is known".into(),
         (.., extension) => format!("its content is not known, and .{extension} is not read"),
-    }
-}
-
-fn file_name(path: &str) -> &str {
-    path.rsplit(['/', '\\']).next().unwrap_or(path)
-}
-
-/// The name of the file in a packed file of this name.
-fn unpacked_name(name: &str) -> String {
-    let (base, extension) = split_extension(name);
-    match extension.to_ascii_lowercase().as_str() {
-        "gz" | "zip" => base.to_owned(),
-        "btz" => format!("{base}.bt"),
-        _ => name.to_owned(),
-    }
-}
-
-fn split_extension(name: &str) -> (&str, &str) {
-    match name.rsplit_once('.') {
-        Some((base, extension)) if !extension.contains(['/', '\\']) => (base, extension),
-        _ => (name, ""),
     }
 }
 

@@ -19,16 +19,14 @@ use quick_xml::XmlVersion;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
 
-use crate::error::DemErrorKind;
-use crate::georef::affine;
-use crate::raster::Raster;
+use crate::vrt_fault::{PLACE, broken, shortened, unsupported};
 use crate::vrt_frame::VrtFrame;
 use crate::vrt_source::{VrtRect, VrtSource};
-use crate::windows::Windows;
 use sandtable_base::limits::VRT_BYTES;
-
-/// How far, in cells, a virtual raster may lie from the tiles that it names.
-pub(super) const PLACE: f64 = 1e-3;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::georef::affine;
+use sandtable_raster::raster::Raster;
+use sandtable_raster::windows::Windows;
 
 /// The tiles that a virtual raster names.
 #[derive(Clone, Debug, PartialEq)]
@@ -325,26 +323,10 @@ fn rect(start: &BytesStart<'_>) -> Result<[f64; 4], DemErrorKind> {
     Ok(numbers)
 }
 
-pub(super) fn shortened(text: &str) -> String {
-    text.chars().take(80).collect()
-}
-
-pub(super) fn broken(reason: String) -> DemErrorKind {
-    DemErrorKind::Broken { format: "VRT", reason }
-}
-
-pub(super) fn unsupported(what: String) -> DemErrorKind {
-    DemErrorKind::Unsupported {
-        format: "VRT",
-        what: what.into(),
-        remedy: "make a file of it: gdal_translate -co TILED=YES IN.vrt OUT.tif",
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::raster::tests::small;
+    use crate::small_raster::small;
 
     fn vrt(band: &str) -> Result<VrtTiles, DemErrorKind> {
         let text = format!(

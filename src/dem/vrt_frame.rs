@@ -2,11 +2,11 @@
 
 use glam::{DAffine2, DVec2};
 
-use crate::error::DemErrorKind;
-use crate::raster::{Raster, Samples};
-use crate::vrt::{PLACE, unsupported};
-use crate::windows::{RasterWindow, Windows};
+use crate::vrt_fault::{PLACE, unsupported};
 use sandtable_base::limits::{RASTER_SAMPLES, WINDOWED_SAMPLES};
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::raster::{Raster, Samples};
+use sandtable_raster::windows::{RasterWindow, Windows};
 
 /// Where a virtual raster lies.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,7 +120,7 @@ impl Windows for FramedWindows {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::raster::tests::small;
+    use crate::small_raster::small;
 
     #[test]
     fn what_tiles_leave_of_the_frame_is_no_data() {

@@ -14,11 +14,11 @@
 
 use glam::{DAffine2, DVec2};
 
-use crate::error::DemErrorKind;
-use crate::raster::{Raster, Samples};
-use crate::vrt::{PLACE, broken, shortened, unsupported};
-use crate::windows::{RasterWindow, Windows};
+use crate::vrt_fault::{PLACE, broken, shortened, unsupported};
 use sandtable_base::limits::RASTER_SAMPLES;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::raster::{Raster, Samples};
+use sandtable_raster::windows::{RasterWindow, Windows};
 
 /// How far, in samples, a middle may lie before a border and still count as beyond it: GDAL's.
 const TIE: f64 = 1e-10;
@@ -238,7 +238,7 @@ impl Windows for SourceWindows {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::raster::tests::small;
+    use crate::small_raster::small;
 
     fn placed(from: VrtRect, to: VrtRect, size: (u32, u32)) -> Result<Option<VrtSource>, DemErrorKind> {
         let mut source = VrtSource { file: "a.tif".into(), ..VrtSource::default() };

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use crate::disk::{self, ReadFileError};
 use crate::error::FileError;
-use sandtable_dem::formats::FileContent;
 use sandtable_dem::read;
+use sandtable_raster::content::FileContent;
 use sandtable_remote::address::is_address;
 use sandtable_remote::companions::{CompanionFiles, FoundCompanion};
 use sandtable_remote::error::RemoteError;

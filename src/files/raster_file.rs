@@ -6,11 +6,13 @@ use std::path::{Path, PathBuf};
 use crate::disk::{self, ReadFileError, SystemError, WriteFileError};
 use crate::error::FileError;
 use crate::output_files::OutputFiles;
-use sandtable_dem::error::DemErrorKind;
-use sandtable_dem::formats::DemFormat;
-use sandtable_dem::raster::Raster;
-use sandtable_dem::windows::Windows;
-use sandtable_dem::write::{self, Companion, WriteError, WriteWindowsError, WrittenDem, WrittenWindows};
+use sandtable_dem::companion::Companion;
+use sandtable_dem::dem_format::DemFormat;
+use sandtable_dem::write;
+use sandtable_dem::written::{WriteError, WriteWindowsError, WrittenDem, WrittenWindows};
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::raster::Raster;
+use sandtable_raster::windows::Windows;
 
 /// A raster that cannot be written.
 #[derive(Debug, thiserror::Error)]

@@ -4,10 +4,10 @@ use glam::DVec2;
 
 use crate::context::LintContext;
 use crate::sink::FindingSink;
-use sandtable_dem::outliers::{OutlierKind, Outliers, outliers};
-use sandtable_dem::raster::Raster;
-use sandtable_dem::undeclared::undeclared_nodata;
 use sandtable_description::finding_code::FindingCode;
+use sandtable_raster::outliers::{OutlierKind, Outliers, outliers};
+use sandtable_raster::raster::Raster;
+use sandtable_raster::undeclared::undeclared_nodata;
 
 /// Meters of a degree of latitude.
 const M_PER_DEGREE: f64 = 111_320.0;

@@ -8,10 +8,10 @@ use std::path::Path;
 use crate::context::LintContext;
 use crate::sink::FindingSink;
 use sandtable_base::message::suggest::quoted;
-use sandtable_dem::raster::Raster;
-use sandtable_dem::vertical::{name_of_wkt, unit_of_wkt};
 use sandtable_description::finding_code::FindingCode;
 use sandtable_files::disk::file_stem;
+use sandtable_raster::raster::Raster;
+use sandtable_raster::vertical::{name_of_wkt, unit_of_wkt};
 
 /// What the units are in meters that are called a foot: the international one, that of US surveys, and older ones.
 const FEET_M: std::ops::Range<f64> = 0.3047..0.3049;
@@ -74,7 +74,7 @@ fn words(text: &str) -> impl Iterator<Item = String> + '_ {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_dem::raster::Samples;
+    use sandtable_raster::raster::Samples;
 
     #[test]
     fn names_and_datums_say_feet_where_a_word_of_theirs_does() {

@@ -3,8 +3,8 @@
 use glam::DVec2;
 
 use crate::stated;
-use sandtable_dem::largest_rectangle::largest_rectangle;
 use sandtable_geom::rect::Rect;
+use sandtable_raster::largest_rectangle::largest_rectangle;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::lattice::Lattice;
 

@@ -9,8 +9,8 @@ use crate::cameras::CameraDraft;
 use crate::crop::ExtentDraft;
 use crate::rules::{self, RULES};
 use crate::survey::{FeatureSelection, LeftFeatures, SurveyedLayer, TableMatch};
-use sandtable_dem::undeclared::UndeclaredNodata;
 use sandtable_geom::rect::Rect;
+use sandtable_raster::undeclared::UndeclaredNodata;
 
 /// The properties of the scene; zero and empty before they are determined.
 #[derive(Default)]

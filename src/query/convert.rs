@@ -2,15 +2,15 @@
 //!
 //! Without options the samples stay as they are, to the last bit.
 
-use sandtable_dem::error::DemErrorKind;
-use sandtable_dem::mosaic::Mosaic;
-use sandtable_dem::raster::Raster;
-use sandtable_dem::voids;
-use sandtable_dem::warp::WarpError;
-use sandtable_dem::warp::reproject::{Resampling, Warped, reproject, reproject_windows};
-use sandtable_dem::warp::valid_search::WarpWindowsError;
-use sandtable_dem::windows::Windows;
 use sandtable_geom::crs::{Crs, CrsError};
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::mosaic::Mosaic;
+use sandtable_raster::raster::Raster;
+use sandtable_raster::voids;
+use sandtable_raster::warp::error::WarpError;
+use sandtable_raster::warp::reproject::{Resampling, Warped, reproject, reproject_windows};
+use sandtable_raster::warp::valid_search::WarpWindowsError;
+use sandtable_raster::windows::Windows;
 
 /// A larger cell, in degrees, is taken for one in meters.
 const LARGEST_CELL_DEG: f64 = 1.0;

@@ -3,17 +3,18 @@
 use std::path::{Path, PathBuf};
 
 use sandtable_base::limits::{COMPANION_BYTES, INPUT_BYTES, RASTER_SAMPLES};
-use sandtable_dem::error::DemErrorKind;
-use sandtable_dem::mosaic::{Mosaic, MosaicError, Tiles};
-use sandtable_dem::mosaic_windows::MosaicWindows;
-use sandtable_dem::raster::Raster;
-use sandtable_dem::read::{self, DemHints, DemOptions};
+use sandtable_dem::hints::{DemHints, DemOptions};
+use sandtable_dem::read;
 use sandtable_dem::vrt::{self, VrtTiles};
 use sandtable_dem::vrt_source::VrtSource;
-use sandtable_dem::windows::{RasterWindow, WINDOW_CACHE_BYTES, Windows};
 use sandtable_files::addressed;
 use sandtable_files::disk::{self, ReadFileError};
 use sandtable_files::error::FileError;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::mosaic::{Mosaic, MosaicError, Tiles};
+use sandtable_raster::mosaic_windows::MosaicWindows;
+use sandtable_raster::raster::Raster;
+use sandtable_raster::windows::{RasterWindow, WINDOW_CACHE_BYTES, Windows};
 use sandtable_remote::address::is_address_path;
 
 /// Elevation that cannot be opened.

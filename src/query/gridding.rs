@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use glam::{DVec2, DVec3};
 
-use sandtable_dem::points::{self, PointCloud, PointHints, PointsError};
+use sandtable_dem::points;
+use sandtable_dem::points::cloud::{PointCloud, PointHints};
+use sandtable_dem::points::error::PointsError;
 use sandtable_files::disk::{self, ReadFileError};
 use sandtable_files::error::FileError;
 use sandtable_geom::crs::{Crs, CrsError};

@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use sandtable_base::limits::RASTER_SAMPLES;
-use sandtable_dem::error::DemErrorKind;
-use sandtable_dem::raster::Raster;
-use sandtable_dem::warp::valid_search::WarpWindowsError;
-use sandtable_dem::warp::{self, WarpError};
 use sandtable_geom::crs::Crs;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::raster::Raster;
+use sandtable_raster::warp;
+use sandtable_raster::warp::error::WarpError;
+use sandtable_raster::warp::valid_search::WarpWindowsError;
 use sandtable_terrain::lattice::{Lattice, LatticeError};
 use sandtable_terrain::query::service::{HeightService, Snapshot};
 use sandtable_terrain::query::windowed::LatticePartError;

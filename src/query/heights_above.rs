@@ -3,10 +3,10 @@
 use glam::DVec2;
 
 use sandtable_base::limits::GEOID_NODES;
-use sandtable_dem::answer::Answer;
-use sandtable_dem::height_datum::HeightDatum;
 use sandtable_geom::crs::{Crs, CrsError};
 use sandtable_geom::geoid::{Geoid, GeoidWorkError};
+use sandtable_raster::answer::Answer;
+use sandtable_raster::height_datum::HeightDatum;
 
 /// Why heights cannot be brought to another vertical datum.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -2,10 +2,10 @@
 
 use glam::DVec2;
 
-use sandtable_dem::answer::Answer;
-use sandtable_dem::raster::Raster;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::rect::Rect;
+use sandtable_raster::answer::Answer;
+use sandtable_raster::raster::Raster;
 use sandtable_scene::misplacement::{Misplacement, misplacement};
 
 /// As many positions are looked at: a mistake in the system is one of all of them.
@@ -60,7 +60,7 @@ fn zone_of(covered: &Rect, own: &Crs) -> Option<Crs> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_dem::raster::{Samples, north_up_nodes};
+    use sandtable_raster::raster::{Samples, north_up_nodes};
 
     /// A degree of ground in Tennessee.
     fn header() -> Raster {

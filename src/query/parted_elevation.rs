@@ -9,10 +9,10 @@ use crate::ground::GroundError;
 use crate::windowed_elevation::WindowedElevation;
 use sandtable_base::limits::RASTER_SAMPLES;
 use sandtable_base::limits::memory::check_memory;
-use sandtable_dem::error::DemErrorKind;
-use sandtable_dem::raster::Raster;
-use sandtable_dem::windows::WINDOW_CACHE_BYTES;
 use sandtable_geom::crs::Crs;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::raster::Raster;
+use sandtable_raster::windows::WINDOW_CACHE_BYTES;
 use sandtable_roam::parts::{PartPlan, PartedGround};
 use sandtable_terrain::lattice::{Lattice, LatticeError, Post};
 use sandtable_terrain::post_rect::PostRect;
@@ -138,8 +138,8 @@ mod tests {
     use crate::bounded_mesh::BoundedMesh;
     use crate::ground::MetricGround;
     use glam::DVec2;
-    use sandtable_dem::raster::{Samples, north_up_nodes};
     use sandtable_mesh::write::{self, MeshFormat, Remarks};
+    use sandtable_raster::raster::{Samples, north_up_nodes};
 
     /// Ground of 700 × 40 posts, in patches of 128, with holes or without.
     fn raster(hole: u32) -> Raster {

@@ -2,10 +2,10 @@
 
 use rayon::prelude::*;
 
-use sandtable_dem::error::DemErrorKind;
-use sandtable_dem::raster::{Raster, Samples, north_up_nodes};
-use sandtable_dem::windows::{ByteRows, RasterWindow, Windows};
 use sandtable_geom::crs::Crs;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::raster::{Raster, Samples, north_up_nodes};
+use sandtable_raster::windows::{ByteRows, RasterWindow, Windows};
 use sandtable_terrain::hillshade::{self, HillshadeOptions, hillshade};
 use sandtable_terrain::lattice::{Lattice, Post};
 
@@ -98,7 +98,7 @@ pub fn hillshade_raster(lattice: &Lattice, options: &HillshadeOptions, crs: &Crs
 mod tests {
     use super::*;
     use glam::DVec2;
-    use sandtable_dem::formats::DemFormat;
+    use sandtable_dem::dem_format::DemFormat;
     use sandtable_dem::write::write;
     use std::io::Cursor;
 

@@ -14,8 +14,8 @@ use sandtable_annotate::chart_ground::ChartPoint;
 use sandtable_annotate::chart_profile::ProfileChart;
 use sandtable_annotate::nice;
 use sandtable_base::limits::PROFILE_STEPS;
-use sandtable_dem::answer::Answer;
 use sandtable_geom::crs::Crs;
+use sandtable_raster::answer::Answer;
 use sandtable_terrain::profile::{ProfileStation, ProfileSummary, Sampling, sampled_profile};
 
 /// Stretches without ground that are shorter than this, in meters, are not mentioned.

@@ -1,9 +1,9 @@
 //! The results of a viewshed: figures, and a raster.
 
 use crate::post_raster::PostBytes;
-use sandtable_dem::raster::Raster;
-use sandtable_dem::windows::Windows;
 use sandtable_geom::crs::Crs;
+use sandtable_raster::raster::Raster;
+use sandtable_raster::windows::Windows;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::sight::viewshed::{PostVisibility, Viewshed, ViewshedCounts};
 

@@ -15,8 +15,8 @@ use crate::error::RemoteError;
 use crate::object::{MOST_REQUEST_BYTES, RemoteObject};
 use crate::open::AddressVersion;
 use crate::store::StoredFile;
-use sandtable_dem::cache::LruCache;
-use sandtable_dem::formats::FileContent;
+use sandtable_raster::cache::LruCache;
+use sandtable_raster::content::FileContent;
 
 /// Bytes of a block. A tile of a GeoTIFF has some ten of them, so that the parts of blocks around it that are not read are a
 /// tenth of it; of larger blocks more would be fetched beside it, of smaller ones the lists would grow.

@@ -1,7 +1,7 @@
 //! Opening files by their addresses.
 
 use crate::error::RemoteError;
-use sandtable_dem::formats::FileContent;
+use sandtable_raster::content::FileContent;
 
 #[cfg(feature = "cloud")]
 use crate::access::RemoteAccess;

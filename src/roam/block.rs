@@ -8,7 +8,7 @@ use crate::graph::Vertex;
 use crate::layout::PatchLayout;
 use crate::patched_ground::PatchedGround;
 use crate::spheres::SphereMap;
-use sandtable_dem::error::DemErrorKind;
+use sandtable_raster::error::DemErrorKind;
 use sandtable_terrain::lattice::LatticeError;
 
 /// The (patch + 1)² vertices of one patch, row by row from the south-west; those on a border are the same in both patches

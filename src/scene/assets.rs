@@ -18,10 +18,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use sandtable_base::limits::ASSET_BYTES;
 use sandtable_base::message::suggest::{nearest, quoted};
-use sandtable_dem::formats::FileContent;
-use sandtable_dem::raster::Raster;
 use sandtable_model::Companions;
 use sandtable_model::error::CompanionError;
+use sandtable_raster::content::FileContent;
+use sandtable_raster::raster::Raster;
 use sandtable_remote::address::is_address;
 use sandtable_remote::companions::{CompanionFiles, FoundCompanion};
 use sandtable_remote::error::RemoteError;

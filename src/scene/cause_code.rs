@@ -4,14 +4,14 @@ use std::error::Error;
 use std::iter::successors;
 
 use crate::assets::AssetError;
-use sandtable_dem::error::DemErrorKind;
 use sandtable_dem::imagery::ImageryErrorKind;
-use sandtable_dem::mosaic::MosaicError;
-use sandtable_dem::warp::WarpError;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_geom::crs::CrsError;
 use sandtable_model::error::ModelError;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::mosaic::MosaicError;
+use sandtable_raster::warp::error::WarpError;
 use sandtable_remote::error::RemoteError;
 use sandtable_vector::error::VectorError;
 
@@ -60,7 +60,7 @@ fn of_asset(error: &AssetError) -> FindingCode {
 
 fn of_dem(error: &DemErrorKind) -> Option<FindingCode> {
     match error {
-        DemErrorKind::UnknownFormat(_) => Some(FindingCode::WrongFormat),
+        DemErrorKind::UnknownFormat { .. } => Some(FindingCode::WrongFormat),
         DemErrorKind::Broken { reason, .. } if reason.starts_with("it does not start with") => {
             Some(FindingCode::WrongFormat)
         }

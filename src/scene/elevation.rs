@@ -18,26 +18,29 @@ use crate::reduced_elevation::{ReducedElevation, reduced_as_needed};
 use crate::scene_findings::SceneFindings;
 use sandtable_base::limits::{COMPANION_BYTES, PICTURED_SAMPLES, RASTER_SAMPLES};
 use sandtable_base::message::suggest::quoted;
-use sandtable_dem::crop::{crop_window, part, window_samples};
-use sandtable_dem::error::{DemError, DemErrorKind};
 use sandtable_dem::formats::height_encoding::HeightEncoding;
-use sandtable_dem::formats::raw::{RawLayout, RawLayoutError};
-use sandtable_dem::mosaic::Tiles;
-use sandtable_dem::mosaic_windows::MosaicWindows;
-use sandtable_dem::raster::Raster;
-use sandtable_dem::read::{self, DemHints, DemOptions};
-use sandtable_dem::reduced_windows::ReducedWindows;
+use sandtable_dem::formats::raw_layout::{RawLayout, RawLayoutError};
+use sandtable_dem::hints::{DemHints, DemOptions};
+use sandtable_dem::read;
 use sandtable_dem::vrt::{self, VrtTiles};
 use sandtable_dem::vrt_source::VrtSource;
-use sandtable_dem::warp::metric_crs::{OffScale, metric_crs, off_scale};
-use sandtable_dem::warp::metric_windows::MetricSystem;
-use sandtable_dem::windows::{MOST_KEPT_SAMPLES, RasterWindow, WINDOW_CACHE_BYTES, Windows};
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::words::HeightEncodingWord;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::rect::Rect;
+use sandtable_raster::crop::{crop_window, part};
+use sandtable_raster::error::{DemError, DemErrorKind};
+use sandtable_raster::mosaic::Tiles;
+use sandtable_raster::mosaic_windows::MosaicWindows;
+use sandtable_raster::raster::Raster;
+use sandtable_raster::reduced_windows::ReducedWindows;
+use sandtable_raster::warp::metric_crs::{OffScale, metric_crs, off_scale};
+use sandtable_raster::warp::metric_windows::MetricSystem;
+use sandtable_raster::windows::{
+    MOST_KEPT_SAMPLES, RasterWindow, WINDOW_CACHE_BYTES, Windows, window_samples,
+};
 use sandtable_remote::address::is_address;
 
 /// Samples beside an extent that are read of large files, so that voids on its border are known to end.

@@ -9,19 +9,18 @@ use crate::assets::Assets;
 use crate::elevation::{BESIDE, ReadElevation, nothing_within};
 use crate::planned_pictures::ElevationNeed;
 use crate::scene_findings::SceneFindings;
-use sandtable_dem::crop::crop;
-use sandtable_dem::largest_rectangle::{largest_rectangle, outside};
-use sandtable_dem::raster::Raster;
-use sandtable_dem::undeclared::{NodataSign, undeclared_nodata};
-use sandtable_dem::void_counts::VoidCounts;
-use sandtable_dem::voids;
-use sandtable_dem::warp;
-use sandtable_dem::windows::Windows;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::rect::Rect;
+use sandtable_raster::crop::crop;
+use sandtable_raster::largest_rectangle::{largest_rectangle, outside};
+use sandtable_raster::raster::Raster;
+use sandtable_raster::undeclared::{NodataSign, undeclared_nodata};
+use sandtable_raster::void_counts::VoidCounts;
+use sandtable_raster::windows::Windows;
+use sandtable_raster::{voids, warp};
 use sandtable_terrain::lattice::Lattice;
 
 /// The raster as read and the lattice made of it.

@@ -10,10 +10,8 @@ use rayon::prelude::*;
 
 use crate::assets::Assets;
 use sandtable_base::limits::COMPANION_BYTES;
+use sandtable_dem::hints::{DemHints, DemOptions};
 use sandtable_dem::imagery::Imagery;
-use sandtable_dem::read::{DemHints, DemOptions};
-use sandtable_dem::warp::row_positions::positions;
-use sandtable_dem::windows::RasterWindow;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::{Document, ImageryTable};
 use sandtable_draw::color::Srgba;
@@ -21,6 +19,8 @@ use sandtable_draw::ground_imagery::GroundImagery;
 use sandtable_draw::pixels::Pixels;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::rect::Rect;
+use sandtable_raster::warp::row_positions::positions;
+use sandtable_raster::windows::RasterWindow;
 use sandtable_terrain::lattice::Lattice;
 
 /// The longest side in pixels: more than a screen of 4K shows of the ground, and 64 MiB at the most. Finer pictures lose

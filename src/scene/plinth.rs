@@ -13,10 +13,10 @@
 use glam::{DVec2, Vec2, Vec3};
 use rayon::prelude::*;
 
-use sandtable_dem::answer::Answer;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DrawMesh, DrawVertex};
 use sandtable_mesh::sink::MeshSink;
+use sandtable_raster::answer::Answer;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::query::{Interpolation, ground_height};
 

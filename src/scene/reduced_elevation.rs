@@ -5,14 +5,14 @@ use crate::framing::shown_step::{UnreadGround, shown_step};
 use crate::planned_pictures::{ElevationNeed, NearGround, PlannedPictures, depends_on_samples};
 use crate::scene_findings::SceneFindings;
 use sandtable_base::limits::{PICTURED_SAMPLES, RASTER_SAMPLES, REDUCED_SAMPLES};
-use sandtable_dem::raster::Raster;
-use sandtable_dem::reduced::reduced;
-use sandtable_dem::warp::metric_windows::MetricSystem;
-use sandtable_dem::windows::Windows;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_geom::crs::Crs;
+use sandtable_raster::raster::Raster;
+use sandtable_raster::reduced::reduced;
+use sandtable_raster::warp::metric_windows::MetricSystem;
+use sandtable_raster::windows::Windows;
 
 /// Means of samples are held everywhere where they are fewer than this many times the samples that pictures read whole.
 const MOST_MEANS: u64 = 2;

@@ -3,12 +3,12 @@
 use glam::{DVec2, Vec3};
 
 use crate::vertical_scale::VerticalScale;
-use sandtable_dem::answer::Answer;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::stated::Stated;
 use sandtable_geom::crs::{Crs, CrsError};
+use sandtable_raster::answer::Answer;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::query::{Interpolation, ground_height};
 

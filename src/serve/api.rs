@@ -6,8 +6,8 @@ use crate::api::ApiNeed::{Optional, Required};
 use crate::api::ApiValue::{Count, Number, Text, Words};
 use crate::{health, ready};
 use sandtable_base::message::choice::Choice;
-use sandtable_dem::height_datum::HeightDatum;
 use sandtable_query::service::{PathPrefix, ServiceLimits};
+use sandtable_raster::height_datum::HeightDatum;
 use sandtable_terrain::query::Interpolation;
 
 /// An address of the service.

@@ -31,9 +31,9 @@ use crate::reply::{HttpError, JsonArray, OK, quoted};
 use crate::samples::along_path;
 use crate::service::Service;
 use sandtable_base::message::chain::error_text;
-use sandtable_dem::answer::Answer;
-use sandtable_dem::height_datum::HeightDatum;
 use sandtable_query::heights_above::bring_heights;
+use sandtable_raster::answer::Answer;
+use sandtable_raster::height_datum::HeightDatum;
 use sandtable_terrain::query::{Interpolation, Surface};
 use sandtable_terrain::stop_flag::StopFlag;
 

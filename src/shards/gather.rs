@@ -8,7 +8,8 @@ use crate::error::{PlanError, PlanFault, ShardError};
 use crate::plan::{PlannedProduct, ShardPlan};
 use crate::record::{self, ShardState};
 use crate::{atlas, heights, tiles, viewsheds};
-use sandtable_dem::formats::{DemFormat, WRITTEN_EXTENSIONS};
+use sandtable_dem::dem_format::DemFormat;
+use sandtable_dem::formats::WRITTEN_EXTENSIONS;
 use sandtable_files::disk;
 
 /// How far the shards of a plan are, by their numbers.

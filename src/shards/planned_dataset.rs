@@ -8,7 +8,7 @@ use crate::error::{PlanError, PlanFault, ShardError};
 use crate::input::{PlanInput, elevation_files};
 use crate::plan_path::{place, relative, written};
 use sandtable_base::message::choice::Choice;
-use sandtable_dem::read::DemOptions;
+use sandtable_dem::hints::DemOptions;
 use sandtable_geom::crs::Crs;
 use sandtable_query::dataset::{Dataset, DatasetOptions};
 

@@ -7,7 +7,6 @@ use rayon::prelude::*;
 
 use crate::picture::{PictureError, PictureSize, framed_camera};
 use sandtable_annotate::sheet_frame::SheetFrame;
-use sandtable_dem::raster::{Raster, Samples};
 use sandtable_dem::tiff::write::write_described;
 use sandtable_description::finding::Finding;
 use sandtable_description::finding_code::FindingCode;
@@ -18,6 +17,7 @@ use sandtable_files::disk::{self, WriteFileError};
 use sandtable_files::output_files::OutputFiles;
 use sandtable_files::png::encode_png;
 use sandtable_picture::build_shapes;
+use sandtable_raster::raster::{Raster, Samples};
 use sandtable_render::cpu::render_buffers;
 use sandtable_render::picture::Rendering;
 use sandtable_scene::scene_model::SceneModel;

@@ -21,8 +21,8 @@ use glam::{DVec2, Vec2, Vec3};
 use crate::height_scan;
 use crate::post_rect::PostRect;
 use sandtable_base::limits::memory::{MemoryRefused, check_memory};
-use sandtable_dem::raster::{Raster, Samples};
 use sandtable_geom::rect::Rect;
+use sandtable_raster::raster::{Raster, Samples};
 
 /// Posts of a regular grid with their heights.
 ///

@@ -10,7 +10,7 @@ use glam::DVec2;
 use crate::lattice::Lattice;
 use crate::query::{Interpolation, ground_height};
 use crate::sight::crossings::crossings;
-use sandtable_dem::answer::Answer;
+use sandtable_raster::answer::Answer;
 
 /// A position along a profile.
 #[derive(Clone, Copy, Debug, PartialEq)]

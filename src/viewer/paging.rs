@@ -17,9 +17,9 @@ use glam::{DVec2, DVec3};
 
 use crate::worker::run_apart;
 use sandtable_base::message::chain::error_text;
-use sandtable_dem::answer::Answer;
-use sandtable_dem::windows::Windows;
 use sandtable_draw::patches::{GroundChanges, PatchId};
+use sandtable_raster::answer::Answer;
+use sandtable_raster::windows::Windows;
 use sandtable_roam::paging::ground::{PagingCounts, PagingOptions};
 use sandtable_roam::paging::region::PagedFrame;
 use sandtable_terrain::lattice::LatticeError;

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use sandtable_base::limits::QUERIED_SAMPLES;
-use sandtable_dem::windows::Windows;
 use sandtable_geom::rect::Rect;
+use sandtable_raster::windows::Windows;
 use sandtable_roam::block::BlockFault;
 use sandtable_roam::paging::region::read_part;
 use sandtable_terrain::lattice::{Lattice, LatticeError, Post};
@@ -101,9 +101,9 @@ impl<W: Windows> DiskGround<W> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_dem::error::DemErrorKind;
-    use sandtable_dem::raster::{Raster, Samples, north_up_nodes};
-    use sandtable_dem::windows::RasterWindow;
+    use sandtable_raster::error::DemErrorKind;
+    use sandtable_raster::raster::{Raster, Samples, north_up_nodes};
+    use sandtable_raster::windows::RasterWindow;
     use sandtable_terrain::profile::profile;
     use sandtable_terrain::query::{Interpolation, ground_height};
 

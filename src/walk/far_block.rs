@@ -13,7 +13,7 @@
 
 use glam::Vec3;
 
-use sandtable_dem::windows::Windows;
+use sandtable_raster::windows::Windows;
 use sandtable_roam::bintree::Triangle;
 use sandtable_roam::block::BlockSource;
 use sandtable_roam::graph::Vertex;

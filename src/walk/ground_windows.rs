@@ -15,11 +15,11 @@ use std::sync::Arc;
 
 use glam::{DVec2, Vec3};
 
-use sandtable_dem::error::DemErrorKind;
-use sandtable_dem::reduced::{reduced_part, reduced_size};
-use sandtable_dem::windows::Windows;
 use sandtable_draw::ground::GroundMap;
 use sandtable_draw::ground_window::GroundWindow;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::reduced::{reduced_part, reduced_size};
+use sandtable_raster::windows::Windows;
 use sandtable_scene::ground_window::{WindowGround, ground_window};
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::lattice::{Lattice, LatticeError, Post};
@@ -200,10 +200,10 @@ mod tests {
 
     #[test]
     fn windows_are_nested_around_the_eye_and_fewer_from_far_away() {
-        let samples = sandtable_dem::raster::Samples::F32(vec![0.0; 4097 * 4097]);
+        let samples = sandtable_raster::raster::Samples::F32(vec![0.0; 4097 * 4097]);
         let north_west = DVec2::new(0.0, 40_960.0);
-        let raster = sandtable_dem::raster::Raster::new(4097, samples)
-            .placed(sandtable_dem::raster::north_up_nodes(north_west, DVec2::splat(10.0)));
+        let raster = sandtable_raster::raster::Raster::new(4097, samples)
+            .placed(sandtable_raster::raster::north_up_nodes(north_west, DVec2::splat(10.0)));
         let mut maker = GroundWindowMaker::new(raster).expect("a lattice");
         let (_, light) = scene();
         let map = GroundMap { cell: glam::Vec2::splat(160.0), ..(*light.map).clone() };

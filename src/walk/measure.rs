@@ -7,10 +7,10 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use crate::Walk;
-use sandtable_dem::answer::Answer;
 use sandtable_geom::polygon;
 use sandtable_picture::recut::SeenTint;
 use sandtable_query::viewshed::ViewshedSummary;
+use sandtable_raster::answer::Answer;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::profile::{ProfileStation, ProfileSummary, profile};
 use sandtable_terrain::query::pieces::{GridRegion, RegionError};

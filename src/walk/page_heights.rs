@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use sandtable_dem::answer::Answer;
 use sandtable_draw::patches::PatchId;
+use sandtable_raster::answer::Answer;
 use sandtable_roam::block::PatchBlock;
 use sandtable_roam::graph::Vertex;
 use sandtable_roam::paging::region::PagedFrame;
@@ -93,7 +93,7 @@ impl PageHeights {
 mod tests {
     use super::*;
     use glam::DVec3;
-    use sandtable_dem::raster::{Raster, Samples, north_up_nodes};
+    use sandtable_raster::raster::{Raster, Samples, north_up_nodes};
     use sandtable_roam::block::BlockSource;
     use sandtable_roam::paging::ground::{PagedGround, PagingOptions, exact_spheres};
 

@@ -11,8 +11,8 @@ use glam::DVec2;
 use crate::far_block::{FarBlock, backdrop, far_blocks};
 use crate::frame::{WalkError, WalkFrame, WalkStatistics};
 use crate::shown::ShownPatches;
-use sandtable_dem::windows::Windows;
 use sandtable_draw::patches::{GroundChanges, PatchId, PatchTriangles, PatchVertices};
+use sandtable_raster::windows::Windows;
 use sandtable_roam::block::{BlockSource, PatchBlock};
 use sandtable_roam::graph::Vertex;
 use sandtable_roam::paging::ground::{PagedGround, PagingCounts, PagingError, PagingOptions, exact_spheres};
@@ -251,7 +251,7 @@ mod tests {
     use glam::Vec3;
 
     use super::*;
-    use sandtable_dem::raster::{Raster, Samples, north_up_nodes};
+    use sandtable_raster::raster::{Raster, Samples, north_up_nodes};
     use sandtable_roam::shown::LocalTriangle;
 
     /// Hills with a lake without data, 2 × 2 blocks of patches of 8 cells.

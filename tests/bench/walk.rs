@@ -17,10 +17,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::{DAffine2, DMat2, DVec2, Vec3};
-use sandtable_dem::formats::DemFormat;
-use sandtable_dem::raster::{Raster, Samples};
+use sandtable_dem::dem_format::DemFormat;
 use sandtable_earthworks::brush::Crater;
 use sandtable_files::raster_file;
+use sandtable_raster::raster::{Raster, Samples};
 use sandtable_scene::scene_file::open_scene;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_view::camera::Camera;

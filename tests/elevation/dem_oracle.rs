@@ -9,15 +9,16 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use glam::DVec2;
-use sandtable_dem::answer::Answer;
-use sandtable_dem::error::DemError;
 use sandtable_dem::formats::height_encoding::HeightEncoding;
-use sandtable_dem::raster::Raster;
-use sandtable_dem::read::{DemHints, DemOptions, read};
-use sandtable_dem::sample::{bilinear, nearest};
-use sandtable_dem::stats::Stats;
-use sandtable_dem::warp::to_metric;
+use sandtable_dem::hints::{DemHints, DemOptions};
+use sandtable_dem::read::read;
 use sandtable_geom::crs::{Crs, CrsError};
+use sandtable_raster::answer::Answer;
+use sandtable_raster::error::DemError;
+use sandtable_raster::raster::Raster;
+use sandtable_raster::sample::{bilinear, nearest};
+use sandtable_raster::stats::Stats;
+use sandtable_raster::warp::to_metric;
 use serde_json::Value;
 
 /// Files that must be refused, each with a word that the refusal must contain.

@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use glam::{DAffine2, DMat2, DVec2};
-use sandtable_dem::formats::DemFormat;
-use sandtable_dem::raster::{Raster, Samples};
-use sandtable_dem::read::{DemHints, read as read_dem};
+use sandtable_dem::dem_format::DemFormat;
+use sandtable_dem::hints::DemHints;
+use sandtable_dem::read::read as read_dem;
 use sandtable_dem::write::write;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::parse::parse_bytes;
 use sandtable_geom::crs::Crs;
+use sandtable_raster::raster::{Raster, Samples};
 use sandtable_scene::assets::Assets;
 use sandtable_scene::ground::{LoadedGround, load};
 use sandtable_scene::planned_pictures::ElevationNeed;

@@ -5,11 +5,15 @@ use std::path::{Path, PathBuf};
 
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
-use sandtable_dem::cell_grid::CellGrid;
-use sandtable_dem::error::DemErrorKind;
-use sandtable_dem::gridding::{BeyondHull, GridError, Gridded, GriddingMethod, grid};
-use sandtable_dem::points::{PointCloud, PointHints, PointsError, read};
+use sandtable_dem::gridding::error::GridError;
+use sandtable_dem::gridding::method::GriddingMethod;
+use sandtable_dem::gridding::{BeyondHull, Gridded, grid};
+use sandtable_dem::points::cloud::{PointCloud, PointHints};
+use sandtable_dem::points::error::PointsError;
+use sandtable_dem::points::read;
 use sandtable_geom::rect::Rect;
+use sandtable_raster::cell_grid::CellGrid;
+use sandtable_raster::error::DemErrorKind;
 use spade::{DelaunayTriangulation, FloatTriangulation, HasPosition, Point2, Triangulation};
 
 use crate::common::data::data;

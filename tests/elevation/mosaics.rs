@@ -5,12 +5,13 @@ use crate::common::scratch;
 use std::fs;
 
 use glam::{DAffine2, DVec2};
-use sandtable_dem::mosaic::{Mosaic, MosaicError, Tiles};
-use sandtable_dem::raster::{Raster, Samples};
-use sandtable_dem::read::{DemHints, read};
-use sandtable_dem::void_counts::VoidCounts;
-use sandtable_dem::voids;
+use sandtable_dem::hints::DemHints;
+use sandtable_dem::read::read;
 use sandtable_description::parse::parse_bytes;
+use sandtable_raster::mosaic::{Mosaic, MosaicError, Tiles};
+use sandtable_raster::raster::{Raster, Samples};
+use sandtable_raster::void_counts::VoidCounts;
+use sandtable_raster::voids;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
 

@@ -7,11 +7,13 @@ use std::process::Command;
 
 use glam::{DAffine2, DMat2, DVec2};
 use proptest::prelude::*;
-use sandtable_dem::formats::DemFormat;
-use sandtable_dem::raster::{Raster, Samples};
-use sandtable_dem::read::{DemHints, DemOptions, read};
-use sandtable_dem::write::{WriteError, WrittenDem, write};
+use sandtable_dem::dem_format::DemFormat;
+use sandtable_dem::hints::{DemHints, DemOptions};
+use sandtable_dem::read::read;
+use sandtable_dem::write::write;
+use sandtable_dem::written::{WriteError, WrittenDem};
 use sandtable_geom::crs::Crs;
+use sandtable_raster::raster::{Raster, Samples};
 
 use scratch::Scratch;
 
@@ -286,7 +288,7 @@ fn gdal_reads_what_is_written_as_we_do() {
             assert_eq!(said["size"], serde_json::json!([300, 270]), "{name}");
             let wkt = said["coordinateSystem"]["wkt"].as_str().expect("a system");
             assert!(wkt.contains(wanted), "{name} of {crs}: {wkt}");
-            let stats = sandtable_dem::stats::Stats::new(&one);
+            let stats = sandtable_raster::stats::Stats::new(&one);
             let metadata = &said["bands"][0]["metadata"][""];
             let number =
                 |key: &str| metadata[key].as_str().and_then(|text| text.parse::<f64>().ok()).expect(key);

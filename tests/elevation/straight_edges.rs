@@ -1,9 +1,9 @@
 //! The ground of a scene over elevation in degrees: straight edges, filled voids, and notes on both.
 
 use glam::DVec2;
-use sandtable_dem::answer::Answer;
 use sandtable_description::parse::parse_bytes;
 use sandtable_geom::crs::Crs;
+use sandtable_raster::answer::Answer;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
 use sandtable_scene::scene_model::SceneModel;

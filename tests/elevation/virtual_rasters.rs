@@ -2,13 +2,13 @@
 
 use glam::{DAffine2, DMat2, DVec2};
 use sandtable_base::message::chain::error_text;
-use sandtable_dem::formats::DemFormat;
-use sandtable_dem::raster::{Raster, Samples};
-use sandtable_dem::read::DemOptions;
-use sandtable_dem::windows::{RasterWindow, Windows};
+use sandtable_dem::dem_format::DemFormat;
+use sandtable_dem::hints::DemOptions;
 use sandtable_dem::write::write;
 use sandtable_geom::crs::Crs;
 use sandtable_query::dem::{OpenedDem, open, open_either};
+use sandtable_raster::raster::{Raster, Samples};
+use sandtable_raster::windows::{RasterWindow, Windows};
 use sandtable_scene::scene_file::build_scene_text;
 
 use crate::common::scratch::Scratch;

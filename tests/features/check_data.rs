@@ -1,8 +1,7 @@
 //! Checks of scene files and their data: mistakes seeded in small scenes are found, each on its line, and nothing else is.
 
 use glam::{DAffine2, DVec2};
-use sandtable_dem::formats::DemFormat;
-use sandtable_dem::raster::{Raster, Samples};
+use sandtable_dem::dem_format::DemFormat;
 use sandtable_dem::write::write;
 use sandtable_description::finding::Finding;
 use sandtable_description::finding_code::FindingCode;
@@ -10,6 +9,7 @@ use sandtable_description::source_place::SourcePlace;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::pixels::Pixels;
 use sandtable_files::png::encode_png;
+use sandtable_raster::raster::{Raster, Samples};
 
 use crate::common::findings::{findings, grave};
 use crate::common::scratch::Scratch;

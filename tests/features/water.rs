@@ -2,6 +2,7 @@
 
 use glam::{DVec2, Vec3};
 use proptest::prelude::*;
+use sandtable_dem::hints::DemHints;
 use sandtable_dem::read as dem;
 use sandtable_description::parse::parse_bytes;
 use sandtable_draw::list::DepthLayer;
@@ -442,7 +443,7 @@ fn thousands_of_real_streams_fall_all_the_way() {
     let Some(folder) = data("scenes/wake_nc_us") else { return };
     let read = |name: &str| std::fs::read(folder.join(name)).expect("readable");
     let companions = |_: &str| None;
-    let hints = dem::DemHints { companions: &companions, ..dem::DemHints::default() };
+    let hints = DemHints { companions: &companions, ..DemHints::default() };
     let raster = dem::read("elev_ned_30m.tif", &read("elev_ned_30m.tif"), &hints).expect("sound");
     let mut lattice = Lattice::from_raster(&raster).expect("sound");
     let crs = raster.crs.expect("stated");

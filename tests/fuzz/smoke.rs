@@ -189,7 +189,8 @@ fn every_target_ends_with_an_answer_or_an_error_on_seeds_and_mutants() {
 #[test]
 fn seeds_reach_behind_the_first_check() {
     // A seed that no reader takes makes mutants that test nothing.
-    use sandtable_dem::read::{DemHints, read};
+    use sandtable_dem::hints::DemHints;
+    use sandtable_dem::read::read;
     let grid = &seeds("elevation")[2];
     assert!(read("a.asc", &grid[1..], &DemHints::default()).is_ok());
     for seed in seeds("scene_build") {

@@ -9,8 +9,9 @@ mod walks;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use sandtable_dem::points::{self, PointHints};
-use sandtable_dem::read::{self as elevation, DemHints, DemOptions};
+use sandtable_dem::hints::{DemHints, DemOptions};
+use sandtable_dem::points::cloud::PointHints;
+use sandtable_dem::{points, read as elevation};
 use sandtable_description::expression::Expression;
 use sandtable_description::parse::parse_bytes;
 use sandtable_geom::crs::Crs;

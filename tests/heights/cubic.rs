@@ -1,8 +1,9 @@
 //! Cubic heights of a raster against those of GDAL, `gdalwarp -r cubic`, at positions between its samples.
 
 use glam::DVec2;
-use sandtable_dem::answer::Answer;
-use sandtable_dem::read::{DemHints, read};
+use sandtable_dem::hints::DemHints;
+use sandtable_dem::read::read;
+use sandtable_raster::answer::Answer;
 use sandtable_terrain::query::Interpolation;
 use sandtable_terrain::query::source::raster_height;
 

@@ -7,11 +7,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::{DAffine2, DMat2, DVec2, Vec3};
 use proptest::prelude::*;
-use sandtable_dem::answer::{Answer, Status};
-use sandtable_dem::raster::{Raster, Samples};
 use sandtable_earthworks::brush::Crater;
 use sandtable_geom::crs::Crs;
 use sandtable_mesh::trimesh::TriMesh;
+use sandtable_raster::answer::{Answer, Status};
+use sandtable_raster::raster::{Raster, Samples};
 use sandtable_roam::dynamic::{DynamicOptions, DynamicTerrain, ErrorMeasure, Radius};
 use sandtable_roam::measured_ground::MeasuredGround;
 use sandtable_terrain::lattice::{Lattice, Post};

@@ -4,8 +4,9 @@ use std::fs;
 
 use glam::DVec2;
 use proptest::prelude::*;
-use sandtable_dem::answer::Answer;
-use sandtable_dem::read::{self, DemHints};
+use sandtable_dem::hints::DemHints;
+use sandtable_dem::read;
+use sandtable_raster::answer::Answer;
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::sight::Curvature;
 use sandtable_terrain::sight::line::{Sight, SightEnd, line_of_sight};

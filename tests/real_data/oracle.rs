@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use glam::DVec2;
-use sandtable_dem::answer::Answer;
 use sandtable_geom::crs::Crs;
+use sandtable_raster::answer::Answer;
 use sandtable_terrain::query::service::HeightService;
 use sandtable_terrain::query::{Interpolation, Surface};
 

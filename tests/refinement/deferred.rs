@@ -2,8 +2,8 @@
 
 use glam::{DAffine2, DMat2, DVec2, Vec3};
 use proptest::prelude::*;
-use sandtable_dem::raster::{Raster, Samples};
 use sandtable_earthworks::brush::{Crater, set_heights};
+use sandtable_raster::raster::{Raster, Samples};
 use sandtable_roam::bintree::Triangle;
 use sandtable_roam::block::{BlockSource, PatchBlock, WholeGround};
 use sandtable_roam::criterion::spheres::Spheres;

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use glam::DVec2;
-use sandtable_dem::answer::Answer;
-use sandtable_dem::read::DemOptions;
+use sandtable_dem::hints::DemOptions;
 use sandtable_draw::list::FeatureId;
 use sandtable_files::output_files::OutputFiles;
 use sandtable_picture::{build_shapes, camera};
 use sandtable_query::dem;
+use sandtable_raster::answer::Answer;
 use sandtable_render::RenderBackend;
 use sandtable_render::cpu::render_buffers;
 use sandtable_scene::scene_file::open_scene;

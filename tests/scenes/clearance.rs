@@ -4,8 +4,6 @@ use std::sync::Arc;
 
 use glam::{DAffine2, DVec2, Vec3};
 use proptest::prelude::*;
-use sandtable_dem::answer::Answer;
-use sandtable_dem::raster::{Raster, Samples};
 use sandtable_draw::list::DrawMesh;
 use sandtable_earthworks::alignment::Alignment;
 use sandtable_earthworks::leveling;
@@ -13,6 +11,8 @@ use sandtable_geom::crs::Crs;
 use sandtable_geom::polyline::Polyline;
 use sandtable_mesh::check;
 use sandtable_mesh::trimesh::TriMesh;
+use sandtable_raster::answer::Answer;
+use sandtable_raster::raster::{Raster, Samples};
 use sandtable_ribbon::area;
 use sandtable_ribbon::drape::{check_clearance, drape};
 use sandtable_ribbon::plan::PlanMesh;

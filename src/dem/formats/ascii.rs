@@ -11,15 +11,15 @@ use std::fmt::Write;
 
 use glam::DVec2;
 
-use crate::error::DemErrorKind;
+use crate::companion::projection_file_of;
+use crate::dem_file::DemFile;
+use crate::dem_format::{DemFormat, Recognition};
 use crate::formats::header::HeaderFields;
 use crate::formats::text::{TextWords, number, quote};
-use crate::formats::{DemFormat, Recognition};
-use crate::georef::projection_file_of;
-use crate::limits::SizeClaim;
-use crate::raster::{Raster, SampleFloat, Samples, north_up};
-use crate::read::DemFile;
-use crate::write::{WriteError, WrittenDem};
+use crate::written::{WriteError, WrittenDem};
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::limits::SizeClaim;
+use sandtable_raster::raster::{Raster, SampleFloat, Samples, north_up};
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "ESRI ASCII grid",
@@ -188,7 +188,8 @@ fn nodata_to_write(raster: &Raster) -> Result<f64, WriteError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::read::{DemHints, read};
+    use crate::hints::DemHints;
+    use crate::read::read;
 
     fn grid(text: &str) -> Result<Raster, String> {
         read("a.asc", text.as_bytes(), &DemHints::default()).map_err(|error| error.to_string())

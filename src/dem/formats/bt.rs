@@ -23,19 +23,20 @@
 
 use glam::DVec2;
 
-use crate::error::DemErrorKind;
+use crate::companion::projection_file_of;
+use crate::dem_file::DemFile;
+use crate::dem_format::{DemFormat, Recognition};
 use crate::formats::plain_raster::{self, PlainRaster};
 use crate::formats::sample_layout::{FileSize, NoData, SampleLayout};
-use crate::formats::{DemFormat, Recognition};
-use crate::georef::{crs_on_earth, projection_file_of, utm_code};
-use crate::raster::{Raster, north_up_nodes};
-use crate::read::DemFile;
-use crate::sample_type::SampleType;
-use crate::stored::StoredSamples;
-use crate::units::{FOOT_M, US_SURVEY_FOOT_M};
-use crate::write::{WriteError, WrittenDem};
+use crate::written::{WriteError, WrittenDem};
 use sandtable_base::bytes::{ByteFields, ByteOrder};
 use sandtable_geom::crs::Crs;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::georef::{crs_on_earth, utm_code};
+use sandtable_raster::raster::{Raster, north_up_nodes};
+use sandtable_raster::sample_type::SampleType;
+use sandtable_raster::stored::StoredSamples;
+use sandtable_raster::units::{FOOT_M, US_SURVEY_FOOT_M};
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "BT terrain",
@@ -306,8 +307,9 @@ fn system_fields(crs: Option<&Crs>) -> (i16, i16, i16) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::raster::Samples;
-    use crate::read::{DemHints, read};
+    use crate::hints::DemHints;
+    use crate::read::read;
+    use sandtable_raster::raster::Samples;
 
     fn terrain(version: &[u8; 10], values: &[i16]) -> Vec<u8> {
         let mut bytes = vec![0u8; HEADER];

@@ -15,13 +15,13 @@
 
 use glam::DVec2;
 
-use crate::error::DemErrorKind;
-use crate::formats::{DemFormat, Recognition, any_size};
-use crate::limits::SizeClaim;
-use crate::raster::{Raster, Samples, north_up_nodes};
-use crate::read::DemFile;
+use crate::dem_file::DemFile;
+use crate::dem_format::{DemFormat, Recognition, any_size};
 use sandtable_base::bytes::ByteFields;
 use sandtable_geom::crs::Crs;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::limits::SizeClaim;
+use sandtable_raster::raster::{Raster, Samples, north_up_nodes};
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "DTED",
@@ -203,7 +203,8 @@ fn text(bytes: &[u8], at: usize, length: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::read::{DemHints, read};
+    use crate::hints::DemHints;
+    use crate::read::read;
 
     /// A cell of two columns and three rows at 7° W, 43° N, ten minutes apart.
     fn cell(records: &[(u16, [i32; 3])]) -> Vec<u8> {

@@ -7,16 +7,15 @@
 
 use glam::{DAffine2, DVec2};
 
-use crate::error::DemErrorKind;
+use crate::dem_file::DemFile;
+use crate::dem_format::{DemFormat, Recognition, any_size};
 use crate::formats::header::HeaderFields;
 use crate::formats::plain_raster::{self, PlainRaster};
 use crate::formats::sample_layout::{FileSize, NoData, SampleLayout};
-use crate::formats::{DemFormat, Recognition, any_size};
-use crate::georef;
-use crate::raster::{Raster, north_up, north_up_nodes};
-use crate::read::DemFile;
-use crate::sample_type::{NumberKind, SampleType};
 use sandtable_base::bytes::ByteOrder;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::raster::{Raster, north_up, north_up_nodes};
+use sandtable_raster::sample_type::{NumberKind, SampleType};
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "ESRI binary grid",
@@ -47,7 +46,7 @@ fn plain(file: &DemFile, size: FileSize) -> Result<PlainRaster, DemErrorKind> {
     let layout = layout(&header, sample)?;
     let raster = layout.header(FORMAT.name, size)?;
     let place = place(&header, raster.height)?;
-    let raster = georef::placed(file, raster, place, &["blw", "bpw", "bqw", "flw", "wld"])?;
+    let raster = file.placed(raster, place, &["blw", "bpw", "bqw", "flw", "wld"])?;
     let raster = Raster { driver: "EHdr", crs: file.crs()?, nodata, ..raster };
     Ok(PlainRaster::new(raster, layout, NoData::Value(nodata)))
 }
@@ -120,7 +119,8 @@ fn place(header: &HeaderFields, height: u32) -> Result<Option<DAffine2>, DemErro
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::read::{DemHints, read};
+    use crate::hints::DemHints;
+    use crate::read::read;
 
     fn grid(name: &str, header: &str, bytes: &[u8]) -> Result<Raster, String> {
         let header = header.to_owned();

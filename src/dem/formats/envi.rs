@@ -6,17 +6,17 @@
 
 use glam::{DAffine2, DVec2};
 
-use crate::error::DemErrorKind;
+use crate::dem_file::DemFile;
+use crate::dem_format::{DemFormat, Recognition, any_size};
 use crate::formats::header::HeaderFields;
 use crate::formats::plain_raster::{self, PlainRaster};
 use crate::formats::sample_layout::{FileSize, NoData, SampleLayout};
-use crate::formats::{DemFormat, Recognition, any_size};
-use crate::georef::{self, utm_code};
-use crate::raster::{Raster, north_up};
-use crate::read::DemFile;
-use crate::sample_type::SampleType;
 use sandtable_base::bytes::ByteOrder;
 use sandtable_geom::crs::Crs;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::georef::utm_code;
+use sandtable_raster::raster::{Raster, north_up};
+use sandtable_raster::sample_type::SampleType;
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "ENVI raster",
@@ -41,7 +41,7 @@ fn plain(file: &DemFile, size: FileSize) -> Result<PlainRaster, DemErrorKind> {
     let gain = first_number("data gain values")?.unwrap_or(1.0);
     let offset = first_number("data offset values")?.unwrap_or(0.0);
     let map = list(&header, "map info");
-    let raster = georef::placed(file, raster, place(&map)?, &["wld"])?;
+    let raster = file.placed(raster, place(&map)?, &["wld"])?;
     let crs = file.crs_or(|| match header.get("coordinate system string") {
         Some(text) => Ok(Some(Crs::parse(text)?)),
         None => system(&map),
@@ -149,7 +149,8 @@ fn system(map: &[&str]) -> Result<Option<Crs>, DemErrorKind> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::read::{DemHints, read};
+    use crate::hints::DemHints;
+    use crate::read::read;
 
     fn raster(header: &str, bytes: &[u8]) -> Result<Raster, String> {
         let header = format!("ENVI\n{header}");

@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use crate::error::DemErrorKind;
 use crate::formats::text::{number, quote};
+use sandtable_raster::error::DemErrorKind;
 
 /// The keys of a header in lower case, and their values.
 pub(crate) struct HeaderFields {

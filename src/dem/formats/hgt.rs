@@ -5,16 +5,16 @@
 
 use glam::DVec2;
 
-use crate::error::DemErrorKind;
+use crate::dem_file::DemFile;
+use crate::dem_format::{DemFormat, Recognition};
 use crate::formats::plain_raster::{self, PlainRaster};
 use crate::formats::sample_layout::{FileSize, NoData, SampleLayout};
-use crate::formats::{DemFormat, Recognition};
-use crate::raster::{Raster, north_up_nodes};
-use crate::read::DemFile;
-use crate::sample_type::SampleType;
-use crate::write::{WriteError, WrittenDem};
+use crate::written::{WriteError, WrittenDem};
 use sandtable_base::bytes::ByteOrder;
 use sandtable_geom::crs::Crs;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::raster::{Raster, north_up_nodes};
+use sandtable_raster::sample_type::SampleType;
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "SRTM tile",
@@ -129,7 +129,8 @@ fn write(raster: &Raster, stem: &str) -> Result<WrittenDem, WriteError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::read::{DemHints, read};
+    use crate::hints::DemHints;
+    use crate::read::read;
 
     #[test]
     fn the_name_is_the_corner() {

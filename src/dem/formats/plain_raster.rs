@@ -2,13 +2,13 @@
 
 use std::io::{Read, Seek, SeekFrom};
 
-use crate::error::DemErrorKind;
-use crate::formats::FileContent;
+use crate::dem_file::DemFile;
 use crate::formats::sample_layout::{FileSize, NoData, SampleLayout};
-use crate::raster::{Raster, Samples};
-use crate::read::DemFile;
-use crate::windows::{RasterWindow, Windows};
 use sandtable_base::limits::WINDOWED_SAMPLES;
+use sandtable_raster::content::FileContent;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::raster::{Raster, Samples};
+use sandtable_raster::windows::{RasterWindow, Windows};
 
 /// A raster and the places of its samples.
 pub(super) struct PlainRaster {
@@ -48,7 +48,8 @@ pub(super) fn windows(
     mut content: Box<dyn FileContent>,
     header: PlainHeader,
 ) -> Result<Box<dyn Windows + Send>, DemErrorKind> {
-    let length = content.seek(SeekFrom::End(0)).map_err(|fault| unreadable("elevation file", fault))?;
+    let length =
+        content.seek(SeekFrom::End(0)).map_err(|fault| DemErrorKind::unread("elevation file", fault))?;
     let size = FileSize { bytes: length as usize, most_samples: &WINDOWED_SAMPLES };
     let mut plain = header(file, size)?;
     let is_wide = plain.layout.sample.is_wide() || plain.scale != 1.0 || plain.offset != 0.0;
@@ -77,16 +78,9 @@ impl Windows for PlainWindows {
             let (into, later) = rest.split_at_mut((line.end - line.start) as usize);
             let read =
                 self.content.seek(SeekFrom::Start(line.start)).and_then(|_| self.content.read_exact(into));
-            read.map_err(|fault| unreadable(raster.driver, fault))?;
+            read.map_err(|fault| DemErrorKind::unread(raster.driver, fault))?;
             rest = later;
         }
         Ok(layout.samples(&bytes, *nodata).scaled(*scale, *offset))
-    }
-}
-
-fn unreadable(format: &'static str, fault: std::io::Error) -> DemErrorKind {
-    match fault.get_ref() {
-        Some(_) => DemErrorKind::Unread(Box::new(fault)),
-        None => DemErrorKind::Undecodable { format, source: Box::new(fault) },
     }
 }

@@ -10,14 +10,14 @@ use std::io::Cursor;
 
 use png::{BitDepth, ColorType, Transformations};
 
-use crate::error::DemErrorKind;
+use crate::companion::{projection_file_of, world_file_of};
+use crate::dem_file::DemFile;
+use crate::dem_format::{DemFormat, Recognition, any_size};
 use crate::formats::height_encoding::HeightEncoding;
-use crate::formats::{DemFormat, Recognition, any_size};
-use crate::georef::{self, projection_file_of, world_file_of};
-use crate::limits::SizeClaim;
-use crate::raster::{Raster, Samples};
-use crate::read::DemFile;
-use crate::write::{WriteError, WrittenDem};
+use crate::written::{WriteError, WrittenDem};
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::limits::SizeClaim;
+use sandtable_raster::raster::{Raster, Samples};
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "PNG",
@@ -59,7 +59,7 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
         PngHeights::Gray { scale, offset } => Samples::F32(pixels.gray()).scaled(scale, offset),
         PngHeights::Colors(encoding) => Samples::F64(pixels.heights(encoding)),
     };
-    let raster = georef::placed(file, Raster::new(size.x, samples), None, &["pgw", "pngw", "wld"])?;
+    let raster = file.placed(Raster::new(size.x, samples), None, &["pgw", "pngw", "wld"])?;
     Ok(Raster {
         driver: "PNG",
         data_type: if depth == BitDepth::Sixteen { "UInt16" } else { "Byte" },
@@ -200,7 +200,8 @@ fn encode(width: u32, height: u32, pixels: &[u8]) -> Result<Vec<u8>, png::Encodi
 #[cfg(test)]
 mod tests {
     use crate::formats::height_encoding::HeightEncoding;
-    use crate::read::{DemHints, DemOptions, read};
+    use crate::hints::{DemHints, DemOptions};
+    use crate::read::read;
     use image::ImageEncoder;
 
     fn picture(values: &[u16]) -> Vec<u8> {

@@ -7,14 +7,14 @@
 
 use std::ops::Range;
 
-use crate::error::DemErrorKind;
-use crate::limits::SizeClaim;
-use crate::raster::{Raster, SampleFloat, Samples};
-use crate::sample_type::SampleType;
-use crate::windows::RasterWindow;
 use sandtable_base::bytes::ByteOrder;
 use sandtable_base::limits::RASTER_SAMPLES;
 use sandtable_base::limits::work_limit::WorkLimit;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::limits::SizeClaim;
+use sandtable_raster::raster::{Raster, SampleFloat, Samples};
+use sandtable_raster::sample_type::SampleType;
+use sandtable_raster::windows::RasterWindow;
 
 /// Places of the samples of one band in a file.
 #[derive(Clone, Copy, Debug)]

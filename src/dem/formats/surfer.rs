@@ -14,15 +14,15 @@
 
 use glam::DVec2;
 
-use crate::error::DemErrorKind;
+use crate::dem_file::DemFile;
+use crate::dem_format::{DemFormat, Recognition, any_size};
 use crate::formats::sample_layout::{NoData, SampleLayout};
 use crate::formats::text::{TextWords, number};
-use crate::formats::{DemFormat, Recognition, any_size};
-use crate::limits::SizeClaim;
-use crate::raster::{Raster, Samples, north_up_nodes};
-use crate::read::DemFile;
-use crate::sample_type::SampleType;
 use sandtable_base::bytes::{ByteFields, ByteOrder, bytes_at};
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::limits::SizeClaim;
+use sandtable_raster::raster::{Raster, Samples, north_up_nodes};
+use sandtable_raster::sample_type::SampleType;
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "Surfer grid",
@@ -161,7 +161,8 @@ fn grid_7(fields: ByteFields, at: usize, data: &[u8]) -> Result<SurferGrid, DemE
 
 #[cfg(test)]
 mod tests {
-    use crate::read::{DemHints, read};
+    use crate::hints::DemHints;
+    use crate::read::read;
 
     fn binary_6(heights: &[f32]) -> Vec<u8> {
         let mut bytes = b"DSBB\x02\0\x03\0".to_vec();

@@ -12,13 +12,13 @@
 
 use glam::{DAffine2, DMat2, DVec2, DVec3};
 
-use crate::error::DemErrorKind;
+use crate::dem_file::DemFile;
+use crate::dem_format::{DemFormat, Recognition, any_size};
 use crate::formats::sample_layout::{NoData, SampleLayout};
-use crate::formats::{DemFormat, Recognition, any_size};
-use crate::raster::Raster;
-use crate::read::DemFile;
-use crate::sample_type::SampleType;
 use sandtable_base::bytes::{ByteFields, ByteOrder, bytes_at};
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::raster::Raster;
+use sandtable_raster::sample_type::SampleType;
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "Terragen terrain",
@@ -112,7 +112,8 @@ fn scale_at(fields: ByteFields, at: usize) -> Result<DVec3, DemErrorKind> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::read::{DemHints, read};
+    use crate::hints::DemHints;
+    use crate::read::read;
 
     fn terrain(heights: &[i16]) -> Vec<u8> {
         let mut bytes = START.to_vec();

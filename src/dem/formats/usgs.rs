@@ -14,14 +14,14 @@
 
 use glam::DVec2;
 
-use crate::error::DemErrorKind;
-use crate::formats::{DemFormat, Recognition, any_size};
-use crate::georef::utm_code;
-use crate::limits::SizeClaim;
-use crate::raster::{Raster, Samples, north_up_nodes};
-use crate::read::DemFile;
-use crate::units::{FOOT_M, US_SURVEY_FOOT_M};
+use crate::dem_file::DemFile;
+use crate::dem_format::{DemFormat, Recognition, any_size};
 use sandtable_geom::crs::Crs;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::georef::utm_code;
+use sandtable_raster::limits::SizeClaim;
+use sandtable_raster::raster::{Raster, Samples, north_up_nodes};
+use sandtable_raster::units::{FOOT_M, US_SURVEY_FOOT_M};
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "USGS elevation model",
@@ -271,7 +271,8 @@ impl FixedText<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::read::{DemHints, read};
+    use crate::hints::DemHints;
+    use crate::read::read;
 
     /// Two profiles of three and two heights, 30 m apart, in UTM zone 10; the second starts a row further north.
     fn model(unit: u32, datums: &str) -> Vec<u8> {

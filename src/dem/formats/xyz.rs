@@ -6,12 +6,12 @@
 
 use glam::{DVec2, DVec3, U64Vec2};
 
-use crate::error::DemErrorKind;
-use crate::formats::{DemFormat, Recognition, any_size};
+use crate::dem_file::DemFile;
+use crate::dem_format::{DemFormat, Recognition, any_size};
 use crate::point_text::PointText;
-use crate::raster::{Raster, Samples, north_up_nodes};
-use crate::read::DemFile;
 use sandtable_base::limits::RASTER_SAMPLES;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::raster::{Raster, Samples, north_up_nodes};
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "XYZ grid",
@@ -172,7 +172,8 @@ impl XyzGrid {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::read::{DemHints, read};
+    use crate::hints::DemHints;
+    use crate::read::read;
 
     fn grid(text: &str) -> Result<Raster, String> {
         read("a.xyz", text.as_bytes(), &DemHints::default()).map_err(|error| error.to_string())

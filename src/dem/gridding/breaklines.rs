@@ -9,7 +9,7 @@ use spade::Triangulation;
 use spade::handles::FixedVertexHandle;
 
 use crate::gridding::sites::Sites;
-use crate::gridding::tin::{Constrained, TinVertex, vertex_of_site};
+use crate::gridding::web::{Constrained, TinVertex, vertex_of_site};
 
 /// The most points along one segment of a breakline: a segment across the largest grid has fewer half cells.
 const MOST_ALONG: f64 = 1e6;

@@ -46,8 +46,8 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::cell_grid::CellGrid;
     use sandtable_geom::rect::Rect;
+    use sandtable_raster::cell_grid::CellGrid;
 
     fn hull(points: &[(f64, f64)]) -> (Hull, Sites) {
         let points: Vec<DVec3> = points.iter().map(|&(x, y)| DVec3::new(x, y, 0.0)).collect();

@@ -18,8 +18,8 @@ use std::ops::Range;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-use crate::cell_grid::CellGrid;
 use crate::gridding::tin::Tin;
+use sandtable_raster::cell_grid::CellGrid;
 
 /// Rows per task: many, so that few triangles lie in two; few, so that all cores are busy to the end.
 const BAND_ROWS: usize = 16;

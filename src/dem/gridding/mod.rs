@@ -13,12 +13,15 @@
 //! hold no data by default: there, every method guesses.
 
 pub mod breaklines;
+pub mod error;
 mod hull;
 mod kd;
 mod linear;
+pub mod method;
 mod natural;
 mod sites;
 mod tin;
+mod web;
 mod weighted;
 
 use glam::{DVec2, DVec3};
@@ -26,45 +29,19 @@ use rayon::prelude::*;
 
 use sandtable_base::message::choice::{Choice, ChoiceWord, word};
 
-use crate::cell_grid::{CellGrid, CellGridError};
 use crate::gridding::breaklines::Crossings;
+use crate::gridding::error::GridError;
 use crate::gridding::hull::Hull;
 use crate::gridding::kd::KdTree;
 use crate::gridding::linear::CellCenters;
+use crate::gridding::method::GriddingMethod;
 use crate::gridding::natural::Naturals;
 use crate::gridding::sites::Sites;
 use crate::gridding::tin::Tin;
 use crate::gridding::weighted::WeightedSites;
-use crate::points::PointCloud;
-use crate::raster::{Raster, Samples};
-
-/// How the height at a cell's center comes from the points.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum GriddingMethod {
-    /// On the plane through the corners of the Delaunay triangle around it, breaklines kept as edges of triangles.
-    /// Continuous, with creases at the edges; reproduces planes.
-    Tin,
-    /// Sibson's natural neighbors (Sibson 1981): each neighbor weighs as the share of the cell's Voronoi region that
-    /// it would lose to a site there. Continuous, and smooth except at the points; reproduces planes.
-    Natural,
-    /// The mean of the nearest points, each weighing as its distance to the power of −`power` (Shepard 1968).
-    /// Discontinuous where the set of nearest points changes.
-    InverseDistance {
-        /// The number of points; at least 1.
-        k: u32,
-        /// The power; above 0.
-        power: f64,
-    },
-    /// The mean of the four points around, weighted by distance: the nearest point of each quadrant, weighing as its
-    /// distance to the power of −`power`. It draws on all sides even where points lie along lines, such as contours and
-    /// cross-sections. Quadrants without points are left out.
-    Quadrant {
-        /// The power; above 0.
-        power: f64,
-    },
-    /// The nearest point's.
-    Nearest,
-}
+use crate::points::cloud::PointCloud;
+use sandtable_raster::cell_grid::CellGrid;
+use sandtable_raster::raster::{Raster, Samples};
 
 /// The value of a cell outside the convex hull of the points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -107,22 +84,6 @@ pub struct GriddingReport {
     pub filled: usize,
 }
 
-/// Why no grid was made.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the messages explain the variants")]
-pub enum GridError {
-    #[error(transparent)]
-    Cells(#[from] CellGridError),
-    #[error("{what} is {value}; it must be {wanted}")]
-    Parameter { what: &'static str, value: f64, wanted: &'static str },
-    #[error("a point at {}, {} has the height {}: all three must be finite and below 1e60", .0.x, .0.y, .0.z)]
-    Unplaceable(DVec3),
-    #[error(
-        "all {0} positions lie on one line and no cell between them; give more points, or grid by distance (idw, quadrant or nearest) with the nearest point's height beyond the hull"
-    )]
-    Collinear(usize),
-}
-
 /// Makes a grid of a cloud: a [`Raster`] of `cells`, NaN where there is no data, with the cloud's system, unit and
 /// datum.
 ///
@@ -137,7 +98,7 @@ pub fn grid(
     method: GriddingMethod,
     beyond: BeyondHull,
 ) -> Result<Gridded, GridError> {
-    check(method)?;
+    method.check()?;
     let (heights, mut report) = heights(cloud, cells, method, beyond)?;
     report.filled = heights.iter().filter(|height| !height.is_nan()).count();
     let raster = Raster {
@@ -148,20 +109,6 @@ pub fn grid(
         ..Raster::new(cells.width(), Samples::F64(heights)).placed(cells.map_from_grid())
     };
     Ok(Gridded { raster, report })
-}
-
-fn check(method: GriddingMethod) -> Result<(), GridError> {
-    let power = match method {
-        GriddingMethod::InverseDistance { k: 0, .. } => {
-            return Err(GridError::Parameter { what: "k", value: 0.0, wanted: "at least 1" });
-        }
-        GriddingMethod::InverseDistance { power, .. } | GriddingMethod::Quadrant { power } => power,
-        GriddingMethod::Tin | GriddingMethod::Natural | GriddingMethod::Nearest => return Ok(()),
-    };
-    if power > 0.0 && power.is_finite() {
-        return Ok(());
-    }
-    Err(GridError::Parameter { what: "power", value: power, wanted: "a number above 0" })
 }
 
 fn heights(

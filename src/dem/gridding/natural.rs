@@ -21,11 +21,12 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-use crate::gridding::GridError;
+use crate::gridding::error::GridError;
 use crate::gridding::hull::Hull;
 use crate::gridding::linear::CellCenters;
 use crate::gridding::sites::Sites;
-use crate::gridding::tin::{OUTSIDE, Tin, delaunay, neighbors};
+use crate::gridding::tin::Tin;
+use crate::gridding::web::{OUTSIDE, delaunay, neighbors};
 
 /// Rows a task. A task starts its walk from the first triangle, whatever thread it runs on: where a center lies on an
 /// edge, the walk to it decides on which side it is taken.

@@ -7,7 +7,7 @@
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-use crate::gridding::GridError;
+use crate::gridding::error::GridError;
 
 /// The largest coordinate: spade's limit is 2²⁰⁰, about 1.6e60.
 const LARGEST: f64 = 1e60;

@@ -8,10 +8,10 @@ use std::ops::Range;
 use glam::DVec2;
 use rayon::prelude::*;
 
-use crate::gridding::GriddingMethod;
 use crate::gridding::hull::Hull;
 use crate::gridding::kd::{KdTree, Near, NearestSites};
 use crate::gridding::linear::CellCenters;
+use crate::gridding::method::GriddingMethod;
 use crate::gridding::sites::Sites;
 
 /// Cells along the side of a tile whose cells share a search.

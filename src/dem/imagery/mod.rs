@@ -12,15 +12,16 @@ use std::io::Cursor;
 use glam::{DAffine2, DVec2};
 use image::{DynamicImage, ImageFormat, ImageReader};
 
-use crate::error::DemErrorKind;
-use crate::georef;
+use crate::companion::world_file;
+use crate::dem_file::DemFile;
+use crate::hints::DemHints;
 use crate::imagery::reduce::{Reducer, Rgba};
 use crate::imagery::tiff_colors::TiffColors;
-use crate::read::{DemFile, DemHints};
-use crate::tiff::geotiff;
-use crate::windows::RasterWindow;
+use crate::tiff::header;
 use sandtable_base::limits::IMAGERY_PIXELS;
 use sandtable_geom::crs::{Crs, CrsError};
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::windows::RasterWindow;
 
 /// Why a picture of the ground was not read.
 #[derive(Debug, thiserror::Error)]
@@ -112,7 +113,7 @@ impl<'a> Imagery<'a> {
 
     fn opened(name: &'a str, bytes: &'a [u8], hints: &DemHints) -> Result<Self, ImageryErrorKind> {
         let file = DemFile { name, bytes, hints };
-        if geotiff::recognizes(bytes) {
+        if header::recognizes(bytes) {
             let (colors, raster) = TiffColors::open(&file)?;
             if !raster.georeferenced {
                 return Err(ImageryErrorKind::NoPlace(".tfw or .wld"));
@@ -141,7 +142,7 @@ impl<'a> Imagery<'a> {
         }
         let text = world_files.iter().find_map(|extension| file.companion(extension));
         let text = text.ok_or(ImageryErrorKind::NoPlace(remedy))?;
-        let map_from_grid = georef::world_file(&String::from_utf8_lossy(&text))?;
+        let map_from_grid = world_file(&String::from_utf8_lossy(&text))?;
         Ok(Self {
             name,
             bytes,
@@ -217,7 +218,7 @@ impl ColorRaster {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::read::DemOptions;
+    use crate::hints::DemOptions;
 
     fn png(width: u32, height: u32, color: impl Fn(u32, u32) -> Rgba) -> Vec<u8> {
         let image = image::RgbaImage::from_fn(width, height, |x, y| image::Rgba(color(x, y)));

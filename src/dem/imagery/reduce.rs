@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use glam::{DAffine2, DVec2, Vec3, Vec4};
 
 use crate::imagery::ColorRaster;
-use crate::windows::RasterWindow;
+use sandtable_raster::windows::RasterWindow;
 
 /// Red, green, blue in sRGB and straight alpha.
 pub type Rgba = [u8; 4];

@@ -11,22 +11,20 @@ use rayon::prelude::*;
 use tiff::decoder::Decoder;
 use tiff::tags::Tag;
 
-use crate::error::DemErrorKind;
+use crate::dem_file::DemFile;
 use crate::imagery::reduce::{Reducer, Rgba};
 use crate::imagery::{ColorRaster, ImageryErrorKind};
-use crate::raster::Raster;
-use crate::read::DemFile;
-use crate::tiff::geotiff::{GeoTiffHeader, limits};
-use crate::tiff::image_kind;
+use crate::tiff::decoder::limits;
+use crate::tiff::decoder::{IS_MASK, IS_REDUCED, image_kind};
+use crate::tiff::fault::{self, decode_error};
+use crate::tiff::header::GeoTiffHeader;
 use crate::tiff::jpeg_block::{self, JpegBlock};
-use crate::tiff::storage::{Packing, Predictor, Storage, TiffBlock, decode_error};
+use crate::tiff::storage::{Packing, Predictor, Storage, TiffBlock};
 use crate::tiff::unpack::{Unpacker, packed};
-use crate::windows::RasterWindow;
 use sandtable_base::limits::{TIFF_IMAGES, WINDOWED_SAMPLES};
-
-/// NewSubfileType's bits for "reduced version of another image" and "mask".
-const IS_REDUCED: u32 = 1;
-const IS_MASK: u32 = 4;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::raster::Raster;
+use sandtable_raster::windows::RasterWindow;
 
 /// The images of a TIFF that show the same ground.
 pub(super) struct TiffColors {
@@ -265,7 +263,7 @@ impl ColorLayout {
 fn palette(values: &[u16]) -> Result<Vec<[u8; 3]>, DemErrorKind> {
     let count = values.len() / 3;
     if count == 0 {
-        return Err(crate::tiff::geotiff::FORMAT.broken("it has no palette"));
+        return Err(fault::broken("it has no palette"));
     }
     let high = |at: usize| (values[at] >> 8) as u8;
     Ok((0..count).map(|at| [high(at), high(count + at), high(2 * count + at)]).collect())
@@ -274,8 +272,8 @@ fn palette(values: &[u16]) -> Result<Vec<[u8; 3]>, DemErrorKind> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::hints::DemHints;
     use crate::imagery::Imagery;
-    use crate::read::DemHints;
     use tiff::encoder::{Predictor as Encoded, TiffEncoder, colortype};
 
     /// An image of `width` × `height` with a place, of which a pixel is (column, row, 9).

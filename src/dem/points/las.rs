@@ -10,9 +10,11 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
+use crate::points::cloud::{PointCloud, PointHints};
+use crate::points::error::PointsError;
 use crate::points::las_crs::LasCrs;
 use crate::points::las_header::LasHeader;
-use crate::points::{PointCloud, PointHints, PointsError, laz};
+use crate::points::laz;
 use sandtable_base::bytes::ByteFields;
 
 /// The class of the ground.

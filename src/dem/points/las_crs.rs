@@ -3,11 +3,11 @@
 //! Heights are in the vertical unit that is stated, else in the unit of x and y, as ASPRS LAS 1.4 R15 has it of a
 //! system that states one unit only. That heights were taken for feet is noted: so much depends on it.
 
-use crate::points::PointsError;
+use crate::points::error::PointsError;
 use crate::points::las_header::{LasHeader, Record};
 use crate::tiff::geokeys::GeoKeys;
-use crate::vertical;
 use sandtable_geom::crs::Crs;
+use sandtable_raster::vertical;
 
 /// The owner of the records of coordinate systems, and their numbers.
 const OWNER: &[u8] = b"LASF_Projection";

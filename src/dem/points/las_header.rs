@@ -6,10 +6,10 @@
 use glam::DVec3;
 use las::raw::header::Header;
 
-use crate::error::DemErrorKind;
-use crate::points::PointsError;
+use crate::points::error::PointsError;
 use sandtable_base::bytes::ByteFields;
 use sandtable_base::limits::GRID_POINTS;
+use sandtable_raster::error::DemErrorKind;
 
 /// Set in the format of a compressed file.
 const COMPRESSED: u8 = 0x80;

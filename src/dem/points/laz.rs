@@ -15,10 +15,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use laz::{LasZipDecompressor, LazItem, LazItemRecordBuilder, LazItemType, LazVlr};
 
-use crate::error::DemErrorKind;
-use crate::points::PointsError;
+use crate::points::error::PointsError;
 use crate::points::las_header::{LasHeader, broken, unsupported};
 use sandtable_base::bytes::{ByteFields, bytes_at};
+use sandtable_raster::error::DemErrorKind;
 
 const BATCH: u64 = 1 << 16;
 

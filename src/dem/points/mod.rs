@@ -1,8 +1,7 @@
 //! Scattered points of known height, and their readers: text ([`table`]), LAS and LAZ ([`las`]).
-//!
-//! A cloud is the result of a survey: points in no order, lines along which the ground breaks, a system for their x and
-//! y and a unit for their z. [`crate::gridding`] makes a grid of it.
 
+pub mod cloud;
+pub mod error;
 #[cfg(feature = "las")]
 pub mod las;
 #[cfg(feature = "las")]
@@ -13,89 +12,8 @@ mod las_header;
 mod laz;
 pub mod table;
 
-use glam::DVec3;
-
-use crate::error::DemErrorKind;
-use sandtable_base::limits::GRID_POINTS;
-use sandtable_geom::crs::Crs;
-
-/// Points and breaklines in one coordinate system.
-#[derive(Clone, Debug)]
-pub struct PointCloud {
-    /// Easting (or longitude), northing (or latitude) and height; finite.
-    pub points: Vec<DVec3>,
-    /// Lines along which the ground breaks and which it follows, each of at least two vertices.
-    pub breaklines: Vec<Vec<DVec3>>,
-    /// The system of x and y; `None` where the file names none.
-    pub crs: Option<Crs>,
-    /// Meters in one unit of the heights.
-    pub meters_per_z: f64,
-    /// The vertical datum in the file's words; `None` where it is not stated.
-    pub vertical_datum: Option<String>,
-    /// Notes for the user on omissions and assumptions.
-    pub notes: Vec<String>,
-}
-
-impl PointCloud {
-    /// Points in meters, in no named system.
-    pub fn new(points: Vec<DVec3>) -> Self {
-        let (breaklines, notes) = (Vec::new(), Vec::new());
-        Self { points, breaklines, crs: None, meters_per_z: 1.0, vertical_datum: None, notes }
-    }
-}
-
-/// Options for reading a file of points.
-#[derive(Clone, Debug, Default)]
-pub struct PointHints<'a> {
-    /// The system of x and y, in place of the file's.
-    pub crs: Option<&'a Crs>,
-    /// The classes of LAS points that are taken. Empty: ground (class 2) where the file has any, else all.
-    pub classes: &'a [u8],
-}
-
-/// Why a file of points was not read.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the messages explain the variants")]
-pub enum PointsError {
-    #[error("line {line}: found '{found}', each line must hold numbers x, y, z")]
-    Line {
-        /// The line, from 1.
-        line: usize,
-        /// Its text, cut where it is long.
-        found: String,
-    },
-    #[error("line {line}: the header '{found}' must name columns x, y and z (or lon, lat and elevation)")]
-    Columns {
-        /// The line, from 1.
-        line: usize,
-        /// Its text, cut where it is long.
-        found: String,
-    },
-    #[error("byte {0} is not UTF-8 text; points are read from text (.xyz, .csv, .txt), LAS and LAZ")]
-    NotText(usize),
-    /// The file holds no points with a height, and this number of points without one.
-    #[error("it holds no points{}", if *.0 > 0 { " that have a height" } else { "" })]
-    Empty(usize),
-    #[error("it holds no points of class {wanted}; it has {found}")]
-    NoClass {
-        wanted: String,
-        /// The classes of the file, with their counts.
-        found: String,
-    },
-    #[error(
-        "{0} points are more than the {GRID_POINTS} that are read; thin or cut the file, or {GRID_POINTS:#}"
-    )]
-    TooMany(u64),
-    /// The LAS or LAZ file is broken, or of a kind that is not read.
-    #[error(transparent)]
-    File(#[from] DemErrorKind),
-    #[error(
-        "this is a LAS or LAZ file, and this program was built without the feature `las`: build it with --features las, or convert the points to text"
-    )]
-    WithoutLas,
-    #[error("{0}; or state the right one with --crs")]
-    Crs(#[source] DemErrorKind),
-}
+use crate::points::cloud::{PointCloud, PointHints};
+use crate::points::error::PointsError;
 
 fn is_las(bytes: &[u8]) -> bool {
     bytes.starts_with(b"LASF")

@@ -4,7 +4,8 @@
 //! error with its number: a line dropped silently would leave a hole.
 
 use crate::point_text::PointText;
-use crate::points::{PointCloud, PointHints, PointsError};
+use crate::points::cloud::{PointCloud, PointHints};
+use crate::points::error::PointsError;
 use sandtable_base::limits::GRID_POINTS;
 
 /// Reads a table of points.

@@ -18,11 +18,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use crate::error::DemErrorKind;
-use crate::raster::{SampleFloat, Samples};
 use crate::tiff::rows::{RowDecoder, RowWords};
 use crate::tiff::storage::{Storage, TiffBlock};
 use crate::tiff::unpack::{BlockBytes, Unpacker};
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::raster::{SampleFloat, Samples};
 
 /// Tasks for each thread: several, since blocks over flat ground are done sooner; few, since each sets up decompressors.
 const TASKS_PER_THREAD: usize = 6;

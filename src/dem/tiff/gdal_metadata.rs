@@ -1,8 +1,8 @@
 //! GDAL's metadata tag: XML with scale, offset and unit of bands.
 
-use crate::error::DemErrorKind;
-use crate::tiff::geotiff::FORMAT;
-use crate::units::length_of_name;
+use crate::tiff::fault;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::units::length_of_name;
 
 pub(crate) const GDAL_METADATA: u16 = 42112;
 
@@ -45,12 +45,12 @@ fn attribute<'a>(head: &'a str, name: &str) -> Option<&'a str> {
 
 fn number(what: &str, text: &str) -> Result<f64, DemErrorKind> {
     let value = text.parse().ok().filter(|value: &f64| value.is_finite());
-    value.ok_or_else(|| FORMAT.broken(format!("the {what} of its values is '{text}', not a number")))
+    value.ok_or_else(|| fault::broken(format!("the {what} of its values is '{text}', not a number")))
 }
 
 fn unit(text: &str) -> Result<f64, DemErrorKind> {
     let remedy = "convert it to meters first, for example with gdal_calc.py";
-    length_of_name(text).ok_or_else(|| FORMAT.unsupported(format!("the vertical unit '{text}'"), remedy))
+    length_of_name(text).ok_or_else(|| fault::unsupported(format!("the vertical unit '{text}'"), remedy))
 }
 
 #[cfg(test)]

@@ -1,12 +1,12 @@
 //! Reading GeoTIFF keys (OGC 19-008r4): the coordinate system, the vertical unit, and whether samples are
 //! points or areas.
 
-use crate::error::DemErrorKind;
 use crate::tiff::geokey_codes as key;
-use crate::units::{FOOT_M, US_SURVEY_FOOT_M, length_of_code};
-use crate::vertical;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::projection::{Datum, Definition, Ellipsoid, MapProjection};
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::units::{FOOT_M, US_SURVEY_FOOT_M, length_of_code};
+use sandtable_raster::vertical;
 
 /// The value of a key.
 #[derive(Clone, Debug)]

@@ -6,31 +6,28 @@
 //! resolution). Scale, offset, unit and no-data value come from GDAL's tags. An unsupported compression is
 //! refused by name.
 
-use std::io::{Cursor, Read, Seek};
+use std::io::Cursor;
 
-use glam::DAffine2;
-use tiff::decoder::{Decoder, Limits, ifd};
-use tiff::tags::Tag;
+use tiff::decoder::Decoder;
 
-use crate::error::DemErrorKind;
-use crate::formats::{DemFormat, FileContent, Recognition, any_size};
-use crate::georef;
-use crate::raster::{Raster, Samples};
-use crate::read::DemFile;
+use crate::dem_file::DemFile;
+use crate::dem_format::{DemFormat, Recognition, any_size};
 use crate::tiff::blocks;
-use crate::tiff::gdal_metadata::{BandMetadata, GDAL_METADATA};
-use crate::tiff::geokeys::GeoKeys;
+use crate::tiff::decoder::limits;
+use crate::tiff::fault::{self, decode_error};
+use crate::tiff::header::{GeoTiffHeader, all_absent, recognizes};
 use crate::tiff::mask;
-use crate::tiff::place::PlaceTags;
-use crate::tiff::storage::{Storage, decode_error};
+use crate::tiff::storage::Storage;
 use crate::tiff::windows::GeoTiffWindows;
 use crate::tiff::write::{write, write_windows};
-use crate::windows::Windows;
 use sandtable_base::limits::RASTER_SAMPLES;
-use sandtable_base::limits::TIFF_TAG_BYTES;
+use sandtable_raster::content::FileContent;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::raster::Raster;
+use sandtable_raster::windows::Windows;
 
 pub(crate) static FORMAT: DemFormat = DemFormat {
-    name: "GeoTIFF",
+    name: fault::NAME,
     extensions: &["tif", "tiff"],
     shared_extensions: &[],
     recognition: Recognition::Content { matches: recognizes, start: "the signature of a TIFF file" },
@@ -40,14 +37,6 @@ pub(crate) static FORMAT: DemFormat = DemFormat {
     writer: Some(write),
     windows_writer: Some(write_windows),
 };
-
-/// The most bytes of a text tag; GDAL's metadata takes a few kilobytes.
-const LARGEST_TEXT: u64 = 1 << 20;
-
-/// Whether the content starts as TIFF or BigTIFF does.
-pub(crate) fn recognizes(bytes: &[u8]) -> bool {
-    [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"].iter().any(|start| bytes.starts_with(*start))
-}
 
 /// Opens the first band of the first image.
 fn windows(
@@ -78,92 +67,13 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
     Ok(Raster { samples: samples.scaled(scale, offset), ..raster })
 }
 
-/// The error of a file that is all no data.
-pub(crate) fn all_absent() -> DemErrorKind {
-    FORMAT.broken("none of its blocks was ever written, so that all of it is no data")
-}
-
-/// The most that the decoder may allocate for a file of `file_bytes` bytes. It reads tags; blocks are unpacked elsewhere.
-pub(crate) fn limits(file_bytes: usize) -> Limits {
-    let mut limits = Limits::default();
-    let most_bytes = TIFF_TAG_BYTES.count().max(1024);
-    limits.ifd_value_size = file_bytes.clamp(1024, most_bytes);
-    // The decoder keeps a value of a tag in 32 bytes, and allocates what a tag claims before it looks whether the file holds it.
-    limits.decoding_buffer_size = 32 * file_bytes.clamp(1024, (most_bytes / 8).max(1024));
-    limits
-}
-
-/// All that a file states but its samples.
-pub(crate) struct GeoTiffHeader {
-    /// The raster without its samples.
-    pub raster: Raster,
-    /// The factor of stored values.
-    pub scale: f64,
-    /// The offset that is added after scaling.
-    pub offset: f64,
-}
-
-impl GeoTiffHeader {
-    /// Reads the tags of the decoder's current image. A tag of the wrong type counts as absent, as in GDAL.
-    pub fn read<R: Read + Seek>(
-        decoder: &mut Decoder<R>,
-        storage: &Storage,
-        file: &DemFile,
-    ) -> Result<Self, DemErrorKind> {
-        let keys = geo_keys(decoder);
-        let mut numbers = |tag: Tag| decoder.get_tag_f64_vec(tag).unwrap_or_default();
-        let place = PlaceTags {
-            scale: numbers(Tag::ModelPixelScaleTag),
-            ties: numbers(Tag::ModelTiepointTag),
-            matrix: numbers(Tag::ModelTransformationTag),
-            is_point: keys.is_point(),
-        };
-        let nodata = text(decoder, Tag::GdalNodata).trim().trim_start_matches('+').parse().ok();
-        let band = BandMetadata::first_band(&text(decoder, Tag::Unknown(GDAL_METADATA)))?;
-        let raster = Raster {
-            driver: "GTiff",
-            data_type: storage.sample.map_or("Byte", |sample| sample.gdal_name()),
-            width: storage.width,
-            height: storage.height,
-            samples: Samples::F32(Vec::new()),
-            meters_per_z: band.meters_per_z.or(keys.meters_per_z()?).unwrap_or(1.0),
-            map_from_grid: DAffine2::IDENTITY,
-            georeferenced: false,
-            crs: file.crs_or(|| keys.crs())?,
-            nodata,
-            vertical_datum: keys.vertical_datum(),
-        };
-        let raster = georef::placed(file, raster, place.map_from_grid()?, &["tfw", "tifw", "wld"])?;
-        Ok(Self { raster, scale: band.scale, offset: band.offset })
-    }
-}
-
-fn geo_keys<R: Read + Seek>(decoder: &mut Decoder<R>) -> GeoKeys {
-    let directory = decoder.get_tag_u16_vec(Tag::GeoKeyDirectoryTag).unwrap_or_default();
-    let doubles = decoder.get_tag_f64_vec(Tag::GeoDoubleParamsTag).unwrap_or_default();
-    GeoKeys::new(&directory, &doubles, &text(decoder, Tag::GeoAsciiParamsTag))
-}
-
-/// A tag of text, or of bytes that are text, up to its first NUL; empty where absent.
-fn text<R: Read + Seek>(decoder: &mut Decoder<R>, tag: Tag) -> String {
-    // The decoder allocates what a text tag claims before it checks whether the file holds it.
-    let claimed = decoder.image_ifd().find_entry(tag).map_or(0, |entry| entry.count());
-    if claimed > LARGEST_TEXT {
-        return String::new();
-    }
-    let found = match decoder.find_tag(tag) {
-        Ok(Some(ifd::Value::Ascii(text))) => text,
-        Ok(Some(other)) => String::from_utf8_lossy(&other.into_u8_vec().unwrap_or_default()).into_owned(),
-        _ => String::new(),
-    };
-    found.split('\0').next().unwrap_or_default().to_owned()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::read::{DemHints, read};
+    use crate::hints::DemHints;
+    use crate::read::read;
     use tiff::encoder::{TiffEncoder, colortype};
+    use tiff::tags::Tag;
 
     fn file(values: &[f32], nodata: &str) -> Vec<u8> {
         let mut file = Cursor::new(Vec::new());

@@ -8,22 +8,18 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use glam::UVec2;
 use tiff::decoder::Decoder;
 
-use crate::error::DemErrorKind;
-use crate::formats::{FileContent, ReadByPlace};
-use crate::tiff::geotiff::{self, FORMAT};
-use crate::tiff::image_kind;
-use crate::tiff::mask::IS_MASK;
-use crate::tiff::storage::{Storage, decode_error};
+use crate::tiff::decoder::{IS_MASK, IS_REDUCED, image_kind, limits};
+use crate::tiff::fault::{self, decode_error};
+use crate::tiff::storage::Storage;
 use crate::tiff::unpack::BlockBytes;
 use sandtable_base::limits::BLOCK_SAMPLES;
 use sandtable_base::limits::TIFF_IMAGES;
 use sandtable_base::limits::WINDOWED_SAMPLES;
+use sandtable_raster::content::{FileContent, ReadByPlace};
+use sandtable_raster::error::DemErrorKind;
 
 /// The most bytes that one block decodes to: the largest with 64-bit samples.
 const LARGEST_BLOCK: usize = 32 << 20;
-
-/// NewSubfileType's bit for "reduced version of another image".
-const IS_REDUCED: u32 = 1;
 
 /// A reduced image of the same ground in the same file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,9 +65,9 @@ impl<R: FileContent> SharedFile<R> {
     }
 
     pub fn decoder<'a>(&self, file: &'a mut R) -> Result<Decoder<BufReader<&'a mut R>>, DemErrorKind> {
-        file.rewind().map_err(|error| FORMAT.unread(error))?;
+        file.rewind().map_err(fault::unread)?;
         let decoder = Decoder::new(BufReader::new(file)).map_err(decode_error)?;
-        Ok(decoder.with_limits(geotiff::limits(self.length)))
+        Ok(decoder.with_limits(limits(self.length)))
     }
 
     /// How one image of the file is stored.
@@ -89,14 +85,14 @@ impl<R: FileContent> SharedFile<R> {
             return Err(DemErrorKind::LargeBlocks(UVec2::new(across, down)));
         }
         if storage.decoded_bytes(samples) > LARGEST_BLOCK as u64 {
-            return Err(FORMAT.unsupported(
+            return Err(fault::unsupported(
                 format!("blocks of {across} x {down} samples"),
                 "rewrite it in tiles, for example with: gdal_translate -co TILED=YES FILE out.tif",
             ));
         }
         let blocks = u64::from(storage.width.div_ceil(across)) * u64::from(storage.height.div_ceil(down));
         if blocks > u64::from(u32::MAX) {
-            return Err(FORMAT.broken(format!("it claims {blocks} blocks")));
+            return Err(fault::broken(format!("it claims {blocks} blocks")));
         }
         Ok(storage)
     }

@@ -14,9 +14,9 @@ use zune_core::colorspace::ColorSpace;
 use zune_core::options::DecoderOptions;
 use zune_jpeg::JpegDecoder;
 
-use crate::error::DemErrorKind;
-use crate::tiff::geotiff::FORMAT;
-use crate::tiff::storage::{Storage, TO_DEFLATE, TiffBlock};
+use crate::tiff::fault::{self, TO_DEFLATE};
+use crate::tiff::storage::{Storage, TiffBlock};
+use sandtable_raster::error::DemErrorKind;
 
 /// Bytes of a marker: the start of the image, and its end.
 const MARKER: usize = 2;
@@ -51,7 +51,7 @@ pub(crate) fn decode(
         .set_max_width(storage.block_width as usize)
         .set_max_height(storage.block_height as usize);
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(&stream), options);
-    let broken = |error| FORMAT.broken(format!("block {} is no sound JPEG ({error})", block.index));
+    let broken = |error| fault::broken(format!("block {} is no sound JPEG ({error})", block.index));
     decoder.decode_headers().map_err(broken)?;
     let bands = usize::from(storage.bands_per_block);
     let input = decoder.input_colorspace().unwrap_or(ColorSpace::Unknown);
@@ -62,7 +62,7 @@ pub(crate) fn decode(
         (ColorSpace::YCbCr | ColorSpace::RGB, 3) => input,
         _ => {
             let found = format!("JPEG blocks of {} components for {bands} bands", input.num_components());
-            return Err(FORMAT.unsupported(found, TO_DEFLATE));
+            return Err(fault::unsupported(found, TO_DEFLATE));
         }
     };
     decoder.set_options(options.jpeg_set_out_colorspace(output));
@@ -71,7 +71,9 @@ pub(crate) fn decode(
     let is_whole = width >= block.window.width as usize && height >= block.window.height as usize;
     if !is_whole || samples.len() < width * height * bands {
         let index = block.index;
-        return Err(FORMAT.broken(format!("block {index} is a JPEG of {width} x {height} pixels, too small")));
+        return Err(fault::broken(format!(
+            "block {index} is a JPEG of {width} x {height} pixels, too small"
+        )));
     }
     Ok(JpegBlock { samples, row_bytes: width * bands })
 }

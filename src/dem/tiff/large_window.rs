@@ -16,13 +16,13 @@ use std::{io, mem};
 
 use rayon::prelude::*;
 
-use crate::error::DemErrorKind;
-use crate::formats::FileContent;
-use crate::raster::{SampleFloat, Samples};
-use crate::tiff::geotiff::FORMAT;
+use crate::tiff::fault;
 use crate::tiff::unpack::BlockBytes;
 use crate::tiff::windows::GeoTiffWindows;
-use crate::windows::RasterWindow;
+use sandtable_raster::content::FileContent;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::raster::{SampleFloat, Samples};
+use sandtable_raster::windows::RasterWindow;
 
 /// Samples that a thread decodes together, if rows of blocks hold no more: strips are often single rows.
 const BAND_SAMPLES: u32 = 1 << 17;
@@ -89,7 +89,7 @@ impl<R: FileContent> GeoTiffWindows<R> {
     }
 
     fn fill<E: SampleFloat>(&self, band: &mut Band<'_, E>) -> Result<(), DemErrorKind> {
-        let mut file = self.run_of(band.window).map_err(|error| FORMAT.unread(error))?;
+        let mut file = self.run_of(band.window).map_err(fault::unread)?;
         let mut decoder = self.plain_decoder()?;
         let RasterWindow { column, row, width, .. } = band.window;
         for at in self.blocks_meeting(band.window) {

@@ -5,19 +5,17 @@ use std::io::{Cursor, Read, Seek};
 
 use tiff::decoder::Decoder;
 
-use crate::error::DemErrorKind;
-use crate::raster::Samples;
-use crate::read::DemFile;
-use crate::tiff::geotiff::{FORMAT, limits};
-use crate::tiff::image_kind;
-use crate::tiff::storage::{Predictor, Storage, decode_error};
+use crate::dem_file::DemFile;
+use crate::tiff::decoder::limits;
+use crate::tiff::decoder::{IS_MASK, image_kind};
+use crate::tiff::fault::{self, decode_error};
+use crate::tiff::storage::{Predictor, Storage};
 use crate::tiff::unpack::{BlockBytes, Unpacker};
-use crate::windows::RasterWindow;
 use sandtable_base::limits::RASTER_SAMPLES;
 use sandtable_base::limits::TIFF_IMAGES;
-
-/// NewSubfileType's bit for "mask of another image".
-pub(crate) const IS_MASK: u32 = 4;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::raster::Samples;
+use sandtable_raster::windows::RasterWindow;
 
 /// The bytes of the `.msk` file in which GDAL keeps a mask.
 pub(crate) fn file_beside(file: &DemFile) -> Option<Vec<u8>> {
@@ -36,8 +34,10 @@ pub(crate) fn apply_beside(
     if found == (width, height) {
         return hide(&mut decoder, bytes, samples);
     }
-    Err(FORMAT
-        .broken(format!("the mask beside it has {} x {} samples, not {width} x {height}", found.0, found.1)))
+    Err(fault::broken(format!(
+        "the mask beside it has {} x {} samples, not {width} x {height}",
+        found.0, found.1
+    )))
 }
 
 /// Sets the samples to NaN that a mask of the same size among the later images hides; returns whether there is one.
@@ -74,11 +74,11 @@ fn hide<R: Read + Seek>(
 /// Checks that a mask is stored in a way that is read.
 pub(crate) fn check(storage: &Storage) -> Result<(), DemErrorKind> {
     if !matches!(storage.bits, 1 | 8) {
-        return Err(FORMAT.broken(format!("its mask has {} bits", storage.bits)));
+        return Err(fault::broken(format!("its mask has {} bits", storage.bits)));
     }
     if storage.predictor != Predictor::Plain || storage.bands_per_block != 1 {
         let remedy = "convert it, for example with: gdal_translate FILE out.tif";
-        return Err(FORMAT.unsupported("a mask of several bands or with a predictor", remedy));
+        return Err(fault::unsupported("a mask of several bands or with a predictor", remedy));
     }
     Ok(())
 }

@@ -1,10 +1,13 @@
 //! GeoTIFF: the storage and the georeference of images, reading in whole or in windows, and writing.
 
 mod blocks;
+pub(crate) mod decoder;
+pub(crate) mod fault;
 mod gdal_metadata;
 mod geokey_codes;
 pub mod geokeys;
 pub(crate) mod geotiff;
+pub(crate) mod header;
 pub mod images;
 pub(crate) mod jpeg_block;
 mod large_window;
@@ -16,13 +19,3 @@ pub(crate) mod unpack;
 pub mod windows;
 pub mod write;
 mod write_geokeys;
-
-use std::io::{Read, Seek};
-
-use tiff::decoder::Decoder;
-use tiff::tags::Tag;
-
-/// The bits of NewSubfileType of the decoder's current image; 0 where it has none.
-pub(crate) fn image_kind<R: Read + Seek>(decoder: &mut Decoder<R>) -> u32 {
-    decoder.find_tag_unsigned(Tag::NewSubfileType).ok().flatten().unwrap_or(0)
-}

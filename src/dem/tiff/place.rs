@@ -2,9 +2,9 @@
 
 use glam::{DAffine2, DMat2, DVec2};
 
-use crate::error::DemErrorKind;
-use crate::georef::{affine, checked};
-use crate::raster::north_up;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::georef::{affine, checked};
+use sandtable_raster::raster::north_up;
 
 /// How far, in samples, a tie point may lie from the map that is fitted through all of them.
 const TIE_TOLERANCE: f64 = 1e-3;

@@ -15,11 +15,11 @@
 //! the plain sum of the quarters before it, which takes no chain: so four shorter chains run side by side and yield
 //! samples as they go.
 
-use crate::error::DemErrorKind;
-use crate::raster::SampleFloat;
-use crate::sample_type::SampleType;
 use crate::tiff::storage::{Predictor, Storage};
 use sandtable_base::bytes::ByteOrder;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::raster::SampleFloat;
+use sandtable_raster::sample_type::SampleType;
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RowDecoder {

@@ -12,22 +12,16 @@
 
 use std::io::{Read, Seek};
 
-use tiff::TiffError;
 use tiff::decoder::{ChunkType, Decoder};
 use tiff::tags::Tag;
 
-use crate::error::DemErrorKind;
-use crate::limits::SizeClaim;
-use crate::sample_type::{NumberKind, SampleType};
-use crate::tiff::geotiff::FORMAT;
-use crate::windows::RasterWindow;
+use crate::tiff::fault::{self, TO_DEFLATE, decode_error};
 use sandtable_base::bytes::ByteOrder;
-use sandtable_base::limits::TIFF_TAG_BYTES;
 use sandtable_base::limits::work_limit::WorkLimit;
-
-/// The remedy for an unsupported compression.
-pub(crate) const TO_DEFLATE: &str =
-    "convert it, for example with: gdal_translate -co COMPRESS=DEFLATE FILE out.tif";
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::limits::SizeClaim;
+use sandtable_raster::sample_type::{NumberKind, SampleType};
+use sandtable_raster::windows::RasterWindow;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Storage {
@@ -149,7 +143,7 @@ impl Storage {
 
     fn check(&self, file_bytes: usize, most_samples: &'static WorkLimit) -> Result<(), DemErrorKind> {
         if self.bands_per_block == 0 {
-            return Err(FORMAT.broken("it has no band"));
+            return Err(fault::broken("it has no band"));
         }
         let expansion = expansion(self.packing);
         let bytes = u64::from(self.bits.div_ceil(8)) * u64::from(self.bands_per_block);
@@ -188,13 +182,13 @@ impl Storage {
     /// The type of samples that are read as elevation.
     pub fn elevation_type(&self) -> Result<SampleType, DemErrorKind> {
         if self.packing == Packing::Jpeg && self.bands_per_block != 1 {
-            return Err(FORMAT.unsupported("JPEG compression of colors", TO_DEFLATE));
+            return Err(fault::unsupported("JPEG compression of colors", TO_DEFLATE));
         }
         let remedy = "convert it, for example with: gdal_translate -ot Float32 FILE out.tif";
         let sample =
-            self.sample.ok_or_else(|| FORMAT.unsupported(format!("{}-bit samples", self.bits), remedy))?;
+            self.sample.ok_or_else(|| fault::unsupported(format!("{}-bit samples", self.bits), remedy))?;
         if self.predictor == Predictor::FloatBytes && !sample.is_float() {
-            return Err(FORMAT.unsupported("the floating-point predictor on integers", TO_DEFLATE));
+            return Err(fault::unsupported("the floating-point predictor on integers", TO_DEFLATE));
         }
         Ok(sample)
     }
@@ -248,7 +242,7 @@ fn predictor(code: u16) -> Result<Predictor, DemErrorKind> {
         1 => Ok(Predictor::Plain),
         2 => Ok(Predictor::Differences),
         3 => Ok(Predictor::FloatBytes),
-        other => Err(FORMAT.unsupported(format!("predictor {other}"), TO_DEFLATE)),
+        other => Err(fault::unsupported(format!("predictor {other}"), TO_DEFLATE)),
     }
 }
 
@@ -269,7 +263,7 @@ fn packing(compression: u16) -> Result<Packing, DemErrorKind> {
         50002 | 52546 => "JPEG XL compression".into(),
         other => format!("compression scheme {other}"),
     };
-    Err(FORMAT.unsupported(what, TO_DEFLATE))
+    Err(fault::unsupported(what, TO_DEFLATE))
 }
 
 /// The most bytes that one packed byte becomes.
@@ -284,17 +278,5 @@ fn expansion(packing: Packing) -> u64 {
         Packing::Zstd => 32_768,
         // A macroblock of 16 × 16 pixels takes six codes of two bits at least.
         Packing::Jpeg => 512,
-    }
-}
-
-/// The decoder's error in the words of the other readers.
-pub(crate) fn decode_error(error: TiffError) -> DemErrorKind {
-    match error {
-        TiffError::UnsupportedError(what) => FORMAT.unsupported(what, TO_DEFLATE),
-        TiffError::LimitsExceeded => FORMAT.broken(format!(
-            "a tag claims more than the file holds, or than the {TIFF_TAG_BYTES} bytes that are read of one: {TIFF_TAG_BYTES:#}"
-        )),
-        TiffError::IoError(error) if error.get_ref().is_some() => FORMAT.unread(error),
-        other => FORMAT.undecodable(other),
     }
 }

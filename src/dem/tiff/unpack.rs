@@ -13,10 +13,10 @@ use ruzstd::decoding::{FrameDecoder, StreamingDecoder};
 use weezl::decode::Decoder as LzwDecoder;
 use weezl::{BitOrder, LzwStatus};
 
-use crate::error::DemErrorKind;
-use crate::tiff::geotiff::FORMAT;
+use crate::tiff::fault::{self, TO_DEFLATE};
 use crate::tiff::jpeg_block::{self, JpegBlock};
-use crate::tiff::storage::{Packing, Storage, TO_DEFLATE, TiffBlock};
+use crate::tiff::storage::{Packing, Storage, TiffBlock};
+use sandtable_raster::error::DemErrorKind;
 
 /// Packed bytes beyond twice what a block unpacks to are ignored; no packing needs more.
 const MOST_GROWTH: usize = 2;
@@ -93,7 +93,7 @@ impl<'a> Unpacker<'a> {
         let Some(decompressor) = &mut self.decompressor else {
             let Range { start, end } = packed_range(self.storage, block, file.length())?;
             let range = start..end.min(start.saturating_add(needed));
-            file.read_into(range, rows).map_err(|error| FORMAT.unread(error))?;
+            file.read_into(range, rows).map_err(fault::unread)?;
             return whole(block, rows.len(), needed);
         };
         let packed = packed(self.storage, file, block)?;
@@ -101,7 +101,7 @@ impl<'a> Unpacker<'a> {
         let unpacked = match decompressor {
             Decompressor::Deflate(inflater) => inflate(inflater, &packed, rows),
             Decompressor::Lzw(_) if is_ancient_lzw(&packed) => {
-                return Err(FORMAT.unsupported("LZW in the bit order of before 1991", TO_DEFLATE));
+                return Err(fault::unsupported("LZW in the bit order of before 1991", TO_DEFLATE));
             }
             Decompressor::Lzw(decoder) => unpack_lzw(decoder, &packed, rows),
             Decompressor::PackBits => unpack_bits(&packed, rows),
@@ -131,7 +131,7 @@ pub(crate) fn packed<'f, F: BlockBytes>(
     block: TiffBlock,
 ) -> Result<Cow<'f, [u8]>, DemErrorKind> {
     let range = packed_range(storage, block, file.length())?;
-    file.bytes(range).map_err(|error| FORMAT.unread(error))
+    file.bytes(range).map_err(fault::unread)
 }
 
 fn whole(block: TiffBlock, unpacked: usize, needed: usize) -> Result<(), DemErrorKind> {
@@ -139,7 +139,7 @@ fn whole(block: TiffBlock, unpacked: usize, needed: usize) -> Result<(), DemErro
         return Ok(());
     }
     let index = block.index;
-    Err(FORMAT.broken(format!("block {index} holds {unpacked} of the {needed} bytes of its rows")))
+    Err(fault::broken(format!("block {index} holds {unpacked} of the {needed} bytes of its rows")))
 }
 
 /// Where the packed bytes of a block lie in a file; empty beyond its end.
@@ -151,7 +151,7 @@ pub(crate) fn packed_range(
     block: TiffBlock,
     file_bytes: usize,
 ) -> Result<Range<usize>, DemErrorKind> {
-    let unlisted = || FORMAT.broken(format!("its tables do not state where block {} lies", block.index));
+    let unlisted = || fault::broken(format!("its tables do not state where block {} lies", block.index));
     let (start, bytes) = storage.place(block.index).ok_or_else(unlisted)?;
     let needed = storage.row_bytes() * block.window.height as usize;
     let most = needed.saturating_mul(MOST_GROWTH).saturating_add(SLACK);

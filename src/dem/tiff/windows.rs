@@ -23,18 +23,20 @@ use std::sync::Arc;
 use glam::{DAffine2, DVec2};
 use rayon::prelude::*;
 
-use crate::cache::LruCache;
-use crate::error::{DemError, DemErrorKind};
-use crate::formats::FileContent;
-use crate::raster::{Raster, Samples};
-use crate::read::{DemFile, DemHints};
+use crate::dem_file::DemFile;
+use crate::hints::DemHints;
 use crate::tiff::blocks::{self, BlockDecoder};
-use crate::tiff::geotiff::{self, FORMAT, GeoTiffHeader};
+use crate::tiff::fault;
+use crate::tiff::header::{self, GeoTiffHeader};
 use crate::tiff::images::{LaterImages, Overview, SharedFile};
 use crate::tiff::mask;
 use crate::tiff::storage::{Storage, TiffBlock};
 use crate::tiff::unpack::{BlockBytes, packed_range};
-use crate::windows::{RasterWindow, Windows};
+use sandtable_raster::cache::LruCache;
+use sandtable_raster::content::FileContent;
+use sandtable_raster::error::{DemError, DemErrorKind};
+use sandtable_raster::raster::{Raster, Samples};
+use sandtable_raster::windows::{RasterWindow, Windows, WithOverviews};
 
 /// A GeoTIFF, read in windows.
 pub struct GeoTiffWindows<R> {
@@ -73,20 +75,20 @@ impl<R: FileContent> GeoTiffWindows<R> {
         hints: &DemHints,
         cache_bytes: usize,
     ) -> Result<Self, DemErrorKind> {
-        let mut file = SharedFile::new(file).map_err(|error| FORMAT.unread(error))?;
-        let start = file.bytes(0..4).map_err(|error| FORMAT.unread(error))?;
-        if !geotiff::recognizes(&start) {
-            return Err(FORMAT.broken("it does not start with the signature of a TIFF file"));
+        let mut file = SharedFile::new(file).map_err(fault::unread)?;
+        let start = file.bytes(0..4).map_err(fault::unread)?;
+        if !header::recognizes(&start) {
+            return Err(fault::broken("it does not start with the signature of a TIFF file"));
         }
         let source = DemFile { name, bytes: &[], hints };
         let heights = file.storage(0)?;
         heights.elevation_type()?;
         let header = GeoTiffHeader::read(&mut file.decoder(&mut file.lock())?, &heights, &source)?;
         if header.raster.nodata.is_some() && heights.is_all_absent() {
-            return Err(geotiff::all_absent());
+            return Err(header::all_absent());
         }
         if mask::file_beside(&source).is_some() {
-            return Err(FORMAT.unsupported(
+            return Err(fault::unsupported(
                 "a mask in a file beside it (.msk), and is to be read in parts",
                 "take the mask into it: gdal_translate --config GDAL_TIFF_INTERNAL_MASK YES FILE out.tif",
             ));
@@ -266,6 +268,16 @@ impl<R: FileContent> GeoTiffWindows<R> {
     }
 }
 
+impl<R: FileContent> WithOverviews for GeoTiffWindows<R> {
+    fn overview_sizes(&self) -> Vec<(u32, u32)> {
+        self.overviews().iter().map(|overview| (overview.width, overview.height)).collect()
+    }
+
+    fn at_overview_size(&self, index: usize) -> Result<Self, DemError> {
+        self.at_overview(&self.overviews()[index])
+    }
+}
+
 impl<R: FileContent> Windows for GeoTiffWindows<R> {
     fn metadata(&self) -> &Raster {
         &self.header.raster
@@ -292,7 +304,6 @@ impl<R: FileContent> Windows for GeoTiffWindows<R> {
         Ok(out)
     }
 
-    /// Decodes the blocks under the windows as far as they fit the cache.
     fn overview(&self, step: u32) -> Option<(u32, Box<dyn Windows + Send + '_>)> {
         let (width, height) = self.size();
         let times = |image: &Overview| {
@@ -305,6 +316,7 @@ impl<R: FileContent> Windows for GeoTiffWindows<R> {
         Some((times, Box::new(self.open_overview(image).ok()?)))
     }
 
+    /// Decodes the blocks under the windows as far as they fit the cache.
     fn announce(&mut self, windows: &[RasterWindow]) {
         let blocks: BTreeMap<u32, TiffBlock> = windows
             .iter()

@@ -17,16 +17,16 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use rayon::prelude::*;
 
-use crate::formats::WrittenContent;
-use crate::raster::{Raster, SampleFloat, Samples};
-use crate::read_ahead::read_ahead;
-use crate::sample_type::{NumberKind, SampleType};
-use crate::stored::{SampleSurvey, StoredSamples};
 use crate::tiff::gdal_metadata::GDAL_METADATA;
 use crate::tiff::write_geokeys::GeoKeyTags;
-use crate::units::name_of_length;
-use crate::windows::{ByteRows, RasterWindow, Windows};
-use crate::write::{WriteError, WriteWindowsError, WrittenDem, WrittenWindows};
+use crate::written::{WriteError, WriteWindowsError, WrittenDem, WrittenWindows};
+use sandtable_raster::content::WrittenContent;
+use sandtable_raster::raster::{Raster, SampleFloat, Samples};
+use sandtable_raster::read_ahead::read_ahead;
+use sandtable_raster::sample_type::{NumberKind, SampleType};
+use sandtable_raster::stored::{SampleSurvey, StoredSamples};
+use sandtable_raster::units::name_of_length;
+use sandtable_raster::windows::{ByteRows, RasterWindow, Windows};
 
 /// Samples along a side of a tile, as GDAL writes them.
 const TILE: u32 = 256;

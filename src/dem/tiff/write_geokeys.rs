@@ -4,14 +4,14 @@
 //! there are keys for them, for other programs; and as a proj string in the citation, which [`super::geokeys`] prefers,
 //! so that the very same system comes back.
 
-use crate::georef::crs_on_earth;
-use crate::raster::Raster;
 use crate::tiff::geokey_codes as key;
 use crate::tiff::geokeys::GeoKeyValue;
-use crate::units::code_of_length;
-use crate::vertical;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::projection::{Datum, Definition, MapProjection};
+use sandtable_raster::georef::crs_on_earth;
+use sandtable_raster::raster::Raster;
+use sandtable_raster::units::code_of_length;
+use sandtable_raster::vertical;
 
 /// The contents of the three tags of keys; the last two may be empty.
 #[derive(Clone, Debug, Default)]

@@ -13,12 +13,11 @@ use crate::paging::region::{PagedFrame, PagedRegion, Patches};
 use crate::paging::summary::{self, PatchSummary};
 use crate::patched_ground::PatchedGround;
 use crate::spheres::SphereMap;
-use sandtable_dem::cache::LruCache;
-use sandtable_dem::error::DemError;
-use sandtable_dem::formats::FileContent;
-use sandtable_dem::tiff::windows::GeoTiffWindows;
-use sandtable_dem::warp::{self, WarpError};
-use sandtable_dem::windows::Windows;
+use sandtable_raster::cache::LruCache;
+use sandtable_raster::error::DemError;
+use sandtable_raster::warp;
+use sandtable_raster::warp::error::WarpError;
+use sandtable_raster::windows::{Windows, WithOverviews};
 use sandtable_terrain::lattice::{Lattice, LatticeError};
 
 /// The parameters of paging.
@@ -116,17 +115,14 @@ pub fn exact_spheres(reach: f32) -> impl Fn(PatchedGround<'_>) -> SphereMap {
 ///
 /// # Errors
 /// None fits, or the one that does cannot be opened.
-pub fn finest_that_fits<R: FileContent>(
-    file: GeoTiffWindows<R>,
-    patch: u32,
-) -> Result<GeoTiffWindows<R>, PagingError> {
+pub fn finest_that_fits<W: WithOverviews>(file: W, patch: u32) -> Result<W, PagingError> {
     let (columns, rows) = file.size();
     let fits = |columns, rows| PatchLayout::paged(columns, rows, patch).is_some();
     if fits(columns, rows) {
         return Ok(file);
     }
-    match file.overviews().iter().find(|overview| fits(overview.width, overview.height)) {
-        Some(overview) => Ok(file.at_overview(overview)?),
+    match file.overview_sizes().into_iter().position(|(columns, rows)| fits(columns, rows)) {
+        Some(overview) => Ok(file.at_overview_size(overview)?),
         None => Err(PagingError::Patches { columns, rows, patch }),
     }
 }

@@ -6,7 +6,7 @@ use crate::block::BlockFault;
 use crate::graph::Vertex;
 use crate::layout::PatchLayout;
 use crate::patched_ground::PatchedGround;
-use sandtable_dem::windows::Windows;
+use sandtable_raster::windows::Windows;
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::query::windowed::post_heights;

@@ -11,7 +11,7 @@ use crate::graph::Vertex;
 use crate::paging::region::{PagedFrame, PagedRegion, Patches};
 use crate::patched_ground::PatchedGround;
 use crate::spheres::SphereMap;
-use sandtable_dem::windows::Windows;
+use sandtable_raster::windows::Windows;
 
 /// Patches along a square of the pass. With the surroundings 10 or 11 are measured for 8, 1.6 times the least work, and
 /// 450,000 vertices of patches of 64 are in memory; 16 would save a fifth of the work for 3.3 times the memory.

@@ -13,7 +13,7 @@ use crate::graph::Vertex;
 use crate::paging::ground::PagedGround;
 use crate::patched_ground::PatchedGround;
 use crate::spheres::SphereMap;
-use sandtable_dem::windows::Windows;
+use sandtable_raster::windows::Windows;
 
 /// Calls `visit` with the triangles of a patch for an eye in world space. `corner` is the patch's south-west corner, `side`
 /// the cells along its side.

@@ -28,11 +28,11 @@ use crate::planned_pictures::{PlannedCameras, PlannedPictures};
 use crate::scene_view::{FittedView, ParallelView, ViewAim};
 use crate::views;
 use crate::world_frame::WorldFrame;
-use sandtable_dem::raster::Raster;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::{CameraTable, Document};
 use sandtable_geom::crs::Crs;
 use sandtable_geom::rect::Rect;
+use sandtable_raster::raster::Raster;
 use sandtable_view::axes::DirectionAxes;
 
 /// The width of a square of samples, in pixels of level ground.

@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::ShardError;
 use crate::planned_dataset::{PlannedDataset, PlannedWord, QueriedDataset};
-use sandtable_dem::answer::Answer;
-use sandtable_dem::height_datum::HeightDatum;
 use sandtable_files::error::FileError;
 use sandtable_geom::geoid::Geoid;
 use sandtable_query::heights_above::bring_heights;
+use sandtable_raster::answer::Answer;
+use sandtable_raster::height_datum::HeightDatum;
 use sandtable_terrain::query::{Interpolation, Surface};
 
 /// What is asked about each point.

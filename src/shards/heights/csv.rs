@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
-use sandtable_dem::answer::Answer;
 use sandtable_query::positions::WrittenPosition;
+use sandtable_raster::answer::Answer;
 
 /// The first line.
 pub const HEADER: &str = "x,y,height,status";

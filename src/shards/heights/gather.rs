@@ -15,10 +15,10 @@ use crate::heights::work::{ANSWER_BYTES, EXTENSION, answer_of};
 use crate::plan::ShardPlan;
 use crate::point_stream::PointStream;
 use crate::record::result_path;
-use sandtable_dem::answer::Answer;
 use sandtable_files::disk::{self, ReadFileError, SystemError, WriteFileError};
 use sandtable_files::output_files::OutputFiles;
 use sandtable_query::positions::WrittenPosition;
+use sandtable_raster::answer::Answer;
 
 /// Rows that one thread writes.
 const PIECE: usize = 4096;

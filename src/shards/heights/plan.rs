@@ -15,11 +15,11 @@ use crate::planned_dataset::QueriedDataset;
 use crate::point_stream::PointStream;
 use crate::shard::{PointRange, Shard, ShardWindow};
 use sandtable_base::limits::{PLAN_POINTS, PLAN_SHARDS};
-use sandtable_dem::raster::Raster;
-use sandtable_dem::windows::RasterWindow;
 use sandtable_files::disk::{SystemError, WriteFileError};
 use sandtable_files::part_file::{self, PartFile};
 use sandtable_query::positions::WrittenPosition;
+use sandtable_raster::raster::Raster;
+use sandtable_raster::windows::RasterWindow;
 use sandtable_terrain::query::source::SourceTransform;
 
 /// The most points of a shard: 100 MB of positions and answers.

@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-use sandtable_dem::windows::RasterWindow;
 use sandtable_geom::morton;
 use sandtable_geom::rect::Rect;
+use sandtable_raster::windows::RasterWindow;
 
 /// The side of a square in samples: as large as the tiles of most files.
 const SQUARE: u32 = 256;

@@ -11,9 +11,9 @@ use crate::plan::ShardPlan;
 use crate::planned_dataset::QueriedDataset;
 use crate::shard::{PointRange, Shard};
 use sandtable_base::limits::PLAN_POINTS;
-use sandtable_dem::answer::Answer;
 use sandtable_files::disk::{self, ReadFileError, SystemError};
 use sandtable_files::fingerprint::content_hash;
+use sandtable_raster::answer::Answer;
 
 /// The extension of a shard's results.
 pub const EXTENSION: &str = "heights";

@@ -7,8 +7,8 @@ use crate::error::ShardError;
 use crate::planned_dataset::{PlannedDataset, QueriedDataset};
 use crate::tiles::colors::pyramid::ColorPyramid;
 use crate::tiles::tiling::MOST_LEVEL;
-use sandtable_dem::answer::Answer;
 use sandtable_dem::formats::height_encoding::HeightEncoding;
+use sandtable_raster::answer::Answer;
 use sandtable_terrain::query::Interpolation;
 
 /// What tiles are made of.

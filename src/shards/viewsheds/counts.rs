@@ -1,7 +1,7 @@
 //! Counts of observers over a rectangle of posts.
 
-use sandtable_dem::raster::{Raster, Samples, north_up_nodes};
 use sandtable_geom::crs::Crs;
+use sandtable_raster::raster::{Raster, Samples, north_up_nodes};
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::sight::viewshed::{PostVisibility, Viewshed};

@@ -30,9 +30,9 @@ use crate::query::source::raster_height;
 use crate::query::tiles::{HeightTiles, TileSlot};
 use crate::query::{Interpolation, ground_height};
 use crate::vectorized::vectorized;
-use sandtable_dem::answer::{Answer, Status};
-use sandtable_dem::raster::{Raster, Samples};
-use sandtable_dem::sample::ON_CENTER;
+use sandtable_raster::answer::{Answer, Status};
+use sandtable_raster::raster::{Raster, Samples};
+use sandtable_raster::sample::ON_CENTER;
 
 /// Positions per chunk: its arrays take 6 KiB and stay in the first cache. Below 32 the passes cost more than their work,
 /// above 512 the arrays leave the cache.
@@ -332,7 +332,7 @@ fn place_in_cells(axes: &[LatticeAxis; 2], at: &[DVec2; CHUNK], positions: &mut 
 }
 
 /// The samples west and north of each position and the part of the way to the next, by the steps of
-/// [`sandtable_dem::sample`]; NaN for positions on or beyond the outer samples' centers or on lines of centers.
+/// [`sandtable_raster::sample`]; NaN for positions on or beyond the outer samples' centers or on lines of centers.
 #[inline(always)]
 fn place_between_samples(
     raster: &Raster,
@@ -436,7 +436,7 @@ fn mix(positions: &CellPositions, corners: &CellCorners<f32>, heights_m: &mut [f
     }
 }
 
-/// The formula of [`sandtable_dem::sample`], where all four corners count.
+/// The formula of [`sandtable_raster::sample`], where all four corners count.
 #[inline(always)]
 fn mix_by_weights<S: Copy + Into<f64>>(
     positions: &CellPositions,

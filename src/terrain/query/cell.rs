@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use crate::cell_triangle::{CellTriangle, Diagonal};
 use crate::query::Interpolation;
-use sandtable_dem::answer::Answer;
+use sandtable_raster::answer::Answer;
 
 /// The height at `part` of a cell, 0..=1 east and north from its south-west corner, or [`Answer::NoData`].
 ///

@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 
 use crate::cell_triangle::{CellTriangle, Diagonal};
 use crate::lattice::Lattice;
-use sandtable_dem::answer::Status;
+use sandtable_raster::answer::Status;
 
 /// The surface between the posts whose gradient is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

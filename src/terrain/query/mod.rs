@@ -2,7 +2,7 @@
 //!
 //! A query names a [`Surface`], an [`Interpolation`] and a map position. The answer is a height **in meters**, without
 //! vertical exaggeration, or the reason why there is none: an [`Answer`], or a number and a
-//! [`Status`](sandtable_dem::answer::Status) side by side. A hole is never answered by a bare number.
+//! [`Status`](sandtable_raster::answer::Status) side by side. A hole is never answered by a bare number.
 //!
 //! **Surfaces.**
 //!
@@ -28,7 +28,7 @@
 //! | interpolation | formula | continuity | no-data corners |
 //! |---|---|---|---|
 //! | planar | rising diagonal, `x ≥ y`: `(1−x)·sw + (x−y)·se + y·ne`, and likewise on the other three triangles | continuous, bends at edges and diagonals | no answer where the triangle has one with a weight |
-//! | bilinear | `s + (n − s)·y` with `s = sw + (se − sw)·x`, `n = nw + (ne − nw)·x`; the source's as GDAL, [`sandtable_dem::sample`] | continuous, bends at cell edges | left out, weights renormalized |
+//! | bilinear | `s + (n − s)·y` with `s = sw + (se − sw)·x`, `n = nw + (ne − nw)·x`; the source's as GDAL, [`sandtable_raster::sample`] | continuous, bends at cell edges | left out, weights renormalized |
 //! | nearest | the nearest post: a constant cell around each post | steps halfway between posts | no answer |
 //! | cubic | Keys 1981 with a = −1/2 over 4 × 4 posts; parabolas continue them beyond the border | continuous, and its slopes | where one of the sixteen has none, bilinear |
 //! | distance-weighted | `Σ hᵢ/dᵢ ÷ Σ 1/dᵢ` over the four corners, `d` in meters; at a corner, its height | continuous within a cell, steps across its edges | left out, weights renormalized |
@@ -71,7 +71,7 @@ use crate::cell_triangle::Diagonal;
 use crate::lattice::{Lattice, Post};
 use crate::query::cell::interpolate;
 use crate::query::cubic::cubic;
-use sandtable_dem::answer::Answer;
+use sandtable_raster::answer::Answer;
 
 /// The surface of a height query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -15,9 +15,9 @@ use crate::query::source::{source_height, source_task};
 use crate::query::tiles::LazyTiles;
 use crate::query::{Interpolation, Surface, ground_height};
 use crate::triangle_surface::TriangleSurface;
-use sandtable_dem::answer::Answer;
-use sandtable_dem::raster::Raster;
 use sandtable_geom::crs::Crs;
+use sandtable_raster::answer::Answer;
+use sandtable_raster::raster::Raster;
 
 /// Positions between two checks whether tiles should be made, so that a single long batch gets them too.
 const STRETCH: usize = 1 << 20;

@@ -1,6 +1,6 @@
 //! Heights of the raster as read, in its own grid.
 //!
-//! Nearest and bilinear are GDAL's ([`sandtable_dem::sample`]); they and the cubic reach half a sample beyond the centers of the
+//! Nearest and bilinear are GDAL's ([`sandtable_raster::sample`]); they and the cubic reach half a sample beyond the centers of the
 //! outer samples, whose heights they hold there. Planar and distance-weighted use the grid of sample centers and end at the outer ones. Heights in another unit
 //! are converted to meters.
 
@@ -12,10 +12,10 @@ use crate::query::Interpolation;
 use crate::query::batch::{self, HeightSlices};
 use crate::query::cell::interpolate;
 use crate::query::cubic::cubic;
-use sandtable_dem::answer::Answer;
-use sandtable_dem::raster::Raster;
-use sandtable_dem::sample::{self, SampleGrid};
 use sandtable_geom::crs::Crs;
+use sandtable_raster::answer::Answer;
+use sandtable_raster::raster::Raster;
+use sandtable_raster::sample::{self, SampleGrid};
 
 /// Positions that are transformed to the raster's system at a time, on the stack.
 const TRANSFORMED: usize = 512;
@@ -174,10 +174,11 @@ fn between_samples(samples: &impl SampleGrid, interpolation: Interpolation, at: 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use sandtable_dem::hints::DemOptions;
     use sandtable_dem::read;
 
     fn read_grid(text: &str, crs: Option<Crs>) -> Raster {
-        let hints = read::DemOptions { crs, ..read::DemOptions::default() }.into();
+        let hints = DemOptions { crs, ..DemOptions::default() }.into();
         read::read("a.asc", text.as_bytes(), &hints).expect("sound")
     }
 

@@ -18,10 +18,10 @@ use crate::lattice::{Lattice, LatticeError, Post};
 use crate::post_rect::PostRect;
 use crate::query::source::{SourceTransform, raster_height};
 use crate::query::{Interpolation, ground_height};
-use sandtable_dem::answer::Answer;
-use sandtable_dem::error::DemErrorKind;
-use sandtable_dem::windows::{RasterPart, RasterWindow, Windows};
 use sandtable_geom::crs::Crs;
+use sandtable_raster::answer::Answer;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::windows::{RasterPart, RasterWindow, Windows};
 
 /// The side of a square, in samples: as large as the tiles of most files, so that a square meets few.
 const SQUARE: u32 = 256;

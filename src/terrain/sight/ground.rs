@@ -20,7 +20,7 @@ use crate::sight::crossings::{LineCrossing, LinePart, POSITION_ERROR};
 use crate::sight::descent::{Probe, descend};
 use crate::sight::line::{GroundedSight, Sight, SightEnd};
 use crate::sight::rise::{Raised, Rise, RiseSearch};
-use sandtable_dem::answer::Answer;
+use sandtable_raster::answer::Answer;
 
 /// Lines of sight per task of a batch: some hundred microseconds' work.
 const CHUNK: usize = 512;

@@ -8,7 +8,7 @@ use crate::lattice::Lattice;
 use crate::query::{Interpolation, ground_height};
 use crate::sight::Curvature;
 use crate::sight::crossings::{LineCrossing, LinePart, crossings};
-use sandtable_dem::answer::Answer;
+use sandtable_raster::answer::Answer;
 
 /// One end of a line of sight.
 #[derive(Clone, Copy, Debug, PartialEq)]

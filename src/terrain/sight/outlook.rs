@@ -81,7 +81,7 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
-    use sandtable_dem::answer::Answer;
+    use sandtable_raster::answer::Answer;
 
     fn stations(heights: &[(f64, f64)]) -> Vec<ProfileStation> {
         let station = |&(station_m, height): &(f64, f64)| ProfileStation {

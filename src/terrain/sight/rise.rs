@@ -19,7 +19,7 @@ use crate::sight::Curvature;
 use crate::sight::crossings::{LineCrossing, LinePart, crossings};
 use crate::sight::descent::Probe;
 use crate::sight::line::{Blocker, GroundedSight, SightEnd};
-use sandtable_dem::answer::Answer;
+use sandtable_raster::answer::Answer;
 
 /// The end of a line of sight that is raised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,9 +5,9 @@ use egui::{DragValue, Grid, Rect, Sense, Stroke, TextEdit, Ui, WidgetInfo, pos2,
 use crate::commands::{ViewCommand, key_text};
 use crate::measuring::{MeasureKind, Measuring, area_text, volume_text};
 use sandtable_base::message::choice::Choice;
-use sandtable_dem::answer::Answer;
 use sandtable_editing::effect::EditPreview;
 use sandtable_editing::tool::{ToolKind, ToolSettings};
+use sandtable_raster::answer::Answer;
 use sandtable_terrain::profile::ProfileStation;
 
 /// The height of a profile, in points.

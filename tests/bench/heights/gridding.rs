@@ -6,10 +6,11 @@
 //! are of the calls alone.
 
 use glam::{DVec2, DVec3};
-use sandtable_dem::cell_grid::CellGrid;
-use sandtable_dem::gridding::{self, BeyondHull, GriddingMethod};
-use sandtable_dem::points::PointCloud;
+use sandtable_dem::gridding::method::GriddingMethod;
+use sandtable_dem::gridding::{self, BeyondHull};
+use sandtable_dem::points::cloud::PointCloud;
 use sandtable_geom::rect::Rect;
+use sandtable_raster::cell_grid::CellGrid;
 use spade::{
     DelaunayTriangulation, FloatTriangulation, HasPosition, LastUsedVertexHintGenerator, Point2,
     Triangulation,

@@ -9,9 +9,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec2;
-use sandtable_dem::answer::{Answer, Status};
-use sandtable_dem::raster::{Raster, Samples};
 use sandtable_geom::crs::Crs;
+use sandtable_raster::answer::{Answer, Status};
+use sandtable_raster::raster::{Raster, Samples};
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::query::batch::HeightSlices;
 use sandtable_terrain::query::service::{HeightService, Snapshot};

@@ -8,9 +8,10 @@
 use std::fs;
 use std::path::Path;
 
-use sandtable_dem::read::{DemHints, read};
+use sandtable_dem::hints::DemHints;
+use sandtable_dem::read::read;
 use sandtable_dem::tiff::windows::GeoTiffWindows;
-use sandtable_dem::windows::{RasterWindow, Windows};
+use sandtable_raster::windows::{RasterWindow, Windows};
 
 use crate::fields;
 use crate::peers;

@@ -6,13 +6,13 @@
 use std::path::Path;
 
 use glam::{DAffine2, DMat2, DVec2};
-use sandtable_dem::answer::Answer;
-use sandtable_dem::formats::DemFormat;
-use sandtable_dem::raster::{Raster, Samples};
+use sandtable_dem::dem_format::DemFormat;
 use sandtable_dem::write;
 use sandtable_geom::crs::Crs;
 use sandtable_query::dataset::{Dataset, DatasetOptions};
 use sandtable_query::windowed_elevation::GroundReach;
+use sandtable_raster::answer::Answer;
+use sandtable_raster::raster::{Raster, Samples};
 use sandtable_terrain::profile::profile;
 use sandtable_terrain::query::{Interpolation, Surface};
 use sandtable_terrain::sight::line::SightEnd;

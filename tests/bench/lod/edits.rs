@@ -6,10 +6,11 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use glam::{DVec2, Vec3};
-use sandtable_dem::read::{DemHints, read};
-use sandtable_dem::warp::to_metric;
+use sandtable_dem::hints::DemHints;
+use sandtable_dem::read::read;
 use sandtable_earthworks::brush::{BrushChanges, set_heights};
 use sandtable_mesh::trimesh::TriMesh;
+use sandtable_raster::warp::to_metric;
 use sandtable_roam::criterion::spheres::Spheres;
 use sandtable_roam::culling::patches_in_view;
 use sandtable_roam::displayed::DisplayedTerrain;

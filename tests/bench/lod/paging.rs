@@ -6,9 +6,9 @@ use std::fs;
 use std::time::Instant;
 
 use glam::{DAffine2, DMat2, DVec2, Vec3};
-use sandtable_dem::error::DemErrorKind;
-use sandtable_dem::raster::{Raster, Samples};
-use sandtable_dem::windows::{RasterWindow, Windows};
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::raster::{Raster, Samples};
+use sandtable_raster::windows::{RasterWindow, Windows};
 use sandtable_roam::block::BlockSource;
 use sandtable_roam::graph::Vertex;
 use sandtable_roam::paging::ground::{PagedGround, PagingOptions, exact_spheres};

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use glam::{DAffine2, DMat2, DVec2};
 use proptest::prelude::*;
-use sandtable_dem::error::DemErrorKind;
-use sandtable_dem::raster::{Raster, Samples};
-use sandtable_dem::windows::{RasterWindow, Windows};
 use sandtable_geom::crs::Crs;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::raster::{Raster, Samples};
+use sandtable_raster::windows::{RasterWindow, Windows};
 use sandtable_roam::bintree::Triangle;
 use sandtable_roam::block::{BlockSource, PatchBlock, WholeGround};
 use sandtable_roam::culling::PatchHeights;

@@ -5,10 +5,11 @@ use std::fs;
 use std::io::Cursor;
 
 use glam::Vec3;
-use sandtable_dem::raster::Raster;
-use sandtable_dem::read::{DemHints, read};
+use sandtable_dem::hints::DemHints;
+use sandtable_dem::read::read;
 use sandtable_dem::tiff::windows::GeoTiffWindows;
-use sandtable_dem::windows::Windows;
+use sandtable_raster::raster::Raster;
+use sandtable_raster::windows::Windows;
 use sandtable_roam::active::ActiveSet;
 use sandtable_roam::bintree::Triangle;
 use sandtable_roam::block::{BlockSource, WholeGround};

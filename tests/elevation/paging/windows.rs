@@ -4,11 +4,12 @@ use std::fs;
 use std::io::Cursor;
 use std::path::Path;
 
-use sandtable_dem::raster::Raster;
-use sandtable_dem::read::{DemHints, read};
-use sandtable_dem::reduced::{reduced, reduced_by_overview, reduced_part};
+use sandtable_dem::hints::DemHints;
+use sandtable_dem::read::read;
 use sandtable_dem::tiff::windows::GeoTiffWindows;
-use sandtable_dem::windows::{RasterWindow, Windows};
+use sandtable_raster::raster::Raster;
+use sandtable_raster::reduced::{reduced, reduced_by_overview, reduced_part};
+use sandtable_raster::windows::{RasterWindow, Windows};
 
 use crate::common::data::{data, files_below};
 use crate::common::tiles::{Image, Packing, file};

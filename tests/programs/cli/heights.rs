@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use glam::DVec2;
-use sandtable_dem::read::DemOptions;
+use sandtable_dem::hints::DemOptions;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::geoid::Geoid;
 use sandtable_query::dataset::{Dataset, DatasetOptions};

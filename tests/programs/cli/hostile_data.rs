@@ -2,9 +2,9 @@
 
 use glam::{DAffine2, DVec2};
 use sandtable::Crs;
-use sandtable_dem::formats::DemFormat;
-use sandtable_dem::raster::{Raster, Samples};
+use sandtable_dem::dem_format::DemFormat;
 use sandtable_dem::write::write;
+use sandtable_raster::raster::{Raster, Samples};
 
 use crate::cli::{project, run_in};
 use crate::common::scratch::Scratch;

@@ -3,13 +3,14 @@
 use std::path::Path;
 
 use glam::Vec3;
-use sandtable_dem::read::{DemHints, read};
-use sandtable_dem::warp::to_metric;
+use sandtable_dem::hints::DemHints;
+use sandtable_dem::read::read;
 use sandtable_mesh::check;
 use sandtable_mesh::sink::{MeshSink, VertexId};
 use sandtable_mesh::trimesh::TriMesh;
 use sandtable_model::Companions;
 use sandtable_model::error::CompanionError;
+use sandtable_raster::warp::to_metric;
 use sandtable_roam::bound::measure;
 use sandtable_terrain::lattice::Lattice;
 use serde_json::Value;

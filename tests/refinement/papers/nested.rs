@@ -3,9 +3,10 @@
 use std::collections::BTreeSet;
 
 use glam::{DVec2, Vec3};
-use sandtable_dem::read::{DemHints, read};
-use sandtable_dem::warp::to_metric;
+use sandtable_dem::hints::DemHints;
+use sandtable_dem::read::read;
 use sandtable_earthworks::brush::{BrushChanges, Crater, TireTrack};
+use sandtable_raster::warp::to_metric;
 use sandtable_roam::active::ActiveSet;
 use sandtable_roam::bintree::Triangle;
 use sandtable_roam::block::BlockSource;

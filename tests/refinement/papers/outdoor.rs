@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use glam::{DVec2, Vec2, Vec3};
 use image::{DynamicImage, ImageBuffer, ImageFormat};
-use sandtable_dem::read::{DemOptions, read};
+use sandtable_dem::hints::DemOptions;
+use sandtable_dem::read::read;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::ground::ColorRamp;
 use sandtable_mesh::check::check_with_area;

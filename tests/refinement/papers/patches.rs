@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DAffine2, DMat2, DVec2, Vec3};
-use sandtable_dem::raster::{Raster, Samples};
+use sandtable_raster::raster::{Raster, Samples};
 use sandtable_roam::active::ActiveSet;
 use sandtable_roam::bintree::Triangle;
 use sandtable_roam::block::BlockSource;

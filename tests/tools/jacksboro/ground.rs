@@ -6,7 +6,8 @@
 //! needed, so the result is the same everywhere.
 
 use glam::DVec2;
-use sandtable_dem::read::{DemHints, read};
+use sandtable_dem::hints::DemHints;
+use sandtable_dem::read::read;
 
 /// WGS 84 semi-major axis in meters.
 const SEMI_MAJOR_M: f64 = 6_378_137.0;

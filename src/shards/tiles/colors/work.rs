@@ -10,7 +10,7 @@ use crate::tiles::colors::means::tile_means;
 use crate::tiles::colors::pixels::{PixelHeights, heights_to_bytes, pixel_centers};
 use crate::tiles::colors::pyramid::ColorPyramid;
 use crate::tiles::tiling::TileAddress;
-use sandtable_dem::answer::Answer;
+use sandtable_raster::answer::Answer;
 
 /// The extension of a shard's heights of its root.
 pub const EXTENSION: &str = "means";

@@ -9,7 +9,7 @@ use crate::tiles::meshes::groups::{group_starts, meeting, shard_roots, tiles_of,
 use crate::tiles::meshes::posts::CELLS;
 use crate::tiles::plan::tile_shard;
 use crate::tiles::tiling::{TileAddress, TileScheme};
-use sandtable_dem::height_datum::HeightDatum;
+use sandtable_raster::height_datum::HeightDatum;
 
 /// Meters between the ellipsoid and the geoid, at most: it lies 107 m below it south of India.
 const MOST_UNDULATION_M: f64 = 110.0;

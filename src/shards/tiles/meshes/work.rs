@@ -11,11 +11,11 @@ use crate::tiles::meshes::groups::tiles_of;
 use crate::tiles::meshes::posts::{POSTS, posts};
 use crate::tiles::meshes::quantized_mesh::tile_bytes;
 use crate::tiles::tiling::TileAddress;
-use sandtable_dem::answer::Answer;
-use sandtable_dem::height_datum::HeightDatum;
 use sandtable_files::error::FileError;
 use sandtable_geom::geoid::Geoid;
 use sandtable_query::heights_above::bring_heights;
+use sandtable_raster::answer::Answer;
+use sandtable_raster::height_datum::HeightDatum;
 
 /// Tiles whose posts are asked about together.
 const TILES_AT_ONCE: usize = 64;

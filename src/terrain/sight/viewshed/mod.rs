@@ -35,7 +35,7 @@ use crate::sight::line::{SightEnd, SightLine};
 use crate::sight::viewshed::frame::OctantFrame;
 use crate::sight::viewshed::sweep::{Margins, PostTests, SweepScene, sweep};
 use crate::stop_flag::StopFlag;
-use sandtable_dem::answer::Answer;
+use sandtable_raster::answer::Answer;
 
 /// The parameters of a viewshed.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::raster::Raster;
-use crate::warp::WarpError;
+use crate::warp::error::WarpError;
 use sandtable_geom::crs::{Crs, CrsError};
 
 /// The transform from a raster's system to another; the identity where either is unknown or both are the same.

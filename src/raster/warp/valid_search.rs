@@ -6,8 +6,8 @@ use glam::DVec2;
 
 use crate::error::DemErrorKind;
 use crate::raster::Raster;
-use crate::warp::WarpError;
 use crate::warp::data_extent::with_valid;
+use crate::warp::error::WarpError;
 use crate::windows::{RasterWindow, Windows};
 use sandtable_geom::rect::Rect;
 

@@ -9,7 +9,7 @@ use glam::DVec2;
 
 use crate::raster::Raster;
 use crate::warp::data_extent::{data_extent, outline};
-use crate::warp::{WarpError, check_source};
+use crate::warp::error::{WarpError, check_source};
 use sandtable_geom::crs::Crs;
 use sandtable_geom::rect::Rect;
 use sandtable_geom::scale_factors::ScaleFactors;

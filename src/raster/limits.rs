@@ -12,8 +12,10 @@ const BYTES_PER_SAMPLE: u64 = 8;
 
 /// The size that a header claims, to be held against the bytes of its file.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SizeClaim {
+pub struct SizeClaim {
+    /// Samples per row.
     pub width: u64,
+    /// Rows.
     pub height: u64,
     /// The fewest bytes that a sample decodes to; 0 where a file may leave samples out.
     pub bytes_per_sample: u64,
@@ -21,6 +23,7 @@ pub(crate) struct SizeClaim {
     pub expansion: u64,
     /// Samples that take no bytes of the file, of those that width and height claim.
     pub absent: u64,
+    /// The most samples that are read.
     pub most_samples: &'static WorkLimit,
 }
 

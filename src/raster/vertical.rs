@@ -38,13 +38,13 @@ const NAMES: [(&str, &[u16]); 30] = [
 ];
 
 /// The name of a number; `EPSG:n` where it has none here.
-pub(crate) fn name(code: u16) -> String {
+pub fn name(code: u16) -> String {
     let known = NAMES.iter().find(|(_, codes)| codes.contains(&code));
     known.map_or_else(|| format!("EPSG:{code}"), |(name, _)| (*name).into())
 }
 
 /// The number with this [`name`].
-pub(crate) fn code(name: &str) -> Option<u16> {
+pub fn code(name: &str) -> Option<u16> {
     let known = NAMES.iter().find(|(known, _)| *known == name).map(|(_, codes)| codes[0]);
     known.or_else(|| name.strip_prefix("EPSG:")?.parse().ok())
 }

@@ -4,7 +4,7 @@
 pub const FOOT_M: f64 = 0.3048;
 
 /// Meters in a US survey foot.
-pub(crate) const US_SURVEY_FOOT_M: f64 = 1200.0 / 3937.0;
+pub const US_SURVEY_FOOT_M: f64 = 1200.0 / 3937.0;
 
 /// EPSG's number (0 for none), meters, and the names in GDAL: the first is written, all are read.
 const LENGTHS: [(u16, f64, &[&str]); 6] = [
@@ -17,23 +17,24 @@ const LENGTHS: [(u16, f64, &[&str]); 6] = [
 ];
 
 /// Meters in the unit with an EPSG number.
-pub(crate) fn length_of_code(code: u16) -> Option<f64> {
+pub fn length_of_code(code: u16) -> Option<f64> {
     LENGTHS.iter().find(|(known, ..)| code != 0 && *known == code).map(|(_, meters, _)| *meters)
 }
 
-pub(crate) fn code_of_length(meters: f64) -> Option<u16> {
+/// EPSG's number of the unit of `meters`; `None` where it has none.
+pub fn code_of_length(meters: f64) -> Option<u16> {
     let known = LENGTHS.iter().find(|(_, known, _)| (meters - known).abs() < 1e-12);
     known.map(|(code, ..)| *code).filter(|code| *code != 0)
 }
 
 /// Meters in a unit by its name, in any case.
-pub(crate) fn length_of_name(name: &str) -> Option<f64> {
+pub fn length_of_name(name: &str) -> Option<f64> {
     let is_named = |names: &[&str]| names.iter().any(|known| known.eq_ignore_ascii_case(name));
     LENGTHS.iter().find(|(.., names)| is_named(names)).map(|(_, meters, _)| *meters)
 }
 
 /// GDAL's name of a unit of `meters`: a meter or a foot.
-pub(crate) fn name_of_length(meters: f64) -> Option<&'static str> {
+pub fn name_of_length(meters: f64) -> Option<&'static str> {
     let code = code_of_length(meters).filter(|code| *code != 9036)?;
     LENGTHS.iter().find(|(known, ..)| *known == code).map(|(.., names)| names[0])
 }

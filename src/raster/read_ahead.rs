@@ -8,7 +8,7 @@ use crate::windows::{RasterWindow, Windows};
 ///
 /// # Errors
 /// The first of `read`; `each` has been called with all windows before it.
-pub(crate) fn read_ahead<W: Windows + Send + ?Sized, T: Send>(
+pub fn read_ahead<W: Windows + Send + ?Sized, T: Send>(
     source: &mut W,
     mut windows: impl Iterator<Item = RasterWindow>,
     read: impl Fn(&mut W, RasterWindow) -> Result<T, DemErrorKind> + Sync,

@@ -56,11 +56,14 @@ pub enum Samples {
 const FILLED_ALONE: usize = 1 << 20;
 
 /// A float type of [`Samples`].
-pub(crate) trait SampleFloat: Copy + Default + Display + Into<f64> + PartialEq + Send + Sync {
+pub trait SampleFloat: Copy + Default + Display + Into<f64> + PartialEq + Send + Sync {
+    /// The value without data: NaN.
     const NODATA: Self;
 
+    /// The nearest value of this type.
     fn from_f64(value: f64) -> Self;
 
+    /// Values as samples of this type.
     fn into_samples(values: Vec<Self>) -> Samples;
 
     /// The values of samples of this type.
@@ -72,14 +75,17 @@ macro_rules! sample_floats {
         impl SampleFloat for $float {
             const NODATA: Self = Self::NAN;
 
+            #[inline]
             fn from_f64(value: f64) -> Self {
                 value as Self
             }
 
+            #[inline]
             fn into_samples(values: Vec<Self>) -> Samples {
                 Samples::$samples(values)
             }
 
+            #[inline]
             fn values(samples: &Samples) -> Option<&[Self]> {
                 match samples {
                     Samples::$samples(values) => Some(values),
@@ -94,6 +100,7 @@ sample_floats!(f32: F32, f64: F64);
 
 impl Samples {
     /// The number of samples.
+    #[inline]
     pub fn len(&self) -> usize {
         match self {
             Self::F32(values) => values.len(),
@@ -102,11 +109,13 @@ impl Samples {
     }
 
     /// Whether there is none.
+    #[inline]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
     /// The value at `index`, NaN where there is no data. Panics out of range.
+    #[inline]
     pub fn get(&self, index: usize) -> f64 {
         match self {
             Self::F32(values) => f64::from(values[index]),
@@ -115,17 +124,19 @@ impl Samples {
     }
 
     /// All values in order, NaN where there is no data.
+    #[inline]
     pub fn iter(&self) -> impl Iterator<Item = f64> + '_ {
         (0..self.len()).map(|index| self.get(index))
     }
 
     /// All values that are data, in order.
+    #[inline]
     pub fn valid(&self) -> impl Iterator<Item = f64> + '_ {
         self.iter().filter(|value| !value.is_nan())
     }
 
     /// Samples without data, of 64 bits where `is_wide`.
-    pub(crate) fn absent(count: usize, is_wide: bool) -> Self {
+    pub fn absent(count: usize, is_wide: bool) -> Self {
         // Of a large raster the first touch of the memory takes longer than the filling: all threads do it.
         match (is_wide, count > FILLED_ALONE) {
             (true, true) => Self::F64(repeat_n(f64::NAN, count).collect()),
@@ -136,12 +147,13 @@ impl Samples {
     }
 
     /// Whether they take 64 bits.
+    #[inline]
     pub fn is_wide(&self) -> bool {
         matches!(self, Self::F64(_))
     }
 
     /// Copies the samples `range` of others, which have this precision or a lower one, to `to`. Panics out of range.
-    pub(crate) fn copy_from(&mut self, to: Range<usize>, from: &Self, range: Range<usize>) {
+    pub fn copy_from(&mut self, to: Range<usize>, from: &Self, range: Range<usize>) {
         match (self, from) {
             (Self::F32(values), Self::F32(from)) => values[to].copy_from_slice(&from[range]),
             (Self::F64(values), Self::F64(from)) => values[to].copy_from_slice(&from[range]),
@@ -153,7 +165,7 @@ impl Samples {
     }
 
     /// Bytes that they take.
-    pub(crate) fn bytes(&self) -> usize {
+    pub fn bytes(&self) -> usize {
         match self {
             Self::F32(values) => size_of_val(values.as_slice()),
             Self::F64(values) => size_of_val(values.as_slice()),
@@ -161,7 +173,8 @@ impl Samples {
     }
 
     /// Sets the value at `index`, NaN for no data. Panics out of range.
-    pub(crate) fn set(&mut self, index: usize, value: f64) {
+    #[inline]
+    pub fn set(&mut self, index: usize, value: f64) {
         match self {
             Self::F32(values) => values[index] = value as f32,
             Self::F64(values) => values[index] = value,
@@ -169,7 +182,7 @@ impl Samples {
     }
 
     /// Makes every sample of `value` one without data; a 32-bit sample is compared with the nearest 32-bit value.
-    pub(crate) fn clear(&mut self, value: f64) {
+    pub fn clear(&mut self, value: f64) {
         match self {
             Self::F32(values) => {
                 values.iter_mut().filter(|at| **at == value as f32).for_each(|at| *at = f32::NAN)
@@ -179,7 +192,7 @@ impl Samples {
     }
 
     /// These values times `factor` plus `offset`, in 64 bits; unchanged where that changes nothing.
-    pub(crate) fn scaled(self, factor: f64, offset: f64) -> Self {
+    pub fn scaled(self, factor: f64, offset: f64) -> Self {
         if factor == 1.0 && offset == 0.0 {
             return self;
         }
@@ -188,7 +201,8 @@ impl Samples {
 }
 
 /// A value times `factor` plus `offset`; the value itself where that changes nothing.
-pub(crate) fn scaled(value: f64, factor: f64, offset: f64) -> f64 {
+#[inline]
+pub fn scaled(value: f64, factor: f64, offset: f64) -> f64 {
     if factor == 1.0 && offset == 0.0 { value } else { value * factor + offset }
 }
 
@@ -218,7 +232,7 @@ impl Raster {
     /// `samples` are not a whole number of rows, or none.
     ///
     /// ```
-    /// use sandtable_dem::raster::{Raster, Samples};
+    /// use sandtable_raster::raster::{Raster, Samples};
     /// let raster = Raster::new(2, Samples::F32(vec![1.0, 2.0, 3.0, 4.0]));
     /// assert_eq!((raster.height, raster.at(1, 0)), (2, 2.0));
     /// ```
@@ -262,14 +276,15 @@ impl Raster {
     }
 
     /// The raster with its heights in meters; borrowed where they are in meters already.
-    pub(crate) fn in_meters(&self) -> Cow<'_, Self> {
+    pub fn in_meters(&self) -> Cow<'_, Self> {
         if self.meters_per_z == 1.0 {
             return Cow::Borrowed(self);
         }
         Cow::Owned(self.clone().into_meters())
     }
 
-    pub(crate) fn into_meters(self) -> Self {
+    /// The raster with its heights in meters.
+    pub fn into_meters(self) -> Self {
         Self { samples: self.samples.scaled(self.meters_per_z, 0.0), meters_per_z: 1.0, ..self }
     }
 
@@ -280,6 +295,7 @@ impl Raster {
     }
 
     /// Grid position (column, row) of a map position; NaN where the georeference cannot be inverted.
+    #[inline]
     pub fn grid_from_map(&self, at: DVec2) -> DVec2 {
         // The large map coordinates cancel before the small cell divides them.
         self.map_from_grid.matrix2.inverse() * (at - self.map_from_grid.translation)
@@ -291,7 +307,8 @@ impl Raster {
         DVec2::new(axes.x_axis.length(), axes.y_axis.length())
     }
 
-    pub(crate) fn is_axis_aligned(&self) -> bool {
+    /// Whether rows and columns run along the axes of the map, in either direction.
+    pub fn is_axis_aligned(&self) -> bool {
         let axes = self.map_from_grid.matrix2;
         axes.x_axis.y == 0.0 && axes.y_axis.x == 0.0
     }
@@ -315,7 +332,7 @@ impl Raster {
     }
 
     /// The smallest map rectangle around the centers of all samples of an axis-aligned raster.
-    pub(crate) fn node_extent(&self) -> Rect {
+    pub fn node_extent(&self) -> Rect {
         let (Rect { min, max }, half) = (self.extent(), self.spacing() * 0.5);
         Rect { min: min + half, max: max - half }
     }
@@ -326,13 +343,15 @@ impl Raster {
         [translation.x, x_axis.x, y_axis.x, translation.y, x_axis.y, y_axis.y]
     }
 
-    pub(crate) fn grid_size(&self) -> DVec2 {
+    /// Samples per row and rows: the grid position of the corner opposite to the first.
+    pub fn grid_size(&self) -> DVec2 {
         DVec2::new(f64::from(self.width), f64::from(self.height))
     }
 }
 
 /// The map position of a grid whose rows run east and columns south: `corner` is the outer north-west corner.
-pub(crate) fn north_up(corner: DVec2, cell: DVec2) -> DAffine2 {
+#[inline]
+pub fn north_up(corner: DVec2, cell: DVec2) -> DAffine2 {
     DAffine2 { matrix2: DMat2::from_diagonal(DVec2::new(cell.x, -cell.y)), translation: corner }
 }
 

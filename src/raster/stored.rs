@@ -14,7 +14,8 @@ const SURVEYED_TOGETHER: usize = 1 << 16;
 
 /// A type, and its value for no data.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct StoredSamples {
+pub struct StoredSamples {
+    /// The type.
     pub sample: SampleType,
     /// The value for no data; `None` where the raster has no holes and names no value.
     pub nodata: Option<f64>,
@@ -42,7 +43,7 @@ fn candidates(sample: SampleType) -> &'static [f64] {
 }
 
 /// What decides how samples are stored, of a raster of which never all need be in memory.
-pub(crate) struct SampleSurvey {
+pub struct SampleSurvey {
     /// The types of integers that may keep the samples, the preferred first.
     integers: &'static [SampleType],
     float: SampleType,

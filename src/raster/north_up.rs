@@ -9,7 +9,7 @@ use sandtable_geom::rect::Rect;
 
 impl Raster {
     /// An axis-aligned raster with columns and rows in the order that puts north up.
-    pub(crate) fn turned_north_up(&self) -> Cow<'_, Self> {
+    pub fn turned_north_up(&self) -> Cow<'_, Self> {
         if self.is_north_up() {
             return Cow::Borrowed(self);
         }

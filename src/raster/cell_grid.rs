@@ -68,26 +68,31 @@ impl CellGrid {
     }
 
     /// The side of a cell in map units.
+    #[inline]
     pub fn cell(&self) -> f64 {
         self.cell
     }
 
     /// Cells a row; at least 1.
+    #[inline]
     pub fn width(&self) -> u32 {
         self.width
     }
 
     /// Rows; at least 1.
+    #[inline]
     pub fn height(&self) -> u32 {
         self.height
     }
 
     /// The outer north-west corner in map coordinates.
+    #[inline]
     pub fn corner(&self) -> DVec2 {
         self.corner
     }
 
     /// The map position of the center of a cell.
+    #[inline]
     pub fn center(&self, column: u32, row: u32) -> DVec2 {
         self.corner + DVec2::new(f64::from(column) + 0.5, -(f64::from(row) + 0.5)) * self.cell
     }

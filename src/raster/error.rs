@@ -1,8 +1,10 @@
 //! Errors of reading elevation files.
 
+use std::error::Error;
+use std::io;
+
 use glam::{U64Vec2, UVec2};
 
-use crate::formats;
 use sandtable_base::archive::ArchiveError;
 use sandtable_base::limits::memory::MemoryRefused;
 use sandtable_base::limits::work_limit::WorkLimit;
@@ -24,17 +26,21 @@ pub struct DemError {
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum DemErrorKind {
-    /// Neither the content nor the extension belongs to a known format; the text names the kind of file it seems to be.
+    /// Neither the content nor the extension belongs to a known format.
     #[error(
-        "{}; elevation is read from {}; convert it, for example with: gdal_translate FILE out.tif",
-        .0, formats::list()
+        "{found}; elevation is read from {known}; convert it, for example with: gdal_translate FILE out.tif"
     )]
-    UnknownFormat(String),
+    UnknownFormat {
+        /// What kind of file it seems to be.
+        found: String,
+        /// The formats that are read.
+        known: String,
+    },
     #[error("this {format} uses {what}, which is not read; {remedy}")]
     Unsupported {
         format: &'static str,
         #[source]
-        what: Box<dyn std::error::Error + Send + Sync>,
+        what: Box<dyn Error + Send + Sync>,
         remedy: &'static str,
     },
     #[error("the {format} is broken: {reason}; fetch or export the file again")]
@@ -45,10 +51,10 @@ pub enum DemErrorKind {
     #[error("{0}, or {UNPACKED_RASTER_BYTES:#}")]
     Unpacked(ArchiveError),
     #[error("the {format} is broken: {source}; fetch or export the file again")]
-    Undecodable { format: &'static str, source: Box<dyn std::error::Error + Send + Sync> },
+    Undecodable { format: &'static str, source: Box<dyn Error + Send + Sync> },
     /// What holds the content does not give it: a server, not the system.
     #[error("{0}")]
-    Unread(Box<dyn std::error::Error + Send + Sync>),
+    Unread(Box<dyn Error + Send + Sync>),
     #[error(
         "{} x {} samples are more than the {most} that are read; cut or coarsen the file, for example with: gdal_translate -outsize 25% 25%, or {most:#}",
         .size.x, .size.y
@@ -119,6 +125,35 @@ pub enum DemErrorKind {
     Changed,
     #[error("{what} is {value}; it must be {wanted}")]
     Hint { what: &'static str, value: f64, wanted: &'static str },
+}
+
+impl DemErrorKind {
+    /// A file of a format that contradicts itself.
+    pub fn broken(format: &'static str, reason: impl Into<String>) -> Self {
+        Self::Broken { format, reason: reason.into() }
+    }
+
+    /// A file of a format that a decoder or the file system refuses.
+    pub fn undecodable(format: &'static str, source: impl Error + Send + Sync + 'static) -> Self {
+        Self::Undecodable { format, source: Box::new(source) }
+    }
+
+    /// A file of a format that cannot be read: broken, as far as the system reads it.
+    pub fn unread(format: &'static str, error: io::Error) -> Self {
+        match error.get_ref() {
+            Some(_) => Self::Unread(Box::new(error)),
+            None => Self::undecodable(format, error),
+        }
+    }
+
+    /// A file of a format that uses what is not read.
+    pub fn unsupported(
+        format: &'static str,
+        what: impl Into<Box<dyn Error + Send + Sync>>,
+        remedy: &'static str,
+    ) -> Self {
+        Self::Unsupported { format, what: what.into(), remedy }
+    }
 }
 
 impl From<CrsError> for DemErrorKind {

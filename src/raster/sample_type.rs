@@ -1,7 +1,9 @@
 //! Types of stored samples.
 
+/// The type of a stored sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum SampleType {
+#[allow(missing_docs, reason = "the names are those of the types of numbers")]
+pub enum SampleType {
     U8,
     I8,
     U16,
@@ -17,9 +19,12 @@ pub(crate) enum SampleType {
 
 /// The representation of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum NumberKind {
+pub enum NumberKind {
+    /// An integer from 0.
     Unsigned,
+    /// An integer in two's complement.
     Signed,
+    /// A floating-point number of IEEE 754.
     Float,
 }
 
@@ -45,28 +50,37 @@ impl SampleType {
         known.find(|known| known.2 as u64 * 8 == bits).map(|known| known.0)
     }
 
+    /// The bytes of a sample.
+    #[inline]
     pub fn bytes(self) -> usize {
         TYPES[self as usize].2
     }
 
+    /// The representation of a sample.
+    #[inline]
     pub fn kind(self) -> NumberKind {
         TYPES[self as usize].1
     }
 
+    /// Whether samples are floats.
+    #[inline]
     pub fn is_float(self) -> bool {
         self.kind() == NumberKind::Float
     }
 
     /// Whether its values need 64-bit floats to stay exact.
+    #[inline]
     pub fn is_wide(self) -> bool {
         self.bytes() == 8 || (self.bytes() == 4 && !self.is_float())
     }
 
+    /// The name in GDAL: `Byte`, `Int16`, `Float32` and the like.
     pub fn gdal_name(self) -> &'static str {
         TYPES[self as usize].3
     }
 
     /// A no-data value as a sample can equal it; NaN, which equals nothing, where there is none.
+    #[inline]
     pub fn comparable(self, nodata: Option<f64>) -> f64 {
         match nodata {
             Some(value) if matches!(self, Self::F16 | Self::F32) => f64::from(value as f32),
@@ -76,6 +90,7 @@ impl SampleType {
     }
 
     /// The least and the greatest value; of 64 bits, as the nearest float.
+    #[inline]
     pub fn range(self) -> (f64, f64) {
         match self {
             Self::U8 => (0.0, u8::MAX.into()),
@@ -92,6 +107,7 @@ impl SampleType {
     }
 
     /// Whether `value` comes back from this type to the last bit.
+    #[inline]
     pub fn keeps(self, value: f64) -> bool {
         let (least, greatest) = self.range();
         // Of equal bits, so that minus zero is not kept.

@@ -16,8 +16,7 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use crate::crop::window_samples;
-use crate::error::DemErrorKind;
+use crate::error::{DemError, DemErrorKind};
 use crate::raster::{Raster, Samples, scaled};
 use crate::sample::SampleGrid;
 
@@ -43,12 +42,14 @@ pub struct RasterWindow {
 
 impl RasterWindow {
     /// The number of its samples.
+    #[inline]
     pub fn samples(&self) -> usize {
         self.width as usize * self.height as usize
     }
 
     /// The samples that this window shares with another; `None` where there are none.
-    pub(crate) fn intersection(self, other: Self) -> Option<Self> {
+    #[inline]
+    pub fn intersection(self, other: Self) -> Option<Self> {
         let shared = |first: u32, count: u32, other: u32, others: u32| {
             let start = first.max(other);
             let end = (first + count).min(other + others);
@@ -60,7 +61,8 @@ impl RasterWindow {
     }
 
     /// For each row that this window shares with another, its samples as ranges of indices in either.
-    pub(crate) fn shared_rows(self, other: Self) -> impl Iterator<Item = (Range<usize>, Range<usize>)> {
+    #[inline]
+    pub fn shared_rows(self, other: Self) -> impl Iterator<Item = (Range<usize>, Range<usize>)> {
         let first = self.column.max(other.column);
         let last = (self.column + self.width).min(other.column + other.width).max(first);
         let rows = self.row.max(other.row)..(self.row + self.height).min(other.row + other.height);
@@ -73,6 +75,7 @@ impl RasterWindow {
     }
 
     /// All of a raster of this size.
+    #[inline]
     pub fn all((width, height): (u32, u32)) -> Self {
         Self { column: 0, row: 0, width, height }
     }
@@ -93,7 +96,8 @@ impl RasterWindow {
     }
 
     /// The window in bands of whole rows, of about `samples` each and at least a row.
-    pub(crate) fn bands(self, samples: u32) -> impl Iterator<Item = Self> {
+    #[inline]
+    pub fn bands(self, samples: u32) -> impl Iterator<Item = Self> {
         let rows = (samples / self.width).max(1);
         (0..self.height).step_by(rows as usize).map(move |first| {
             let height = rows.min(self.height - first);
@@ -193,6 +197,21 @@ pub trait Windows {
     }
 }
 
+/// A raster in windows whose file holds overviews: the same ground with samples further apart.
+pub trait WithOverviews: Windows + Sized {
+    /// Samples per row and rows of each overview, in the order of the file.
+    fn overview_sizes(&self) -> Vec<(u32, u32)>;
+
+    /// Opens an overview by its index in [`WithOverviews::overview_sizes`].
+    ///
+    /// # Errors
+    /// The overview is broken, or stored in a way that is not read.
+    ///
+    /// # Panics
+    /// There is no such overview.
+    fn at_overview_size(&self, index: usize) -> Result<Self, DemError>;
+}
+
 impl Windows for Raster {
     fn metadata(&self) -> &Raster {
         self
@@ -226,6 +245,18 @@ impl<W: Windows + ?Sized> Windows for Box<W> {
     }
 }
 
+/// The samples of `window`, of a raster that holds those of a window around it.
+///
+/// # Panics
+/// Where `window` reaches beyond `held`.
+pub fn window_samples(raster: &Raster, held: RasterWindow, window: RasterWindow) -> Samples {
+    let mut samples = Samples::absent(window.samples(), raster.samples.is_wide());
+    for (from, to) in held.shared_rows(window) {
+        samples.copy_from(to, &raster.samples, from);
+    }
+    samples
+}
+
 /// A raster of which the samples of one window are held.
 pub struct RasterPart<'a> {
     /// The whole raster; its `samples` are not used.
@@ -241,6 +272,7 @@ impl SampleGrid for RasterPart<'_> {
         self.whole
     }
 
+    #[inline]
     fn value(&self, column: u32, row: u32) -> f64 {
         let RasterWindow { column: first, row: top, width, height } = self.window;
         let (across, down) = (column.wrapping_sub(first), row.wrapping_sub(top));

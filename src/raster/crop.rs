@@ -3,7 +3,7 @@
 use glam::{DAffine2, DVec2};
 
 use crate::raster::{Raster, Samples};
-use crate::windows::{RasterWindow, Windows};
+use crate::windows::{RasterWindow, Windows, window_samples};
 use sandtable_geom::rect::Rect;
 
 /// The part of `raster` in [`crop_window`]; `None` where that is.
@@ -44,28 +44,15 @@ pub fn part(whole: &Raster, window: RasterWindow, samples: Samples) -> Raster {
     }
 }
 
-/// The samples of `window`, of a raster that holds those of a window around it.
-///
-/// # Panics
-/// Where `window` reaches beyond `held`.
-pub fn window_samples(raster: &Raster, held: RasterWindow, window: RasterWindow) -> Samples {
-    let mut samples = Samples::absent(window.samples(), raster.samples.is_wide());
-    for (from, to) in held.shared_rows(window) {
-        samples.copy_from(to, &raster.samples, from);
-    }
-    samples
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::read::{DemHints, read};
+    use crate::raster::north_up;
 
     /// Five by four samples 10 m apart, the south-west one at (105, 205).
     fn raster() -> Raster {
-        let text = "ncols 5\nnrows 4\nxllcorner 100\nyllcorner 200\ncellsize 10\n\
-                    1 2 3 4 5\n6 7 8 9 10\n11 12 13 14 15\n16 17 18 19 20";
-        read("a.asc", text.as_bytes(), &DemHints::default()).expect("sound")
+        let place = north_up(DVec2::new(100.0, 240.0), DVec2::splat(10.0));
+        Raster::new(5, Samples::F32((1..=20u8).map(f32::from).collect())).placed(place)
     }
 
     fn cropped(min: (f64, f64), max: (f64, f64), margin: u32) -> Option<Raster> {

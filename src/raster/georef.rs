@@ -1,0 +1,47 @@
+//! Georeferences of rasters: transforms of grid positions to map coordinates, and their systems.
+
+use glam::{DAffine2, DMat2, DVec2};
+
+use crate::error::DemErrorKind;
+use crate::raster::Raster;
+use sandtable_geom::crs::Crs;
+
+/// The raster's system, where that has a place on Earth.
+pub fn crs_on_earth(raster: &Raster) -> Option<&Crs> {
+    raster.crs.as_ref().filter(|crs| !crs.proj_text().is_empty())
+}
+
+/// GDAL's six numbers as a transform.
+pub fn affine([x, x_column, x_row, y, y_column, y_row]: [f64; 6]) -> DAffine2 {
+    let axes = DMat2::from_cols(DVec2::new(x_column, y_column), DVec2::new(x_row, y_row));
+    DAffine2 { matrix2: axes, translation: DVec2::new(x, y) }
+}
+
+/// The transform, if it is finite and can be inverted.
+pub fn checked(map_from_grid: DAffine2) -> Result<DAffine2, DemErrorKind> {
+    let determinant = map_from_grid.matrix2.determinant();
+    if map_from_grid.is_finite() && determinant.is_normal() && map_from_grid.matrix2.inverse().is_finite() {
+        return Ok(map_from_grid);
+    }
+    Err(DemErrorKind::Georeference {
+        reason: "its cells have no area or its corner is not finite".into(),
+        remedy: "write the georeference again, for example with: gdal_edit.py -a_ullr",
+    })
+}
+
+/// EPSG's code of a UTM zone, negative in the south, on a geographic system; `None` where there is none.
+pub fn utm_code(geographic: u32, zone: i64) -> Option<u32> {
+    let (north, south) =
+        UTM_BASES.iter().find(|(known, ..)| *known == geographic).map(|(_, n, s)| (*n, *s))?;
+    let base = if zone > 0 { Some(north) } else { south }?;
+    (1..=60).contains(&zone.abs()).then_some(base + zone.unsigned_abs() as u32)
+}
+
+/// Geographic systems with the EPSG codes before their first UTM zones north and south.
+const UTM_BASES: [(u32, u32, Option<u32>); 5] = [
+    (4326, 32600, Some(32700)),
+    (4322, 32200, Some(32300)),
+    (4269, 26900, None),
+    (4267, 26700, None),
+    (4258, 25800, None),
+];
