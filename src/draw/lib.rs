@@ -3,6 +3,7 @@
 
 pub mod backdrop;
 pub mod bathymetry;
+pub mod border;
 pub mod color;
 pub mod font;
 pub mod ground;

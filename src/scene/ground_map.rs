@@ -39,7 +39,7 @@ pub fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: Gr
     let columns = lattice.columns() as usize;
     let is_water = |index: usize| water.get(index).copied().unwrap_or_default();
     let is_rounded = holds_whole_meters(&scene.heights.snapshot().source().samples);
-    let smooth = is_rounded.then(|| without_terraces(lattice, 1.0, is_water));
+    let smooth = is_rounded.then(|| without_terraces(lattice, 1.0, &is_water));
     let shaded = smooth.as_ref().unwrap_or(lattice);
     let row = |row: usize| {
         let heights = shaded.filled_row(row as u32, scene.height_range_m.0);

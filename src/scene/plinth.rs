@@ -11,8 +11,8 @@
 //! ```
 
 use glam::{DVec2, Vec2, Vec3};
-use rayon::prelude::*;
 
+use sandtable_draw::border::border_edges;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DrawMesh, DrawVertex};
 use sandtable_mesh::sink::MeshSink;
@@ -123,30 +123,6 @@ pub fn base_plate(lattice: &Lattice, bounds: (Vec3, Vec3)) -> Option<DrawMesh> {
     }
     quad(ring.map(|corner| corner.extend(top)), Vec3::Z, [STRATA[0][1]; 2]);
     Some(plate)
-}
-
-/// The edges that belong to one triangle only, ground on their left, in a fixed order.
-fn border_edges(mesh: &DrawMesh) -> Vec<(Vec3, Vec3)> {
-    let mut edges: Vec<u64> = mesh
-        .triangles
-        .iter()
-        .flat_map(|&[a, b, c]| [(a.0, b.0), (b.0, c.0), (c.0, a.0)])
-        .map(|(from, to)| edge_key(from, to))
-        .collect();
-    edges.par_sort_unstable();
-    let at = |index: u64| Vec3::from(mesh.vertices[index as usize].position);
-    edges
-        .chunk_by(|a, b| a >> 1 == b >> 1)
-        .filter(|uses| uses.len() == 1)
-        .map(|uses| (uses[0] >> 33, uses[0] >> 1 & 0xffff_ffff, uses[0] & 1 == 1))
-        .map(|(low, high, rising)| if rising { (at(low), at(high)) } else { (at(high), at(low)) })
-        .collect()
-}
-
-/// An edge as one number: its lower vertex, its higher, and whether it runs upward. A mesh of the ground has
-/// fewer than 2³¹ vertices, so nothing is lost.
-fn edge_key(from: u32, to: u32) -> u64 {
-    u64::from(from.min(to)) << 33 | u64::from(from.max(to)) << 1 | u64::from(from < to)
 }
 
 fn is_ground_beyond(lattice: &Lattice, middle: Vec2, outward: Vec2) -> bool {
