@@ -1,11 +1,9 @@
-//! Annotating whole pictures: promises about pixels, and proof sheets for the eye.
-//!
-//! `cargo test --test pictures annotate -- --ignored` writes proof sheets as PNG and prints where; somebody must look.
+//! Annotating whole pictures: promises about pixels.
 
 use glam::Vec2;
 use proptest::collection::vec;
 use proptest::prelude::{ProptestConfig, any, prop_assert_eq, proptest};
-use sandtable_annotate::annotation::{Annotations, LineLabel, LinePlacement, PictureLabel};
+use sandtable_annotate::annotation::{Annotations, PictureLabel};
 use sandtable_annotate::legend::Legend;
 use sandtable_annotate::north::NorthArrow;
 use sandtable_annotate::paint::annotate;
@@ -15,42 +13,6 @@ use sandtable_description::words::LabelKind;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::ground::ColorRamp;
 use sandtable_draw::pixels::Pixels;
-
-/// A landscape of ridges under a sky, with grain: busy enough to test halos on.
-fn landscape(width: u32, height: u32) -> Pixels {
-    Pixels::from_fn(width, height, |x, y| {
-        let (u, v) = (f64::from(x) / f64::from(height), f64::from(y) / f64::from(height));
-        let noise = |n: u32| {
-            let h = n.wrapping_mul(0x9E37_79B1) ^ (n >> 15);
-            f64::from(h.wrapping_mul(0x85EB_CA6B) >> 24) / 255.0 - 0.5
-        };
-        let grain = noise(x.wrapping_mul(7919) ^ y.wrapping_mul(104_729));
-        let mut color = [178.0 + 50.0 * v, 203.0 + 30.0 * v, 226.0 + 12.0 * v];
-        for ridge in 0..7 {
-            let k = f64::from(ridge);
-            let wave = |f: f64, p: f64| libm::sin(u * f + p);
-            let crest = 0.24
-                + 0.105 * k
-                + (0.05 - 0.004 * k) * wave(2.1 + k, k * 1.7)
-                + 0.016 * wave(9.0 + k * 2.0, k)
-                + 0.006 * wave(31.0, k * 3.0)
-                + 0.002 * wave(90.0, k);
-            if v > crest {
-                let near = k / 6.0;
-                let light = 0.80
-                    + 0.25
-                        * wave(13.0 + 3.0 * k, 1.0 + k + 22.0 * (v - crest))
-                        * libm::exp(-(v - crest) * 7.0)
-                    + 0.10 * grain;
-                let land = [112.0 - 14.0 * near, 136.0 - 16.0 * near, 92.0 - 30.0 * near];
-                let haze = (1.0 - near) * 0.7;
-                color = [0, 1, 2].map(|c| land[c] * light * (1.0 - haze) + [190.0, 208.0, 224.0][c] * haze);
-            }
-        }
-        let [red, green, blue] = color.map(|c: f64| c.clamp(0.0, 255.0) as u8);
-        Srgba::opaque(red, green, blue)
-    })
-}
 
 /// Colored grain, quickly made.
 fn grain(width: u32, height: u32) -> Pixels {
@@ -307,71 +269,5 @@ proptest! {
         let fates = report.placed.len() + report.hidden.len() + report.outside.len()
             + report.crowded_out.len() + report.empty;
         prop_assert_eq!(fates, texts.len());
-    }
-}
-
-#[test]
-#[ignore = "writes pictures to be looked at"]
-fn proof_sheets() {
-    let sizes = [(1920, 1080), (960, 540), (480, 270), (3840, 2160), (1080, 1350), (300, 200)];
-    for (width, height) in sizes {
-        let mut pixels = landscape(width, height);
-        let start = std::time::Instant::now();
-        let report = annotate(&mut pixels, &sheet(width, height));
-        let took = start.elapsed();
-        let path = format!("{}/annotate-{width}x{height}.png", env!("CARGO_TARGET_TMPDIR"));
-        let color = image::ExtendedColorType::Rgba8;
-        image::save_buffer(&path, pixels.bytes(), width, height, color).expect("the folder can be written");
-        println!("{path} in {took:?}\n{report:?}");
-    }
-    for (width, height) in [(1920, 1080), (960, 540)] {
-        let mut pixels = landscape(width, height);
-        println!("{:?}", annotate(&mut pixels, &trouble(width, height)));
-        let path = format!("{}/annotate-trouble-{width}.png", env!("CARGO_TARGET_TMPDIR"));
-        image::save_buffer(&path, pixels.bytes(), width, height, image::ExtendedColorType::Rgba8)
-            .expect("the folder can be written");
-    }
-}
-
-#[test]
-#[ignore = "prints times, best of five"]
-fn a_thousand_labels() {
-    let names = ["Cross Mountain", "Caryville", "Cove Creek", "Pass road", "Old Mill"];
-    let kinds = [LabelKind::Summit, LabelKind::Place, LabelKind::Water, LabelKind::Road, LabelKind::Point];
-    let labels: Vec<PictureLabel> = (0..1000usize)
-        .map(|n| {
-            let (x, y) = ((n * 7919 % 1920) as f32, (n * 104_729 % 1080) as f32);
-            label(&format!("{} {n}", names[n % 5]), kinds[n % 5], x, y, n as f32)
-        })
-        .collect();
-    let lines: Vec<LineLabel> = (0..1000usize)
-        .map(|n| {
-            let start = Vec2::new((n * 7919 % 1920) as f32, (n * 104_729 % 1080) as f32);
-            let at = |step: usize| start + Vec2::new(step as f32 * 8.0, 30.0 * (step as f32 * 0.2).sin());
-            LineLabel {
-                text: format!("{} {n}", names[n % 5]),
-                path_px: vec![(0..50).map(at).collect()],
-                half_width_px: 2.0,
-                placement: LinePlacement::Repeated,
-                kind: kinds[n % 5],
-                ink: None,
-                rank: 0.0,
-                fallback: None,
-            }
-        })
-        .collect();
-    let annotations = [
-        ("at places", Annotations { labels, ..Annotations::default() }),
-        ("along lines", Annotations { line_labels: lines, ..Annotations::default() }),
-    ];
-    for (what, annotations) in annotations {
-        let run = || {
-            let mut pixels = grain(1920, 1080);
-            let start = std::time::Instant::now();
-            let report = annotate(&mut pixels, &annotations);
-            (start.elapsed(), report.placed.len())
-        };
-        let (took, placed) = (0..5).map(|_| run()).min().expect("five");
-        println!("1000 labels {what}: {placed} placed in {took:?}");
     }
 }

@@ -9,17 +9,10 @@ mod surfaces;
 use glam::Vec3;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DrawList, DrawMesh, FeatureId};
-use sandtable_draw::pixels::Pixels;
 use sandtable_mesh::sink::MeshSink;
 use sandtable_render::cpu::{RenderQuality, SampleCount, render};
 use sandtable_render::picture::Rendering;
 use sandtable_view::camera::Camera;
-
-fn save(picture: &Pixels, name: &str) {
-    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    image::save_buffer(&path, picture.bytes(), picture.width(), picture.height(), image::ColorType::Rgba8)
-        .expect("the target folder is writable");
-}
 
 fn looking(eye: Vec3, target: Vec3, size: (u32, u32)) -> Camera {
     Camera::new(eye, target, 0.8, size, (0.5, 60_000.0)).expect("a sound camera")
@@ -116,27 +109,5 @@ fn every_number_of_samples_sees_the_same_things() {
         let other = render(&list, &camera, &options).expect("a sound list");
         let differing = eight.features.iter().zip(&other.features).filter(|(a, b)| a != b).count();
         assert!(differing < 330 * 190 / 100, "{samples:?}: {differing} pixels");
-    }
-}
-
-#[test]
-#[ignore = "writes large pictures to look at and says how long they took"]
-fn the_landscape_for_the_eye() {
-    let list = landscape::landscape(300);
-    let above = |x: f32, y: f32, rise: f32| Vec3::new(x, y, landscape::height(x, y) + rise);
-    for (name, eye, target, size) in [
-        ("wide.png", Vec3::new(300.0, -9_400.0, 700.0), Vec3::new(0.0, -3_000.0, 0.0), (1920, 1080)),
-        ("near.png", above(-20.0, -8_320.0, 40.0), above(40.0, -7_900.0, 0.0), (1920, 1080)),
-        ("low.png", above(5.0, -8_500.0, 2.0), above(-20.0, -8_300.0, 0.0), (1920, 1080)),
-        ("above.png", Vec3::new(0.0, -4_000.0, 6_000.0), Vec3::new(0.0, -3_900.0, 0.0), (1920, 1080)),
-    ] {
-        let camera = looking(eye, target, size);
-        for samples in [SampleCount::One, SampleCount::Four, SampleCount::Eight] {
-            let options = RenderQuality { samples, ..RenderQuality::default() };
-            let start = std::time::Instant::now();
-            let picture = render(&list, &camera, &options).expect("a sound list");
-            println!("{name} {samples:?}: {} triangles, {:?}", list.triangle_count(), start.elapsed());
-            save(&picture.pixels, name);
-        }
     }
 }

@@ -88,6 +88,7 @@ fn layers(folder: &Scratch) -> Option<[usize; 3]> {
 }
 
 #[test]
+#[ignore = "slow: a whole place of real data"]
 fn swellendam_is_built_with_every_layer_and_everything_lies_on_the_ground() {
     let Some(place) = data(FOLDER) else { return };
     let folder = Scratch::new();

@@ -38,6 +38,7 @@ fn count(scene: &SceneModel, wanted: FeatureKind) -> usize {
 }
 
 #[test]
+#[ignore = "slow: a whole place of real data"]
 fn swellendam_has_all_its_roads_and_buildings() {
     let Some(scene) = built("swellendam") else { return };
     assert_eq!((count(&scene, FeatureKind::Road), count(&scene, FeatureKind::Building)), (717, 4708));
@@ -60,6 +61,7 @@ fn swellendam_has_all_its_roads_and_buildings() {
 }
 
 #[test]
+#[ignore = "slow: a whole place of real data"]
 fn porto_alegre_is_a_whole_city() {
     let Some(scene) = built("porto_alegre") else { return };
     // 15,852 lines with a highway; what begins or ends off the elevation model still counts.
@@ -68,6 +70,7 @@ fn porto_alegre_is_a_whole_city() {
 }
 
 #[test]
+#[ignore = "slow: a whole place of real data"]
 fn monaco_has_bridges_and_tunnels_on_its_cliff() {
     let Some(scene) = built("monaco") else { return };
     assert_eq!((count(&scene, FeatureKind::Bridge), count(&scene, FeatureKind::Building)), (20, 964));
@@ -81,6 +84,7 @@ fn taunton_s_trees_and_buildings_stand_on_its_ground() {
 }
 
 #[test]
+#[ignore = "slow: a whole place of real data"]
 fn wake_county_s_streams_never_rise() {
     let Some(scene) = built("wake") else { return };
     assert_eq!((count(&scene, FeatureKind::River), count(&scene, FeatureKind::Lake)), (2450, 6));

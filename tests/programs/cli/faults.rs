@@ -55,6 +55,7 @@ fn arguments(line: &[String]) -> Vec<&str> {
 }
 
 #[test]
+#[ignore = "slow: runs every command that writes under a limit of file size"]
 fn a_file_that_grows_too_large_leaves_what_was_there() {
     for (line, files) in writers() {
         let scratch = Scratch::new();
@@ -88,6 +89,7 @@ fn run_on_disk(options: &str, scratch: &Scratch, arguments: &[&str]) -> Option<(
 
 #[cfg(target_os = "linux")]
 #[test]
+#[ignore = "slow: runs every command that writes on a full disk"]
 fn a_full_disk_and_a_read_only_one_are_told_and_hold_nothing_after() {
     for (options, wanted) in [("size=16k", "the disk is full"), ("ro", "the disk is read-only")] {
         for (line, _) in writers() {

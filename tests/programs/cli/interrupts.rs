@@ -131,6 +131,7 @@ fn a_signal_that_the_parent_ignores_is_ignored() {
 }
 
 #[test]
+#[ignore = "slow: runs commands under many limits of memory"]
 #[cfg(target_os = "linux")]
 fn under_a_limit_of_memory_signals_reach_the_command() {
     let limited = |scratch: &Scratch, arguments: &[&str]| {

@@ -294,6 +294,7 @@ fn a_model_in_degrees_is_flown_over_in_meters() {
 }
 
 #[test]
+#[ignore = "slow: flies over several real models"]
 fn real_models_with_holes_are_flown_over() {
     for path in ["scenes/swellendam_za/dem_srtm_wgs84_f32.tif", "scenes/taunton_uk/dtm.tif"] {
         let Some(at) = data(path) else { continue };

@@ -40,6 +40,7 @@ fn ladder() -> impl Iterator<Item = u32> {
 }
 
 #[test]
+#[ignore = "slow: runs commands under many limits of memory"]
 fn under_any_limit_a_command_succeeds_or_says_how_much_it_needs() {
     let scratch = Scratch::new();
     let [dem, scene, road] =
@@ -100,6 +101,7 @@ fn write_many_roads(scratch: &Scratch, count: u32) {
 }
 
 #[test]
+#[ignore = "slow: runs commands under many limits of memory"]
 fn a_scene_of_many_small_lists_is_never_ended_by_a_signal() {
     let scratch = Scratch::new();
     write_many_roads(&scratch, 6000);

@@ -210,6 +210,7 @@ fn wrong_wishes_are_refused_with_what_to_do() {
 }
 
 #[test]
+#[ignore = "slow: meshes several real models"]
 fn real_ground_keeps_the_bound() {
     let files = [
         ("scenes/crater_lake_bt/crater.bt", ["2", "20"]),
