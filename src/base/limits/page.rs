@@ -8,11 +8,11 @@ use crate::limits::GROUPS;
 #[cfg_attr(not(test), allow(dead_code, reason = "a test holds the file to it"))]
 pub(super) fn page() -> String {
     let mut page = String::from(
-        "# Limits on input and work\n\nWhat exceeds one of these is refused, or left out with a note, before memory or time is \
-         spent on it; the message has the figure, and the name of the limit. Every command takes `--limit NAME=VALUE`, once for \
-         each limit that is to be another for its run: higher for data that is trusted, lower for data that is not. A value is \
-         a whole number, which may end in k, M or G for thousands, millions or billions. Fixed limits, which protect the stack \
-         or are part of a format, stay.\n",
+        "# Limits on input and work\n\nInput that exceeds a limit is refused, or left out with a note, before the program spends \
+         memory or time on it; the message states the number and the name of the limit. Every command takes \
+         `--limit NAME=VALUE`, once for each limit to change for the run: raise it for trusted data, lower it for other data. \
+         A value is a whole number, which may end in k, M or G for thousands, millions or billions. Fixed limits cannot be \
+         changed, because they protect the stack or are part of a format.\n",
     );
     for (title, limits) in GROUPS {
         let _ =
