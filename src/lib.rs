@@ -1,4 +1,5 @@
-//! Elevation models and the things that stand on them, made into scenes and pictures that can be trusted.
+//! Builds digital terrain models from elevation and features, queries their heights, and renders annotated pictures of
+//! them.
 //!
 //! Open a model and ask a height, in meters, at map coordinates:
 //!

@@ -49,14 +49,14 @@ pub struct Annotations {
     pub scale_bar: Option<ScaleBar>,
     /// The elevation legend, lower right or under the north arrow.
     pub legend: Option<Legend>,
-    /// The classes that the picture shows; with a margin, there.
+    /// The legend of the classes that the picture shows; on a sheet with a margin it is in the margin.
     pub classes: Vec<LegendEntry>,
     /// The source of the data, small along the lower border.
     pub credit: Option<String>,
-    /// What stands round the picture on a sheet with a margin; furniture is there then, and not on the picture.
+    /// The content of the margin around the picture; furniture is then in the margin, and not on the picture.
     pub margin: Option<MarginNotes>,
-    /// Where the picture shows the scene; scale bar and legend leave their lower corners for the upper ones where they
-    /// would cover it there and not here.
+    /// The part of the picture that shows the scene; scale bar and legend move from a lower to an upper corner if they
+    /// would cover the scene in the lower corner and not in the upper one.
     pub cover: Option<SceneCover>,
 }
 
@@ -113,7 +113,7 @@ pub enum LinePlacement {
     Uphill,
 }
 
-/// What contour lines carry on the picture.
+/// The numbers and ticks on the contour lines of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContourMarks {
     /// Lines that may carry their number.
@@ -129,7 +129,7 @@ pub struct ContourMarks {
 pub struct NumberedContour {
     /// The elevation.
     pub text: String,
-    /// How many intervals of numbered lines it lies above 0.
+    /// The elevation as a number of intervals between numbered lines above 0.
     pub level: i64,
     /// In pixels, the higher ground to the left as one looks along it, X right and Y down.
     pub path_px: Vec<Vec2>,
@@ -165,13 +165,13 @@ pub struct PictureSymbol {
     pub name: String,
     /// The place on the ground, pixels.
     pub anchor_px: Vec2,
-    /// Where it moves to on the picture, of length 1.
+    /// The direction of its movement on the picture, of length 1.
     pub direction_px: Option<Vec2>,
     /// Meters from the eye to the place.
     pub depth_m: f32,
     /// Whether the place is seen, not hidden behind terrain.
     pub visible: bool,
-    /// Whether it may lie on its place, as on a map, instead of standing over it.
+    /// Whether the symbol may be drawn at its place, as on a map, instead of on a staff over it.
     pub is_on_map: bool,
     /// The lower, the more important.
     pub rank: f64,

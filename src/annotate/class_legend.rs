@@ -1,4 +1,4 @@
-//! The legend of classes: what the picture shows besides heights, each with its look there.
+//! The legend of classes: the kinds of features that the picture shows, each with a swatch of its look there.
 
 use glam::{UVec2, Vec2};
 

@@ -1,4 +1,4 @@
-//! The sheet and the fonts that every piece of furniture, chart and map is composed with.
+//! The layout context of all furniture, charts and maps: the sheet and the fonts.
 
 use parley::fontique::{Collection, CollectionOptions, SourceCache};
 use parley::{FontContext, LayoutContext};

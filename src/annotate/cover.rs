@@ -15,7 +15,7 @@ pub struct SceneCover {
 }
 
 impl SceneCover {
-    /// The cover of a picture of `width` × `height` pixels, of which `is_scene` says for a column and a row whether it
+    /// The cover of a picture of `width` × `height` pixels; `is_scene` returns whether the pixel at a column and a row
     /// shows the scene.
     pub fn new(width: u32, height: u32, is_scene: impl Fn(u32, u32) -> bool) -> Self {
         let size = UVec2::new(width, height) / SIDE;

@@ -46,7 +46,7 @@ pub struct PictureGrid {
 /// A line of a grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GridLine {
-    /// Which coordinate it keeps.
+    /// The coordinate that is constant along it.
     pub axis: GridAxis,
     /// The parts that show: pixels from the picture's upper left corner, Y down.
     pub runs: Vec<Vec<Vec2>>,
@@ -54,11 +54,11 @@ pub struct GridLine {
     pub is_index: bool,
     /// Its number.
     pub figure: CoordinateFigure,
-    /// Its number in full, for the first on a side.
+    /// Its full number, shown on the first line of each side.
     pub full: CoordinateFigure,
 }
 
-/// The coordinate that a line of a grid keeps.
+/// The coordinate that is constant along a line of a grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum GridAxis {
     /// Easting or longitude.

@@ -1,8 +1,9 @@
-//! Letters along a line, each turned with it, where it does not turn faster than they can follow.
+//! Places the letters of a name along a line, each rotated to the direction of the line, unless the line bends too
+//! sharply for them.
 
 use glam::{DVec2, Vec2};
 
-/// What a name may do and still be read as one.
+/// The limits within which a name along a line stays readable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LetterLimits {
     /// The greatest turn from a letter to the next, radians.
@@ -44,7 +45,7 @@ pub struct LetterCourse {
     pub is_reversed: bool,
     /// The height of the baseline above the line.
     pub baseline: f32,
-    /// What the name may do.
+    /// The limits on the bends of the name.
     pub limits: LetterLimits,
 }
 

@@ -107,12 +107,13 @@ impl<'a> PreparedLine<'a> {
         Some(Self { label, missing: letters.missing, style, letters, occurrences })
     }
 
-    /// How often the name may stand along its line.
+    /// The number of times that the name may be repeated along its line.
     pub fn count(&self) -> usize {
         self.occurrences.len()
     }
 
-    /// The middles of the ways to set the occurrence of this number, and the directions of their letters' tops.
+    /// The possible places of one repetition of the name: the position of its middle letter, and the direction of that
+    /// letter's top.
     pub fn tops(&self, occurrence: usize) -> impl Iterator<Item = LetterTop> {
         self.occurrences[occurrence].iter().map(|one| {
             let middle = one.letters[one.letters.len() / 2];
@@ -120,13 +121,13 @@ impl<'a> PreparedLine<'a> {
         })
     }
 
-    /// The request for the occurrence of this number.
+    /// The placement request for one repetition of the name.
     pub fn request(&self, occurrence: usize) -> LabelRequest {
         let candidates = self.occurrences[occurrence].iter().map(|one| one.boxes.clone()).collect();
         LabelRequest { candidates, reserved: None }
     }
 
-    /// What an occurrence takes of the sheet.
+    /// The area of the sheet that one repetition of the name covers.
     pub fn candidate(&self, occurrence: usize, choice: usize) -> &LabelCandidate {
         &self.occurrences[occurrence][choice].boxes
     }

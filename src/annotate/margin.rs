@@ -26,7 +26,7 @@ const GAP: f32 = 16.0;
 /// The least foreshortening of the arrow: in lower views it would be a line.
 const LEAST_TILT: f32 = 0.5;
 
-/// What the margin of a sheet says beside the furniture of every picture.
+/// The texts of a sheet's margin, besides the furniture of every picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MarginNotes {
     /// The parts of the page.

@@ -24,7 +24,7 @@ pub struct ThreeNorths {
     pub grid_deg: Option<f64>,
     /// Of a compass needle, and its standard error.
     pub magnetic_deg: Option<(f64, f64)>,
-    /// The day that it is true on, or why there is none.
+    /// The date of the declination, or the reason why it is missing.
     pub magnetic_note: String,
 }
 

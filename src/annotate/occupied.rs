@@ -1,4 +1,4 @@
-//! What is already drawn on a sheet, in square cells, so that a question about a place looks only at what is near it.
+//! An index of the areas of a sheet that are drawn on, in square cells, so that a query examines only nearby marks.
 
 use glam::Vec2;
 
@@ -34,7 +34,7 @@ pub struct OccupiedMark {
 }
 
 impl OccupiedSheet {
-    /// An empty sheet for `bounds`; what is outside is kept in the cells at its border.
+    /// An empty sheet for `bounds`; marks outside are kept in the cells at its border.
     pub fn new(bounds: &PixelBox) -> Self {
         let size = bounds.size().max(Vec2::ONE);
         let size = if size.is_finite() { size } else { Vec2::ONE };
@@ -58,7 +58,7 @@ impl OccupiedSheet {
         self.marks.push(OccupiedMark { shape, number });
     }
 
-    /// What may meet `area`; a mark in several cells comes several times.
+    /// The marks that may intersect `area`; a mark in several cells is returned several times.
     pub fn near<'a>(&'a self, area: &PixelBox) -> impl Iterator<Item = &'a OccupiedMark> + use<'a> {
         self.cells_of(area).flat_map(|cell| &self.cells[cell]).map(|&mark| &self.marks[mark as usize])
     }

@@ -37,7 +37,7 @@ const FONT: Ref = Ref::new(FIRST_FONT_OBJECT);
 const PICTURE_NAME: Name<'_> = Name(b"picture");
 const FONT_NAME: Name<'_> = Name(b"font");
 
-/// A sheet that is no PDF.
+/// A sheet that cannot be written as PDF.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the sheet cannot be written as PDF: its size or a part of it is out of the format's range")]
 pub struct PdfError;

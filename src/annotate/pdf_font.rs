@@ -1,4 +1,4 @@
-//! The font of the texts without ink in a PDF: of the embedded font, the glyphs of their characters.
+//! The font of the invisible, searchable texts of a PDF: those glyphs of the embedded font that the texts use.
 //!
 //! Each character has a code of its own, also where several share a glyph, or the box of a missing one where the font lacks
 //! them: what is searched and copied is the text, whatever the font holds.
@@ -31,7 +31,7 @@ const STEM: f32 = 95.0;
 const SYSTEM: SystemInfo<'_> =
     SystemInfo { registry: Str(b"Adobe"), ordering: Str(b"Identity"), supplement: 0 };
 
-/// The font, with the characters that texts have asked of it.
+/// The font and the characters that the texts use.
 pub struct PdfFont {
     tables: FontRef<'static>,
     /// The first has the code 1; 0 is that of no character.

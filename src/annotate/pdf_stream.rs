@@ -13,7 +13,7 @@ pub fn deflated(bytes: &[u8]) -> Option<Vec<u8>> {
     i32::try_from(packed.len()).is_ok().then_some(packed)
 }
 
-/// What tells files and fonts from others of their kind.
+/// A CRC-32 of `bytes`, which distinguishes files and fonts of one kind.
 pub fn check(bytes: &[u8]) -> [u8; 4] {
     let mut check = Crc::new();
     check.update(bytes);

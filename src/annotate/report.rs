@@ -33,9 +33,9 @@ pub enum FurnitureKind {
 pub struct AnnotationReport {
     /// Labels drawn.
     pub placed: Vec<String>,
-    /// What the texts and symbols drawn on the picture take of it, with their halos.
+    /// The boxes that the drawn texts and symbols cover on the picture, with their halos.
     pub boxes: Vec<SheetBox>,
-    /// Labels drawn elsewhere than where they are wished, with the reason; they are among those placed.
+    /// Labels drawn away from their preferred position, with the reason; they are among those placed.
     pub moved: Vec<MovedLabel>,
     /// Labels not drawn because terrain or something on it hides their place.
     pub hidden: Vec<String>,
@@ -78,7 +78,7 @@ impl SheetBox {
     }
 }
 
-/// A label drawn elsewhere than where it is wished.
+/// A label drawn away from its preferred position.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MovedLabel {
     /// The text as given.
@@ -87,7 +87,7 @@ pub struct MovedLabel {
     pub to: LabelMove,
 }
 
-/// Where a label is drawn in place of where it is wished.
+/// The position of a label that is not drawn at its preferred one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LabelMove {
     /// At the end of a leader line: none of the eight positions beside its place is free.
@@ -96,7 +96,7 @@ pub enum LabelMove {
     OffLine,
 }
 
-/// What becomes of military symbols, by their names.
+/// The outcome of placing military symbols, by their names.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SymbolReport {
     /// Drawn.

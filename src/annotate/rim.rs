@@ -21,7 +21,8 @@ pub struct RimMark {
     pub outward: Vec2,
     /// The coordinate.
     pub figure: CoordinateFigure,
-    /// The coordinate in full, and the edge that it stands along: the first on an edge that finds a place for it has it.
+    /// The full coordinate, and the edge of the block: the first mark on an edge that has space for the full coordinate
+    /// shows it.
     pub full: Option<(CoordinateFigure, usize)>,
 }
 

@@ -29,11 +29,11 @@ const PARTS: i64 = 4;
 pub struct ScaleBar {
     /// Pixels that one meter across the view spans there.
     pub pixels_per_meter: f32,
-    /// Where that holds; printed under the bar.
+    /// The part of the picture where the scale is true; printed under the bar.
     pub holds: ScaleExtent,
 }
 
-/// Where on a picture a scale holds.
+/// The part of a picture where a scale is true.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ScaleExtent {
     /// At a distance from the eye, in meters.

@@ -1,5 +1,5 @@
-//! Placement of military symbols: on a staff over their place, stacked where several stand at one, off each other and the
-//! furniture.
+//! Placement of military symbols: on a staff over their place, stacked where several share one place, without overlapping
+//! each other or the furniture.
 //!
 //! ```text
 //!    ┌──┐      ┌──┐                  ┌──┐
@@ -40,7 +40,7 @@ const ARROW_LENGTH: f32 = 1.1;
 
 const BLACK: Srgba = Srgba::opaque(0, 0, 0);
 
-/// What is drawn of all symbols, and the boxes that labels leave free.
+/// The drawing of all symbols, and the boxes that labels must avoid.
 #[derive(Default)]
 pub struct DrawnSymbols {
     pub drawing: Drawing,
@@ -48,7 +48,7 @@ pub struct DrawnSymbols {
     pub boxes: Vec<PixelBox>,
 }
 
-/// Draws the symbols off `furniture`; reports what becomes of each.
+/// Draws the symbols so that they do not overlap `furniture`; reports the outcome of each.
 pub fn draw_symbols(
     symbols: &[PictureSymbol],
     furniture: &[PixelBox],

@@ -61,7 +61,7 @@ impl Elevation {
         Ok(Self { dataset: Dataset::open(path.as_ref(), &options)? })
     }
 
-    /// Of an elevation model in memory.
+    /// Queries of an elevation model in memory.
     pub fn new(dem: &Dem) -> Self {
         Self { dataset: Dataset::from_raster("the elevation model", Arc::clone(&dem.raster)) }
     }
@@ -82,12 +82,12 @@ impl Elevation {
         self.dataset.crs()
     }
 
-    /// What heights are counted from, in the file's words; `None` where not stated.
+    /// The vertical datum of the heights, in the file's words; `None` where not stated.
     pub fn vertical_datum(&self) -> Option<String> {
         self.dataset.header().vertical_datum.clone()
     }
 
-    /// Where the tiles contradict each other, in a sentence.
+    /// A sentence about tiles that contradict each other; `None` where none do.
     pub fn warning(&self) -> Option<&str> {
         self.dataset.warning()
     }

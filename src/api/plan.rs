@@ -9,24 +9,24 @@ use sandtable_shards::plan::ShardPlan;
 use sandtable_shards::record::ShardState;
 use sandtable_shards::work::{ShardWorker, is_done};
 
-/// A plan that the command `plan` wrote; `src/shards/SHARDS.md` is the page of it. Its shards may be done from many threads, programs
-/// and machines, in any order.
+/// A plan that the command `plan` wrote, in the format of `src/shards/SHARDS.md`. Its shards may be done from many threads,
+/// programs and machines, in any order.
 pub struct WorkPlan {
     plan: Arc<ShardPlan>,
     /// What shards share, opened, for each thread that did one; taken out while one does.
     idle: Mutex<Vec<ShardWorker>>,
 }
 
-/// How far a plan is, and what was made of it.
+/// The progress of a plan, and the files that `gather` wrote.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GatheredPlan {
-    /// The number of shards whose results are there and are those of their records.
+    /// The number of shards whose results exist and match their records.
     pub done: usize,
-    /// The numbers of those without a record.
+    /// The numbers of the shards without a record.
     pub missing: Vec<usize>,
-    /// The numbers of those whose record is of another plan, or whose results are not those of it.
+    /// The numbers of the shards whose record is of another plan, or whose results do not match their record.
     pub stale: Vec<usize>,
-    /// The files that were written: of the product where all shards are done, else an index at most.
+    /// The files that were written: the product if all shards are done, else at most an index.
     pub output: Vec<PathBuf>,
 }
 
@@ -54,7 +54,7 @@ impl WorkPlan {
         is_done(&self.plan, shard)
     }
 
-    /// Checks that the inputs are what was planned with.
+    /// Checks that the inputs have not changed since the plan was made.
     ///
     /// # Errors
     /// [`Error::Plan`] names the first that is not.
@@ -62,8 +62,8 @@ impl WorkPlan {
         Ok(self.plan.verify_inputs()?)
     }
 
-    /// Does a shard, done or not: writes its results, then its record. The first one of a thread checks and opens the inputs,
-    /// which later ones share.
+    /// Processes a shard, even one that is done: writes its results, then its record. The first one of a thread checks and
+    /// opens the inputs, which later ones share.
     ///
     /// # Errors
     /// [`Error::Plan`]; other shards may still be done.
@@ -78,7 +78,8 @@ impl WorkPlan {
         Ok(())
     }
 
-    /// How far the plan is; writes the product, to `out` or into the plan's folder, where all shards are done.
+    /// Returns the progress of the plan; if all shards are done, also writes the product, to `out` or into the plan's
+    /// folder.
     ///
     /// # Errors
     /// [`Error::Plan`].

@@ -73,7 +73,7 @@ impl Scene {
         Ok(Self { model: open_scene(path.as_ref(), options.allowed, options.progress)? })
     }
 
-    /// [`Scene::open_with`] and what is wrong with the scene or looks wrong, as the command `check` finds it.
+    /// [`Scene::open_with`], and the findings of the command `check` about the scene.
     ///
     /// # Errors
     /// [`Error::OpenScene`].
@@ -90,13 +90,13 @@ impl Scene {
         self.model.notes()
     }
 
-    /// The names of the views, the first one that of the default.
+    /// The names of the views; the first is the default.
     pub fn view_names(&self) -> impl Iterator<Item = &str> {
         self.model.cameras.iter().map(|view| view.name.as_str())
     }
 
-    /// The view called `name`, as large as its paper, or 1920 by 1080 pixels; by parallel rays without a stated scale, as many pixels in the
-    /// shape of what it shows.
+    /// The view called `name`, as large as its paper, or 1920 by 1080 pixels; a parallel view without a stated scale has as
+    /// many pixels, in the aspect ratio of the ground that it shows.
     ///
     /// # Errors
     /// [`Error::NoView`].

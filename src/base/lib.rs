@@ -1,4 +1,4 @@
-//! What every other crate stands on: zip archives, numbers in binary files, limits on input and work, words in messages.
+//! The base of all other crates: zip archives, numbers in binary files, limits on input and work, words in messages.
 
 pub mod archive;
 pub mod bytes;

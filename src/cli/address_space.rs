@@ -1,4 +1,4 @@
-//! The address space that `ulimit -v` leaves: a command that could not end well in it is refused before it begins.
+//! The address space that `ulimit -v` leaves: a command that cannot succeed within it is refused before it begins.
 //!
 //! An allocation that fails ends a program by a signal. What is large is asked for by
 //! [its size](sandtable_base::limits::memory); what is small is asked for here, all together: each command has a floor of what it was
@@ -54,8 +54,8 @@ fn floor_of(command: &Command) -> Option<u64> {
     }
 }
 
-/// How many threads a command computes with: those that it asks for, or one for each processor, but no more than fit into the
-/// address space that it may have.
+/// The number of threads for a command: the number it asks for, or one per processor, but no more than fit into the available
+/// address space.
 ///
 /// # Errors
 /// The command does not fit with one thread.
@@ -107,7 +107,7 @@ pub struct AddressSpace {
 }
 
 impl AddressSpace {
-    /// `None` where it is not limited, or the system does not tell.
+    /// The limit of this process; `None` where it is not limited, or the system does not report it.
     pub fn of_this_process() -> Option<Self> {
         let read = |file: &str| fs::read_to_string(format!("/proc/self/{file}")).ok();
         Self::parse(&read("limits")?, &read("status")?)

@@ -32,7 +32,7 @@ pub struct CheckArguments {
     pub deny: Option<DeniedFindings>,
 }
 
-/// Findings that let a check fail, besides errors.
+/// Findings that make a check fail, besides errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DeniedFindings {
     /// Warnings.

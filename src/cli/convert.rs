@@ -175,7 +175,7 @@ fn with_remedy(file: &Path, error: &ConvertError) -> CliError {
     CliError::input(format!("{}: {}{remedy}", file.display(), error_text(error)))
 }
 
-/// The error of elevation without a place, with the options that state it. `crs_option` is the option of the
+/// The error for elevation without a georeference, with the options that state one. `crs_option` is the option of the
 /// coordinate system.
 pub fn place_error(file: &Path, error: &WarpError, crs_option: &str) -> CliError {
     let reason = match error {

@@ -29,7 +29,7 @@ pub struct GatherArguments {
     json: bool,
 }
 
-/// Writes the product, or names the shards that are missing or stale: an atlas has its page also then.
+/// Writes the product, or names the missing and stale shards; an atlas gets its page in both cases.
 pub fn run(arguments: &GatherArguments) -> Result<(), CliError> {
     let plan = ShardPlan::open(&arguments.plan)?;
     let progress = PlanProgress::read(&plan);

@@ -62,7 +62,7 @@ pub type ServeProgram = fn(&ServiceOptions) -> Result<(), Box<dyn Error + Send +
 /// A window on a scene: returns when it is closed.
 pub type ViewProgram = fn(&ViewerOptions) -> Result<(), Box<dyn Error + Send + Sync>>;
 
-/// What other programs run for commands of the same names; `None` where they are not built in.
+/// The implementations of `serve`, `view` and `--backend gpu`; `None` where they are not built in.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BuiltInPrograms {
     /// Runs `serve`.

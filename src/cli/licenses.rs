@@ -1,4 +1,4 @@
-//! `sandtable licenses`: the notices of what the program is made of.
+//! `sandtable licenses`: the license notices of the program and its dependencies.
 
 use crate::error::CliError;
 use crate::output::print;

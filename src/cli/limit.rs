@@ -9,7 +9,7 @@ use sandtable_base::limits::set_limit::set_limit;
 use sandtable_base::limits::work_limit::LimitError;
 use sandtable_base::message::suggest::{nearest, quoted};
 
-/// A limit's name and what it is to be.
+/// The name of a limit and its new value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StatedLimit {
     pub name: String,
@@ -33,8 +33,8 @@ fn count(text: &str) -> Option<u64> {
     is_count.then(|| digits.parse::<u64>().ok()?.checked_mul(scale)).flatten()
 }
 
-/// Checks that as many options of a name were stated as were parsed: of options of all commands, only those on one side of the
-/// command are.
+/// Checks that every stated option called `name` was parsed: options of all commands are parsed only on one side of the
+/// command.
 ///
 /// # Errors
 /// They are stated both before and after the command.

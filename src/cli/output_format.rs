@@ -7,8 +7,8 @@ use sandtable_dem::dem_format::DemFormat;
 use sandtable_dem::formats::WRITTEN_EXTENSIONS;
 use sandtable_files::disk;
 
-/// The format that `from_extension` finds for the extension of `path`, where a file could be written there that
-/// replaces none of `inputs`. `written` names the extensions in messages.
+/// The format that `from_extension` returns for the extension of `path`, after a check that a file can be written there
+/// without replacing one of `inputs`. `written` names the extensions in messages.
 pub fn output_format<F>(
     path: &Path,
     inputs: &[PathBuf],

@@ -65,7 +65,7 @@ impl RenderedPicture {
 /// The pictures of a scene file.
 pub struct RenderedFile {
     pub scenes: Vec<RenderedScene>,
-    /// What could not be drawn beside other pictures that could.
+    /// The pictures that could not be drawn, while others could.
     pub failures: Vec<RenderFailure>,
 }
 
@@ -75,8 +75,8 @@ pub struct RenderFailure {
     pub error: CliError,
 }
 
-/// Renders the pictures of a scene file that the arguments ask for and writes them, once all are there. A phase or camera
-/// that cannot be drawn is left out where there are others, but not of a sheet.
+/// Renders the pictures of a scene file that the arguments select, and writes them when all are rendered. A phase or
+/// camera that cannot be drawn is left out where there are others, but not of a sheet.
 pub fn render(
     arguments: &RenderArguments,
     backend: RenderBackend,

@@ -1,4 +1,4 @@
-//! A command under `ulimit -v` has a supervisor, which ends well where the command cannot.
+//! A supervisor process for a command under `ulimit -v`, which ends with a message where the command cannot.
 //!
 //! Rust ends a program by a signal where a small allocation fails, and no program without `unsafe` can change that. So where
 //! the address space is limited, the command runs in a process of its own, started by this one with the same arguments, files
@@ -28,8 +28,8 @@ const SUPERVISOR: &str = "SANDTABLE_SUPERVISOR";
 /// it is told again.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Runs this program again in a process of its own where its address space is limited, and returns how that ended; `None`
-/// where nothing limits it, in the process that is supervised, and where no other can be started.
+/// Runs this program again in a child process if its address space is limited, and returns the exit code of the child;
+/// `None` without a limit, in the child itself, and where no child can be started.
 pub fn supervise() -> Option<ExitCode> {
     let space = AddressSpace::of_this_process()?;
     let is_supervised = env::var(SUPERVISOR).is_ok_and(|supervisor| supervisor == parent_id().to_string());

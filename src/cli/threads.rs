@@ -13,7 +13,7 @@ use rayon::{ThreadBuilder, ThreadPool, ThreadPoolBuilder};
 
 use crate::error::CliError;
 
-/// How many threads are wanted: so many as stated, else as `RAYON_NUM_THREADS` says, else one for each processor.
+/// The wanted number of threads: the stated one, else that of `RAYON_NUM_THREADS`, else one per processor.
 pub fn wanted(stated: Option<usize>) -> usize {
     let of_environment =
         || env::var("RAYON_NUM_THREADS").ok()?.parse().ok().filter(|&count: &usize| count > 0);

@@ -31,8 +31,8 @@ use sandtable_raster::windows::Windows;
 /// The tiles that a virtual raster names.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VrtTiles {
-    /// Of samples that tiles share the first tile's counts: GDAL draws them in the order of the file, one over the other, so
-    /// this is the reverse.
+    /// The tiles in order of precedence: where tiles overlap, the first one counts; GDAL draws them in the order of the
+    /// file, so this is the reverse. GDAL draws them in the order of the file, one over the other, so this is the reverse.
     pub sources: Vec<VrtSource>,
     frame: VrtFrame,
 }
@@ -74,7 +74,7 @@ impl VrtTiles {
         self.sources.iter().map(|source| path.with_file_name(&source.file)).collect()
     }
 
-    /// Takes what the user states of missing data in place of what the virtual raster states.
+    /// Replaces the nodata values of the virtual raster by the one that the user states, if any.
     pub fn state_nodata(&mut self, nodata: Option<f64>) {
         if nodata.is_some() {
             self.sources.iter_mut().for_each(|source| (source.nodata, source.also_nodata) = (nodata, None));

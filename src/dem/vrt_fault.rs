@@ -1,4 +1,4 @@
-//! Errors of virtual rasters, and how far off their numbers may be.
+//! Errors of virtual rasters, and the tolerance for their numbers.
 
 use sandtable_raster::error::DemErrorKind;
 

@@ -1,4 +1,5 @@
-//! What writing an elevation file gives: the bytes, notes for the user, or why a format cannot hold a raster.
+//! The result of writing an elevation file: the bytes and notes for the user, or the reason why a format cannot hold a
+//! raster.
 
 use std::io;
 

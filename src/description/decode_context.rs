@@ -1,4 +1,4 @@
-//! What the readers of all tables of a scene file share: errors found so far, styles, phases.
+//! The state that the readers of all tables of a scene file share: errors found so far, styles, phases.
 
 use crate::declaration::KeyDeclaration;
 use crate::diagnostic::DiagnosticSink;

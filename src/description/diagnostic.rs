@@ -30,13 +30,13 @@ impl Diagnostic {
         Self { code, place, cause: cause.into().into(), help: None }
     }
 
-    /// The same with another code.
+    /// This error with another code.
     #[must_use]
     pub fn with_code(self, code: FindingCode) -> Self {
         Self { code, ..self }
     }
 
-    /// The same with a remedy.
+    /// This error with a remedy.
     #[must_use]
     pub fn with_help(self, help: impl Into<String>) -> Self {
         Self { help: Some(help.into()), ..self }
@@ -52,7 +52,7 @@ impl Diagnostic {
         self.help.as_deref()
     }
 
-    /// What is wrong.
+    /// The code of the error.
     pub fn code(&self) -> FindingCode {
         self.code
     }

@@ -55,7 +55,7 @@ pub struct Finding {
     pub message: String,
     /// The remedy.
     pub help: Option<String>,
-    /// How many more are like it in the same table, of which it is the worst.
+    /// The number of similar findings in the same table, of which this is the worst.
     pub more: usize,
 }
 
@@ -65,20 +65,20 @@ impl Finding {
         Self { code, place: None, message: message.into(), help: None, more: 0 }
     }
 
-    /// The same about the bytes `span` of `source`; about none in particular where `span` is empty and at the start.
+    /// This finding at the bytes `span` of `source`; without a place where `span` is empty and at the start.
     #[must_use]
     pub fn at(self, source: &Arc<SourceText>, span: Range<usize>) -> Self {
         let place = (span != (0..0)).then(|| SourcePlace::new(source, span));
         Self { place, ..self }
     }
 
-    /// The same with a remedy.
+    /// This finding with a remedy.
     #[must_use]
     pub fn with_help(self, help: impl Into<String>) -> Self {
         Self { help: Some(help.into()), ..self }
     }
 
-    /// The same as the worst of so many more like it.
+    /// This finding as the worst of `more` further ones like it.
     #[must_use]
     pub fn and_more(self, more: usize) -> Self {
         Self { more, ..self }
@@ -89,7 +89,7 @@ impl Finding {
         self.code.severity()
     }
 
-    /// The order of output: by place, those without one first; of one place the gravest first.
+    /// The order of output: by place, findings without a place first; at one place the gravest first.
     pub fn order(&self, other: &Self) -> Ordering {
         let key = |finding: &Self| {
             let span = finding.place.as_ref().map(SourcePlace::span);

@@ -49,7 +49,7 @@ pub enum IncludeError {
 }
 
 impl IncludeError {
-    /// What is wrong.
+    /// The code of the error.
     pub fn code(&self) -> FindingCode {
         match self {
             Self::Unreadable(..) => FindingCode::MissingFile,

@@ -10,7 +10,7 @@ use crate::scalar::Scalar;
 use crate::value::{KeyValue, type_name};
 use sandtable_base::message::suggest::quoted;
 
-/// Which features of a file are meant.
+/// A selection of features of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Selection {
     /// Those of which every property listed has one of the values listed for it.

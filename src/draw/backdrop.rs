@@ -1,4 +1,4 @@
-//! What shows where nothing is drawn: a sky, or the plain backdrop of a studio.
+//! The background of a picture: a sky, or the plain backdrop of a studio.
 //!
 //! With `z` the rise of a ray of unit length, the sky is `mix(haze.color, zenith, rise(z))`: the haze's color up to the
 //! horizon, from there on deeper, and without a step or a bend at the horizon. The studio has no horizon: its color
@@ -9,7 +9,7 @@ use glam::Vec3;
 use crate::color::Srgba;
 use crate::lighting::Lighting;
 
-/// What shows where nothing is drawn.
+/// The background of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backdrop {
     /// The sky over the haze of the horizon.

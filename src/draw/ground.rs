@@ -173,7 +173,7 @@ pub struct GroundDetail {
     pub draped: DrapedColor,
 }
 
-/// What changes across a pixel of the ground.
+/// The change of the ground's values across a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PixelChange {
     /// Of the elevation, in meters.
@@ -239,8 +239,8 @@ impl GroundMap {
         }
     }
 
-    /// The color in linear light of ground that reads as `post` over a pixel across which it changes by `change`: the ramp
-    /// under what covers it and under trees their [`Undergrowth`], or water; what is draped over them; and contours.
+    /// The color of a pixel of ground in linear light, from the map's values `post` at its center and their `change`
+    /// across it: the ramp with land cover and [`Undergrowth`], or water, under a draped picture and contours.
     pub fn albedo(&self, post: &GroundPost, change: PixelChange, detail: &GroundDetail) -> Vec3 {
         let tint = self.ramp.linear_at(post.height_m);
         let land = self.cover.map_or(tint, |cover| cover.over(tint, post, detail.uneven));

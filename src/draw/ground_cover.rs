@@ -41,14 +41,15 @@ pub struct GroundCover {
     pub tree_m: f32,
     /// The elevation of the snow line, meters; above the tree line.
     pub snow_m: f32,
-    /// The rise of the true ground over that of the drawn one; positive.
+    /// The ratio of true slopes to drawn slopes; positive.
     pub true_rise: f32,
     /// 1 where the shady side is the north, −1 where it is the south.
     pub shady_north: f32,
 }
 
 impl GroundCover {
-    /// The color in linear light of ground with a `tint` that reads as `post`; `uneven` is [`cover_noise`] there.
+    /// The color of covered ground in linear light, over the ramp's `tint` where the map reads `post`; `uneven` is
+    /// [`cover_noise`] there.
     pub fn over(&self, tint: Vec3, post: &GroundPost, uneven: f32) -> Vec3 {
         let slope = Vec2::new(post.slope_east, post.slope_north) * self.true_rise;
         let shade = (-slope.y * self.shady_north).clamp(-1.0, 1.0);

@@ -1,4 +1,5 @@
-//! The ground and what lies on it by patches, for renderers that show frame after frame: only what changed is handed over.
+//! The ground and the features draped on it by patches, for renderers that show frame after frame: only changes are handed
+//! over.
 //!
 //! A patch's vertices are handed over once and anew only where its heights change; what changes from frame to frame is the
 //! list of its triangles, 16 bits an index. What lies on the ground is cut to these triangles, so that it is handed over
@@ -31,7 +32,7 @@ pub struct PatchTriangles {
     pub triangles: Arc<Vec<[u16; 3]>>,
 }
 
-/// A piece of something that lies on the ground, within a patch.
+/// A part of a draped feature within a patch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrapedPiece {
     /// Vertices in world space, and triangles.
@@ -44,7 +45,7 @@ pub struct DrapedPiece {
     pub feature: FeatureId,
 }
 
-/// All that lies on a patch, in drawing order.
+/// The draped features on a patch, in drawing order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PatchDrapes {
     /// Which patch.
@@ -75,7 +76,7 @@ pub struct GroundChanges {
     pub hidden: Vec<PatchId>,
     /// Patches whose vertices are dropped from memory, too.
     pub dropped: Vec<PatchId>,
-    /// What lies on patches, cut anew.
+    /// Draped features of patches, cut again.
     pub drapes: Vec<PatchDrapes>,
     /// Changes of the ground map; a later one lies over those before it.
     pub map: Vec<GroundMapPatch>,

@@ -1,4 +1,4 @@
-//! Patterns that stand for colors where there are none: black on white, coarse enough to survive a photocopier.
+//! Patterns in place of colors for print in black on white, coarse enough to survive a photocopier.
 //!
 //! A pattern is a function of the pixel, so that areas side by side make one pattern; its unit grows with the picture.
 

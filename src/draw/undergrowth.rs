@@ -13,7 +13,7 @@ pub struct Undergrowth;
 impl Undergrowth {
     /// Its color.
     pub const COLOR: Srgba = Srgba::opaque(88, 92, 52);
-    /// The most of it over the ground's own color, which still tells the height.
+    /// The greatest share of undergrowth over the ground's own color, so that the ramp still shows the height.
     pub const MOST: f32 = 0.85;
 
     /// The share of it at a place, from the mean of [`GroundPost::water`] around it, which is negative under trees.

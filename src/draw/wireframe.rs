@@ -1,5 +1,4 @@
-//! Wireframe: the edges of triangles as thin dark lines over what they are the edges of, as papers on terrain show their
-//! meshes.
+//! Wireframe: the edges of triangles as thin dark lines over the surface, as papers on terrain show their meshes.
 //!
 //! A pixel on an edge is a little of each of the two triangles that meet there, and both find the same distance of its center
 //! from their edge. The line is therefore whole and smooth, and needs no look at neighbors. Where triangles are a few pixels high their edges would

@@ -72,15 +72,15 @@ pub struct BrushChanges {
 }
 
 impl BrushChanges {
-    /// These changes, then those.
+    /// These changes, followed by others.
     pub fn and(mut self, then: Self) -> Self {
         self.pieces.extend(then.pieces);
         self.volumes += then.volumes;
         self
     }
 
-    /// These changes without those of posts that `held` holds, which get their former heights back. For the changes of
-    /// one brush, right after it made them.
+    /// These changes without the posts in `held`, which get their former heights back. For the changes of one brush,
+    /// right after it made them.
     pub fn without_held(self, lattice: &mut Lattice, held: &HeldPosts) -> Self {
         let mut kept = Self::default();
         for piece in self.pieces {

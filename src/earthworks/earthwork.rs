@@ -1,4 +1,4 @@
-//! An earthwork: one of the brushes, or ground leveled or raised by what lies under it, applied beside the water.
+//! An earthwork: one of the brushes, or ground that is leveled or raised, applied to all posts but those under water.
 //!
 //! A scene's earthworks and those that a user makes while the scene is shown are applied by the same function, so that
 //! both leave the same heights.
@@ -62,7 +62,7 @@ pub enum CrownHeight {
 }
 
 impl Earthwork {
-    /// Changes the lattice but for the posts that `held` holds; pins none.
+    /// Changes the lattice except for the posts in `held`; pins no post.
     pub fn apply(&self, lattice: &mut Lattice, held: &HeldPosts) -> BrushChanges {
         let changes = match self {
             Self::Crater(crater) => crater.apply(lattice),
@@ -147,12 +147,12 @@ pub struct MovedEarth {
     pub area_m2: f64,
 }
 
-/// Does works one after the other, but for the posts that `held` holds; pins none.
+/// Applies earthworks one after the other, except for the posts in `held`; pins no post.
 pub fn dig(works: &[Earthwork], lattice: &mut Lattice, held: &HeldPosts) -> BrushChanges {
     works.iter().fold(BrushChanges::default(), |changes, work| changes.and(work.apply(lattice, held)))
 }
 
-/// What [`dig`] would move; nothing is moved. Costs a copy of the ground around the works.
+/// The earth that [`dig`] would move; changes nothing. Costs a copy of the ground around the works.
 pub fn foreseen(works: &[Earthwork], lattice: &Lattice, held: &HeldPosts) -> MovedEarth {
     let mut moved = MovedEarth::default();
     let Some(mut part) = ground_around(works, lattice) else { return moved };

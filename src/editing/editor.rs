@@ -86,7 +86,7 @@ pub struct SceneEditor {
     undone: Vec<DoneEdit>,
 }
 
-/// All that a scene is built of: can be sent to a thread that builds it.
+/// The inputs of a scene: they can be sent to a thread that builds it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SceneSource {
     /// Where the scene file is, or will be; names of files are relative to it.
@@ -179,7 +179,7 @@ impl SceneEditor {
         Ok(Self { source, document, saved, done: Vec::new(), undone: Vec::new() })
     }
 
-    /// What the scene is built of, as it is now.
+    /// The inputs of the scene, with all edits.
     pub fn source(&self) -> &SceneSource {
         &self.source
     }
@@ -210,7 +210,7 @@ impl SceneEditor {
         !self.undone.is_empty()
     }
 
-    /// Makes an edit and returns what becomes of `scene`, which is that of the text before it.
+    /// Applies an edit and returns its effect on `scene`, which was built of the text before it.
     ///
     /// # Errors
     /// See [`EditError`].

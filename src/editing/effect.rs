@@ -1,4 +1,4 @@
-//! What an edit changes of a scene that is shown, so that as little as possible is built anew.
+//! The effect of an edit on a scene that is shown, so that as little as possible is rebuilt.
 
 use std::ops::Range;
 
@@ -26,7 +26,7 @@ const PAD_REACH_CELLS: f64 = 66.0;
 /// The footprint of a pad's margin, as a multiple of the model's own radius.
 const PAD_MARGIN: f32 = 1.3;
 
-/// What becomes of a scene.
+/// The effect of an edit on a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EditEffect {
     /// The picture stays; views or the texts around the picture may differ.

@@ -1,4 +1,4 @@
-//! The scene file as other programs leave it: whether it changed, and the scene of what it holds now.
+//! Watches a scene file that other programs may change, and opens the scene again.
 
 use std::path::PathBuf;
 
@@ -20,7 +20,7 @@ pub struct WatchedScene {
     fingerprint: Option<String>,
 }
 
-/// What became of a scene file.
+/// The outcome of reloading a scene file.
 pub enum ReloadedScene {
     /// It holds what it held.
     Unchanged,
@@ -44,7 +44,7 @@ impl WatchedScene {
         std::iter::once(&self.path).chain(&self.files)
     }
 
-    /// Takes the files as they are for what is shown: after they were saved.
+    /// Records that the files, as they are now, are those of the shown scene: after a save.
     pub fn acknowledge(&mut self) {
         self.fingerprint = fingerprint(&self.path, &self.files).ok();
     }

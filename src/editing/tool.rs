@@ -192,7 +192,7 @@ impl DrawingTool {
         !self.points.is_empty()
     }
 
-    /// What the user does next.
+    /// A hint for the user: what to do next.
     pub fn hint(&self) -> &'static str {
         let enough = self.points.len() >= self.kind.shape().least();
         match (self.kind.shape(), self.points.len()) {

@@ -99,7 +99,7 @@ pub fn camera_table(scene: &SceneModel, camera: &Camera, name: &str) -> Result<S
 }
 
 impl ViewedCamera {
-    /// What states `camera`.
+    /// The scene-file values of `camera`.
     ///
     /// # Errors
     /// [`ViewSnapshotError::NoGround`] and [`ViewSnapshotError::Parallel`].

@@ -1,4 +1,4 @@
-//! Cuts the ground under drapes out.
+//! Cuts out the ground under draped features.
 //!
 //! Drapes were cut along the ground's triangles, so each of their triangles lies in one of the ground. Each triangle of
 //! the ground loses, in plan, the drape triangles in it; the rest keeps its plane. Ground and drapes then cover every

@@ -45,7 +45,7 @@ pub fn open(path: &Path) -> Result<(Vec<u8>, Box<dyn FileContent>), ReadFileErro
     }
 }
 
-/// What tells this version of an elevation file with an address from others.
+/// An identifier of the current version of an elevation file on a server.
 ///
 /// # Errors
 /// It has no address; the server's.
@@ -55,7 +55,7 @@ pub fn version(path: &Path) -> Result<String, ReadFileError> {
     Ok(format!("{address} {}", open::version(address).map_err(failed(path))?))
 }
 
-/// Which version of an elevation file with an address its server has.
+/// The version of an elevation file that its server states.
 ///
 /// # Errors
 /// It has no address; the server's.

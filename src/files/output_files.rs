@@ -15,7 +15,7 @@ use crate::part_file::{self, PartFile};
 /// The longest chain of links that is followed, as in Linux.
 const MOST_LINKS: usize = 40;
 
-/// Files that are written and not there yet; dropped, they leave nothing.
+/// Files that are written but not published yet; dropping this removes them.
 #[derive(Debug, Default)]
 pub struct OutputFiles {
     parts: Vec<(PartFile, PathBuf)>,

@@ -174,7 +174,7 @@ pub fn publish(parts: Vec<(PartFile, PathBuf)>) -> Result<(), (PathBuf, io::Erro
     failure.map_or(Ok(()), Err)
 }
 
-/// Removes every part of this process, and lets nobody begin or publish another while the result is there: for a program
+/// Removes every part of this process, and blocks new parts and publication while the result is alive: for a program
 /// that ends now.
 pub fn abandon_all() -> impl Sized {
     let live = live();

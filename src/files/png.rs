@@ -4,7 +4,7 @@ use image::{ExtendedColorType, ImageEncoder};
 
 use sandtable_draw::pixels::Pixels;
 
-/// What a PNG file says of its picture.
+/// The metadata of a PNG file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PngNotes {
     /// Pixels per inch of its print, for programs that print it at its size.

@@ -31,8 +31,8 @@ pub struct ChebyshevTable {
 }
 
 impl ChebyshevTable {
-    /// The smallest table of `map` over `rect` that is off by at most `tolerance`, else the largest; `None` where the map
-    /// has no value at one of the places that are asked.
+    /// The smallest table of `map` over `rect` whose error is at most `tolerance`, else the largest; `None` where the map
+    /// has no value at one of the sampled places.
     pub fn fit(rect: Rect, tolerance: f64, map: impl Fn(DVec2) -> Option<DVec2>) -> Option<Self> {
         let mut last = None;
         for points in POINTS {

@@ -21,8 +21,8 @@ impl Geodesic {
         Self { start, bearing_deg: Geodesic.bearing(from, to), length_m: Geodesic.distance(from, to) }
     }
 
-    /// The line from where a system puts the coordinates `at` to where another does; `None` where one of the two puts them
-    /// nowhere on Earth.
+    /// The line between the places that two systems give the coordinates `at`; `None` where one of the systems has no
+    /// place on Earth for them.
     pub fn between_systems(one: &Crs, other: &Crs, at: DVec2) -> Option<Self> {
         let place = |crs: &Crs| crs.transform(&Crs::wgs84(), at).ok();
         Some(Self::between(place(one)?, place(other)?))

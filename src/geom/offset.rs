@@ -15,7 +15,7 @@ pub struct Continuations {
 }
 
 impl Continuations {
-    /// What goes on at the ends of a line that ends where it begins: the line itself.
+    /// The continuations of a closed line: the line itself.
     pub fn around(line: &Polyline) -> Self {
         let points = line.points();
         Self { before: Some(points[points.len() - 2]), after: Some(points[1]) }

@@ -14,7 +14,7 @@ const FEW_EDGES: usize = 32;
 const PAIRS_PER_CROSSING: usize = 64;
 
 /// The number of crossings of the edges of `rings`, which are closed and do not repeat their first vertex; `None` for more
-/// than `most`, and where so many edges lie near each other that they cannot be told.
+/// than `most`, and where too many edges are near each other to count their crossings.
 ///
 /// Edges that only share a vertex do not cross. Time grows with the pairs of edges whose boxes meet, of which no more are
 /// looked at than 64 for each of `most`.

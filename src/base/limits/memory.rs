@@ -1,4 +1,4 @@
-//! Memory that is asked for before it is needed, so that a lack of it is an error and not the program's end.
+//! Checks that memory is available before it is used, so that a lack of it is an error and not the program's end.
 //!
 //! An allocation that fails ends a program. So what a file or an option makes large, a raster or a picture, is asked for
 //! once as a whole and given back: where the system refuses that, as under `ulimit -v`, the error says how much is needed.
@@ -18,7 +18,7 @@ pub struct MemoryRefused {
     remedy: &'static str,
 }
 
-/// Checks that `bytes` of memory can be had for `what`, and some beside.
+/// Checks that `bytes` of memory and a reserve are available for `what`.
 ///
 /// # Errors
 /// They cannot; the message has `remedy`.

@@ -15,9 +15,9 @@ pub struct WorkLimit {
     highest: Highest,
     /// What is counted.
     pub unit: &'static str,
-    /// Of what, and why no more.
+    /// What the limit applies to, and why it is not higher.
     pub what: &'static str,
-    /// What to do where more is there.
+    /// The remedy for input that exceeds the limit.
     pub remedy: &'static str,
     value: OnceLock<u64>,
 }

@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::iter::successors;
 
-/// The text of `error`, then those of its causes, with colons between.
+/// The message of `error`, followed by those of its causes, separated by colons.
 ///
 /// A cause that the text already quotes is left out.
 pub fn error_text(error: &(dyn Error + 'static)) -> String {

@@ -24,12 +24,12 @@ pub(super) struct PlainRaster {
 type PlainHeader = fn(&DemFile, FileSize) -> Result<PlainRaster, DemErrorKind>;
 
 impl PlainRaster {
-    /// Of a raster without its samples, whose places are checked.
+    /// The samples of `raster` in `layout`, unscaled; `raster` holds no samples.
     pub fn new(raster: Raster, layout: SampleLayout, nodata: NoData) -> Self {
         Self { raster, layout, nodata, scale: 1.0, offset: 0.0 }
     }
 
-    /// With heights that are the samples times `scale` plus `offset`.
+    /// This raster with heights that are its samples times `scale` plus `offset`.
     pub fn scaled(self, scale: f64, offset: f64) -> Self {
         Self { scale, offset, ..self }
     }

@@ -40,12 +40,12 @@ pub(crate) struct FileSize {
 }
 
 impl FileSize {
-    /// Of a file that is read whole.
+    /// The size of a file that is read completely.
     pub fn in_memory(bytes: &[u8]) -> Self {
         Self { bytes: bytes.len(), most_samples: &RASTER_SAMPLES }
     }
 
-    /// Without a header of this many bytes.
+    /// The size without a header of this many bytes.
     pub fn after(self, header: usize) -> Self {
         Self { bytes: self.bytes.saturating_sub(header), ..self }
     }

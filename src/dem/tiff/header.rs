@@ -1,4 +1,4 @@
-//! All that a GeoTIFF states of its elevation but the samples.
+//! The metadata of a GeoTIFF: everything that it states about its elevation, without the samples.
 
 use std::io::{Read, Seek};
 

@@ -126,7 +126,7 @@ impl Expression {
         self.value_for(properties, &any)
     }
 
-    /// As [`Self::value`], where `??` falls back, and the result is `None`, for values that are not `usable`.
+    /// As [`Self::value`], but values that are not `usable` count as missing, both for `??` and for the result.
     pub fn value_for(
         &self,
         properties: PropertyLookup<'_>,

@@ -1,4 +1,4 @@
-//! What a page draws, in few draws: a city has a hundred thousand walls and a dozen materials.
+//! Groups the items of a page into few draw calls: a city has a hundred thousand walls and a dozen materials.
 //!
 //! Items that are placed by the identity and alike in material and layer are one batch, whose vertices name their
 //! feature. Items that differ in placement and feature only are one batch drawn many times. Draped batches keep their order,
@@ -14,7 +14,7 @@ use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex,
 use sandtable_draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use sandtable_mesh::sink::VertexId;
 
-/// When something is shown.
+/// The condition under which an item is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ShowRange {
     /// Always.

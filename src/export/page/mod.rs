@@ -53,7 +53,7 @@ pub struct PageScene<'a> {
     pub facts: &'a PageFacts,
 }
 
-/// What a page says and lets choose.
+/// The texts, names and views of a page.
 #[derive(Clone, Debug, Default)]
 pub struct PageFacts {
     /// The title; may be empty.
