@@ -4,8 +4,8 @@ use glam::DVec2;
 
 use crate::polyline::Polyline;
 
-/// The vertices beyond the ends of a line, of the lines that go on where it ends. Two lines of one width that know of each
-/// other end on one edge, as if they were one line.
+/// The neighboring vertices beyond the ends of a line, on the lines that continue it there. Two lines of one width that
+/// know of each other end on one edge, as if they were one line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Continuations {
     /// Before its first vertex; `None` where nothing goes on there.

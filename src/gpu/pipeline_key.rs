@@ -1,4 +1,4 @@
-//! What tells the pipelines of a pass from each other: depth rule, source of corners, what the shader reads.
+//! The key of a pipeline within a pass: depth rule, source of corners, what the shader reads.
 
 use crate::parts::ShaderParts;
 

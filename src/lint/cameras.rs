@@ -1,4 +1,4 @@
-//! Cameras that see nothing, from too far away to show anything, or only what stands before them.
+//! Cameras that see nothing, that are too far away to show anything, or whose view a near object blocks.
 //!
 //! A camera whose eye is under the ground is found while the scene is built.
 
@@ -36,7 +36,7 @@ const RAYS: [[f32; 2]; 5] = [[0.5, 0.5], [0.25, 0.25], [0.75, 0.25], [0.25, 0.75
 /// So many of these have to end before the point for the view to count as blocked; the middle one alone may hit a mast.
 const BLOCKED_RAYS: usize = 3;
 
-/// Finds these among the scene's cameras.
+/// Finds such cameras in the scene.
 pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     let scene = context.scene;
     for (view, table) in scene.cameras.iter().zip(&context.document.cameras) {

@@ -1,4 +1,4 @@
-//! What a check may look at.
+//! The data that a check may read.
 
 use std::ops::Range;
 
@@ -47,7 +47,7 @@ impl LintContext<'_> {
         self.scene.features.get(feature.index()?)
     }
 
-    /// What a message calls a feature: its kind and its name, or its number in its file.
+    /// The name of a feature in messages: its kind and its name, or its number in its file.
     pub fn name(&self, feature: FeatureId) -> String {
         self.feature(feature).map_or_else(|| self.scene.feature_name(feature), SceneFeature::described)
     }

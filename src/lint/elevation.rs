@@ -1,4 +1,4 @@
-//! Samples of the elevation model that no ground has.
+//! Implausible samples of the elevation model: spikes, pits and unmarked voids.
 
 use glam::DVec2;
 

@@ -1,4 +1,4 @@
-//! Elevations that are read as meters and that something says are feet.
+//! Elevations that are read as meters although something states that they are feet.
 //!
 //! Nothing is guessed of the numbers alone: hills of 900 may be meters as well. Evidence is the vertical unit of the `.prj`
 //! beside a file, the name of its vertical datum, and its own name.
@@ -22,7 +22,7 @@ const WORDS: [&str; 6] = ["ft", "feet", "foot", "ftus", "usft", "sft"];
 /// Words for feet in names of files; `ft` only at their end, since it begins the names of forts.
 const NAME_WORDS: [&str; 3] = ["feet", "ftus", "usft"];
 
-/// Finds elevation files that are in feet by what states them, and in meters as they are read.
+/// Finds elevation files that are read as meters although something states that they are in feet.
 pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     let terrain = &context.document.terrain;
     let snapshot = context.scene.heights.snapshot();

@@ -30,7 +30,7 @@ struct LeavingRoad {
     leg_m: f64,
 }
 
-/// Finds these among the roads on the ground.
+/// Finds such junctions among the roads on the ground.
 pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     let mut leaving: Vec<(VertexKey, LeavingRoad)> =
         context.roads_on_ground().flat_map(leaving_roads).collect();

@@ -1,4 +1,4 @@
-//! Which places of labels a camera does not see, without drawing a picture.
+//! Finds the labels whose places are hidden from a camera, without drawing a picture.
 //!
 //! A picture is dear: its ground is refined, what lies on it cut, and every pixel drawn. Whether the ground hides a place
 //! is known from the ground along one line, and whether a building, a bridge or a model does from a few rays. So the depths
@@ -34,7 +34,7 @@ const AROUND_PX: i64 = 2;
 /// The pixels around a place of which one that shows it is enough, as `is_seen` has it: the middle and the corners.
 const LOOKED_AT: [[f32; 2]; 5] = [[0.0, 0.0], [-1.0, -2.0], [1.0, -2.0], [-1.0, 1.0], [1.0, 1.0]];
 
-/// What hides the places of labels.
+/// The visibility of the places of labels.
 pub struct LabelSight {
     /// A picture in which they are hidden or not; all else is far away.
     pub picture: Rendering,

@@ -1,4 +1,4 @@
-//! Roads, rivers and shores whose lines cannot be what they stand for: too narrow, folded, crossing or coming back on
+//! Roads, rivers and shores whose lines have impossible shapes: too narrow, folded, crossing or coming back on
 //! themselves.
 
 use crate::context::LintContext;
@@ -22,7 +22,7 @@ const NARROWEST_RIVER_M: f64 = 0.1;
 /// written as 0.0 m.
 const CORNER_M: f64 = 0.5;
 
-/// Finds the lines of roads and rivers that have such a shape.
+/// Finds roads and rivers whose lines have such a shape.
 pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     let [mut narrow, mut tight, mut crossed, mut back] = std::array::from_fn(|_| WorstOfTables::default());
     for line in &context.scene.symbols {

@@ -1,4 +1,4 @@
-//! What stands in a scene, as rays meet it, set on the finest ground as in a walk.
+//! The solids and models of a scene, indexed for rays and placed on the finest ground, as in a walk.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

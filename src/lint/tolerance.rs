@@ -1,4 +1,4 @@
-//! A tolerance of the drawn ground that shows.
+//! A tolerance of the drawn ground whose error would be visible.
 
 use crate::context::LintContext;
 use crate::sink::FindingSink;

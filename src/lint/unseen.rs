@@ -19,7 +19,7 @@ use sandtable_view::frustum::Frustum;
 /// How far above the ground's box draped features and what stands on them may reach, meters: power lines over a gorge.
 const ABOVE_M: f32 = 100.0;
 
-/// Finds these.
+/// Finds such tables.
 pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     let scene = context.scene;
     let frustums = scene.cameras.iter().map(|view| framed_camera(scene, view, PictureSize::of(scene, view)));

@@ -1,4 +1,4 @@
-//! Of many findings of one kind the worst of each table: a file of ten thousand roads would repeat one message as often.
+//! The worst finding of each table: otherwise a file of ten thousand roads would repeat one message as often.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -7,7 +7,7 @@ use crate::context::LintContext;
 use crate::sink::FindingSink;
 use sandtable_description::finding_code::FindingCode;
 
-/// Findings of one kind, of which each table's worst is told and the others are counted.
+/// Findings of one kind: the worst of each table is reported, and the others are counted.
 #[derive(Debug, Default)]
 pub struct WorstOfTables {
     tables: BTreeMap<(usize, usize), WorstOfTable>,

@@ -1,5 +1,5 @@
 //! The checks that a terrain mesh must pass: indices in range, upward triangles, no edge used twice in one direction,
-//! no T-junction, and the expected area; and those of a solid: closed, and its inside inside.
+//! no T-junction, and the expected area; and those of a solid: closed, with normals that point outward.
 //!
 //! At a T-junction a border edge, which belongs to a single triangle, has another border vertex inside it; so only the
 //! border needs to be searched.

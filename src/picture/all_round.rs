@@ -1,4 +1,4 @@
-//! A scene to be looked at from anywhere, by programs that have its draw list once and for all.
+//! The draw list of a scene for all points of view, for programs that load it once.
 //!
 //! What lies on the ground has its true width. Over it lie line symbols of roads and rivers for several distances, each as
 //! wide as the farthest of its band needs; whoever draws them cuts them to the width of the place, by how far across the
@@ -51,7 +51,7 @@ const SPREAD: f64 = 2.0;
 /// U of a fill in the color of its class.
 const CLASS_U: f32 = 0.98;
 
-/// A scene to be looked at from anywhere.
+/// The draw list of a scene for all points of view.
 pub struct AllRoundScene {
     /// The draw list.
     pub list: DrawList,
@@ -65,7 +65,7 @@ pub struct AllRoundScene {
     pub graphic_texts: Vec<PlacedText>,
 }
 
-/// When an item is shown.
+/// The condition under which an item is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ItemShown {
     /// Always.
@@ -79,8 +79,8 @@ pub enum ItemShown {
     Form(u32),
 }
 
-/// What is to be drawn of a scene from anywhere, its terrain shown as `displayed`: all models in all their forms.
-/// `progress` is called with the name of each step as it begins.
+/// The draw list of a scene for all points of view, its terrain shown as `displayed`, with all models in all their
+/// forms. `progress` is called with the name of each step as it begins.
 ///
 /// # Errors
 /// The scene cannot be seen from above.

@@ -1,4 +1,4 @@
-//! From a scene and a camera to a draw list: refine, emit, drape, set solids and models.
+//! Makes the draw list of a scene for a camera: refines the ground, drapes features over it, places solids and models.
 
 mod airspace;
 pub mod all_round;
@@ -86,7 +86,7 @@ pub fn build_draw_list(scene: &SceneModel, camera: &Camera, progress: &dyn Fn(&'
     drawn_for(scene, camera, ListPurpose::Picture, progress)
 }
 
-/// The shapes of [`build_draw_list`], for who measures them: the ground is neither lit nor colored.
+/// The geometry of [`build_draw_list`] for measurements: the ground is neither lit nor colored.
 pub fn build_shapes(scene: &SceneModel, camera: &Camera, progress: &dyn Fn(&'static str)) -> ViewDraw {
     drawn_for(scene, camera, ListPurpose::Shapes, progress)
 }
@@ -104,16 +104,16 @@ fn drawn_for(
     ViewDraw { list, displayed, ground_triangles, graphic_texts, nested: NestedHeights::default() }
 }
 
-/// The ground and what stands and lies on it, for who models it: nothing that is only drawn on a picture of it, such as
-/// symbols, tactical graphics and viewsheds.
+/// The geometry of the ground and of the features on it, without what is only drawn on pictures, such as symbols,
+/// tactical graphics and viewsheds.
 pub fn build_relief(scene: &SceneModel, camera: &Camera, progress: &dyn Fn(&'static str)) -> DrawList {
     progress("refining terrain");
     let displayed = display(scene, camera);
     listed(scene, &displayed, Viewer::Camera(camera), ListPurpose::Relief, progress).list
 }
 
-/// What is to be drawn of a scene whose terrain is shown as `displayed`, and how many triangles of it are ground: all
-/// models wherever they stand, as their files have them. `progress` is called with the name of each step as it begins.
+/// The draw list of a scene whose terrain is shown as `displayed`, and how many of its triangles are ground: all models
+/// wherever they stand, in the forms of their files. `progress` is called with the name of each step as it begins.
 pub fn draw_list(
     scene: &SceneModel,
     displayed: &DisplayedTerrain,

@@ -1,4 +1,4 @@
-//! Ground near the eye by more samples than the scene's: parts of the elevation, built as scenes of their own.
+//! Ground near the eye with more samples than the scene has: parts of the elevation, each built as a scene.
 //!
 //! A nested ground has all that lies and stands on it, made of its own heights: roads that the ground follows, pads, models.
 //! What a picture has once, such as its light, colors, labels, tactical graphics and cameras, is the outer scene's; see
@@ -25,13 +25,13 @@ use sandtable_terrain::query::{Interpolation, ground_height};
 use sandtable_terrain::triangle_surface::TriangleSurface;
 use sandtable_view::camera::Camera;
 
-/// A part of a scene by more samples.
+/// A part of a scene, built of more samples.
 pub struct NestedGround {
     /// The part, in a world space of its own.
     pub scene: SceneModel,
     /// The origin of that in the world space of the outer scene.
     pub origin: DVec2,
-    /// Of how many samples a side its heights are means.
+    /// The side, in samples, of the squares of which its heights are means.
     pub step: u32,
 }
 

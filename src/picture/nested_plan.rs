@@ -1,4 +1,4 @@
-//! Which parts of reduced ground a picture shows by more samples, and how many.
+//! Plans the nested grounds of a picture: which parts of a reduced ground need more samples, and how many.
 //!
 //! ```text
 //!  ┌───────────────────┐  the ground of the scene: all of it, means of many samples

@@ -1,4 +1,4 @@
-//! What lies on the ground of a scene by patch, for flights that cut again only the patches that changed.
+//! The draped features of a scene by patch, so that a flight cuts again only the patches that changed.
 //!
 //! ```text
 //!  ribbons ──────────────────► plans that stay   ─┐
@@ -56,7 +56,7 @@ fn borders(ground: PatchedGround<'_>) -> Borders {
     }
 }
 
-/// The tint of a viewshed that a user looks at, before it is laid over the ground.
+/// The tint of a viewshed, before it is draped over the ground.
 pub struct SeenTint(TintPlan);
 
 impl SeenTint {
@@ -66,7 +66,7 @@ impl SeenTint {
     }
 }
 
-/// What lies on the ground that somebody walks over, by patch, and its materials.
+/// The draped features of a walk by patch, and their materials.
 pub struct GroundSheets {
     head: DrawList,
     looks: BTreeMap<RibbonLook, MaterialId>,
@@ -206,12 +206,12 @@ impl GroundSheets {
         &self.head
     }
 
-    /// Whether something lies in a patch.
+    /// Whether a patch has draped features.
     pub fn is_occupied(&self, patch: usize) -> bool {
         self.sheets().iter().any(|sheet| sheet.drapes.is_occupied(patch))
     }
 
-    /// Cuts what lies in `stale` to what is displayed there.
+    /// Cuts the draped features of the patches in `stale` to the triangles displayed there.
     pub fn recut(&mut self, stale: &[StalePatch], ground: &dyn TriangleSurface) {
         self.sheets_mut().into_iter().for_each(|sheet| sheet.drapes.recut(stale, ground));
     }
@@ -297,7 +297,7 @@ impl GroundSheets {
         self.ribbons.drapes.in_patch(patch).any(|(plan, _)| self.ribbons.plans[plan].markings.is_some())
     }
 
-    /// What lies in a patch as it was cut last, in drawing order, with the markings that `camera` sees.
+    /// The draped features of a patch as they were last cut, in drawing order, with the markings that `camera` sees.
     pub fn pieces(&self, patch: usize, camera: &Camera) -> Vec<DrapedPiece> {
         let scale = LineScale::around(camera);
         let (mut pieces, mut symbols) = (Vec::new(), self.symbols.drapes.in_patch(patch).peekable());
@@ -328,7 +328,7 @@ impl GroundSheets {
         pieces
     }
 
-    /// What lies uppermost on a patch, as it was cut last, at a world position; `None` for bare ground.
+    /// The uppermost draped feature of a patch, as it was last cut, at a world position; `None` for bare ground.
     pub fn feature_at(&self, patch: usize, at: DVec2) -> Option<FeatureId> {
         let holds = |mesh: &DrawMesh| {
             mesh.triangles.iter().any(|corners| {

@@ -17,7 +17,7 @@ const SKYLINE: f32 = 0.174;
 /// narrower than a picture of any use.
 const RIM_POINTS: u16 = 64;
 
-/// What a picture shows the scene as.
+/// The way in which a picture presents the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PictureSetting {
     /// Seen from straight above.
@@ -52,7 +52,7 @@ impl PictureSetting {
         }
     }
 
-    /// What shows behind the scene.
+    /// The backdrop behind the scene.
     pub fn backdrop(self) -> Backdrop {
         match self {
             Self::Landscape | Self::Skyline => Backdrop::Sky,

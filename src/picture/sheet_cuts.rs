@@ -1,4 +1,4 @@
-//! Cutting what lies on the ground of a walk on another thread, to triangles that the walk will show.
+//! Cuts the draped features of a walk on another thread, to triangles that the walk will show.
 
 use std::array;
 
@@ -6,11 +6,11 @@ use crate::recut::GroundSheets;
 use sandtable_ribbon::patches::{CutDrapes, DrapeParts};
 use sandtable_terrain::triangle_surface::TriangleSurface;
 
-/// What lies on the ground as it is planned now, by sheet.
+/// The draped features as they are planned now, by sheet.
 #[derive(Clone, Debug)]
 pub struct SheetParts([DrapeParts; 5]);
 
-/// What was cut of some patches.
+/// The cut features of some patches.
 #[derive(Clone, Debug)]
 pub struct SheetCuts {
     patches: Vec<usize>,
@@ -18,7 +18,7 @@ pub struct SheetCuts {
 }
 
 impl SheetParts {
-    /// Cuts what lies in `patches` to what is displayed there.
+    /// Cuts the draped features of `patches` to the triangles displayed there.
     ///
     /// # Panics
     /// Where a number is not that of a patch.
@@ -36,14 +36,13 @@ impl SheetCuts {
 }
 
 impl GroundSheets {
-    /// What lies on the ground, to be cut on another thread.
+    /// The draped features, to be cut on another thread.
     pub fn parts(&self) -> SheetParts {
         let sheets = self.sheets();
         SheetParts(array::from_fn(|sheet| sheets[sheet].drapes.parts().clone()))
     }
 
-    /// Exchanges what was cut of patches; returns those of them in which something else was planned meanwhile, to be cut
-    /// again.
+    /// Exchanges the cut features of patches; returns the patches whose plan changed meanwhile, to be cut again.
     pub fn exchange_cuts(&mut self, cuts: &mut SheetCuts) -> Vec<usize> {
         let SheetCuts { patches, sheets } = cuts;
         let mut planned = Vec::new();

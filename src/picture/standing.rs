@@ -1,5 +1,5 @@
-//! What stands in a scene and how it is lit, for who walks through it: a draw list that stays as it is while the ground and
-//! what lies on it change from frame to frame.
+//! The static draw list of a walk: solids, models and light, which stay while the ground and the draped features change
+//! from frame to frame.
 //!
 //! Everything is set on the finest ground: the displayed one is off by no more than the tolerance in pixels, so that nothing
 //! seems to float, and nothing moves while the ground is refined.

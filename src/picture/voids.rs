@@ -1,5 +1,4 @@
-//! What shows where the elevation model holds no data: hatching on the block's base, so that nobody takes what is seen
-//! there for ground.
+//! Hatching on the block's base where the elevation model has no data, so that nobody takes the base for ground.
 
 use glam::{Vec2, Vec3};
 

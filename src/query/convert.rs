@@ -106,8 +106,8 @@ pub fn convert(source: Mosaic, options: &ConvertOptions) -> Result<Converted, Co
     Ok(Converted { raster, resampling, datum_shift, notes })
 }
 
-/// What [`convert`] makes of elevation that stays on disk; `None` where as much would be held as of the whole: where no
-/// samples are computed, or voids are filled.
+/// The result of [`convert`] for elevation on disk, computed window by window; `None` where that would not save memory:
+/// where no samples are computed, or voids are filled.
 ///
 /// # Errors
 /// See [`ConvertError`].

@@ -1,4 +1,4 @@
-//! Questions about the ground, and their answers: heights, profiles, lines of sight and viewsheds of a dataset.
+//! Queries of the ground of a dataset: heights, profiles, lines of sight and viewsheds.
 //!
 //! ```text
 //! files ─► dem ─► ground ─► dataset ──► profile, sight, viewshed     answers about the ground

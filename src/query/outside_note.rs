@@ -1,4 +1,4 @@
-//! What positions that all lie outside an elevation model would have to be to lie on it.
+//! Suggests corrections for positions that all lie outside an elevation model.
 
 use glam::DVec2;
 
@@ -11,8 +11,8 @@ use sandtable_scene::misplacement::{Misplacement, misplacement};
 /// As many positions are looked at: a mistake in the system is one of all of them.
 const MOST_TRIED: usize = 1000;
 
-/// What the elevation covers, and how the positions, which are written in `crs`, would lie on it; `None` where one of them does,
-/// and where there are none. `header` is the raster, whose samples may be left out.
+/// The extent of the elevation, and a correction with which the positions, written in `crs`, would lie on it; `None` where
+/// one of them does, and without positions. `header` is the raster, whose samples may be left out.
 pub fn outside_note(answers: &[Answer], at: &[DVec2], crs: &Crs, header: &Raster) -> Option<String> {
     if answers.is_empty() || !answers.iter().all(|answer| matches!(answer, Answer::Outside)) {
         return None;

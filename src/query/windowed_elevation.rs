@@ -48,7 +48,7 @@ pub struct GroundReach<'a> {
 }
 
 impl WindowedElevation {
-    /// Of an opened file.
+    /// The elevation of an opened file.
     pub fn new(source: Box<dyn Windows + Send>) -> Self {
         let header = Arc::new(source.metadata().without_samples());
         Self { header, source: Mutex::new(source), plan: OnceLock::new() }

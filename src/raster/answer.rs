@@ -11,7 +11,7 @@ pub enum Answer {
     Outside,
 }
 
-/// The reason for a height, in a slice parallel to the heights.
+/// The status of a height, in a slice parallel to the heights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Status {

@@ -1,4 +1,5 @@
-//! What heights can be brought to: the ellipsoid and the geoid between which they differ by the geoid's undulation.
+//! The vertical datums that heights can be converted to: the ellipsoid and the geoid, which differ by the geoid's
+//! undulation.
 
 use sandtable_base::message::choice::{Choice, ChoiceWord, word};
 

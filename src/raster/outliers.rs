@@ -1,4 +1,4 @@
-//! Samples that no ground has: spikes, pits, and holes that were filled with one value.
+//! Implausible samples: spikes, pits, and holes that were filled with one value.
 //!
 //! A spike or a pit is a single sample far from its eight neighbors, which agree with one another: a bird under a laser, a
 //! slip of the pen, a sample without data that the file does not declare. A hole is a region of one value inside the raster

@@ -3,8 +3,8 @@
 use crate::error::DemErrorKind;
 use crate::windows::{RasterWindow, Windows};
 
-/// Calls `each` with what `read` gives for each of `windows`, in their order; meanwhile the next one is read, on another
-/// thread where there is one. Memory: two windows.
+/// Calls `each` with the result of `read` for each of `windows`, in order, and reads the next window meanwhile, on
+/// another thread where there is one. Memory: two windows.
 ///
 /// # Errors
 /// The first of `read`; `each` has been called with all windows before it.

@@ -28,8 +28,9 @@ pub fn reduced(windows: &mut (impl Windows + Send), step: u32) -> Result<Raster,
     means_of(&whole, windows, step)
 }
 
-/// [`reduced`], of the coarsest overview that the file holds of at least two samples along the side of a square, where there
-/// is one: then no more than some samples of the overview are read for each mean, and it lies where that of all samples would.
+/// [`reduced`], computed from the coarsest overview of the file that has at least two samples along the side of a square, if
+/// there is one: then no more than some samples of the overview are read for each mean, and it lies where that of all samples
+/// would.
 ///
 /// # Errors
 /// The samples cannot be read.
@@ -75,7 +76,7 @@ fn means_of(whole: &Raster, windows: &mut (impl Windows + Send), step: u32) -> R
     Ok(Raster { samples: Samples::F32(means), ..reduced_header(whole, step) })
 }
 
-/// What [`reduced`] makes of a raster, without its samples.
+/// The raster that [`reduced`] returns, without its samples.
 pub fn reduced_header(whole: &Raster, step: u32) -> Raster {
     let (width, height) = reduced_size(whole.size(), step);
     let matrix2 = DMat2::from_cols(whole.map_from_grid.matrix2.x_axis, whole.map_from_grid.matrix2.y_axis)

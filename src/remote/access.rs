@@ -1,4 +1,4 @@
-//! What a run may read by address, and where it keeps what it has read.
+//! The hosts that a run may read from, and the folder where it keeps blocks.
 
 use std::ffi::OsString;
 use std::path::PathBuf;

@@ -74,12 +74,12 @@ impl RemoteFile {
         self.blocks.get(0).cloned().unwrap_or_default()
     }
 
-    /// What tells this version of the file from others: its size, and what the server says.
+    /// An identifier of this version of the file: its size, and the version that the server states.
     pub fn version(&self) -> String {
         format!("{} {}", self.object.size, self.object.version().text().unwrap_or_default())
     }
 
-    /// Which version of the file the server has.
+    /// The version of the file on its server.
     pub fn stated_version(&self) -> AddressVersion {
         AddressVersion { bytes: self.object.size, tag: self.object.version().tag() }
     }

@@ -1,4 +1,4 @@
-//! The one way out: every request of a store goes through this client, those for tokens among them.
+//! The only HTTP client: every request of a store goes through it, including those for access tokens.
 //!
 //! It sends to hosts that are allowed and no others, redirections included; it reads no more of a reply than was asked for,
 //! and waits no longer than [`RemoteTimes`] allow.

@@ -22,7 +22,7 @@ pub struct OpenedAddress {
     pub content: Box<dyn FileContent>,
 }
 
-/// Which version of a file its server has.
+/// The version of a file on its server.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AddressVersion {
     /// Bytes of the file.
@@ -50,7 +50,7 @@ pub fn read(address: &str, most: u64) -> Result<Vec<u8>, RemoteError> {
     open_file(address)?.read_whole(most)
 }
 
-/// What tells this version of the file at an address from others: the same text for the same content.
+/// An identifier of the version of the file at an address: the same text for the same content.
 ///
 /// # Errors
 /// [`RemoteError`].
@@ -59,7 +59,7 @@ pub fn version(address: &str) -> Result<String, RemoteError> {
     Ok(open_file(address)?.version())
 }
 
-/// Which version of the file at an address its server has.
+/// The version of the file at an address that its server states.
 ///
 /// # Errors
 /// [`RemoteError`].

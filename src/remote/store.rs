@@ -1,4 +1,5 @@
-//! The stores of addresses: with credentials of the standard variables, unsigned without.
+//! The stores behind addresses: they sign requests with credentials from the standard environment variables, and send
+//! unsigned ones without.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};

@@ -16,7 +16,7 @@ use crate::picture::Rendering;
 use sandtable_draw::list::DrawList;
 use sandtable_view::camera::Camera;
 
-/// Draws a list elsewhere than on the processor: the same picture, within what rounding leaves.
+/// Draws a list elsewhere than on the processor: the same picture up to rounding.
 pub type OtherRenderer = fn(&DrawList, &Camera) -> Result<Rendering, Box<dyn Error + Send + Sync>>;
 
 /// The renderer to draw with.

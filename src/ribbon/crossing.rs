@@ -28,7 +28,8 @@ pub struct RibbonOverlap {
     pub ribbons: [usize; 2],
 }
 
-/// What the `ribbons` share that are alike, outside `nodes`: in the order of the ribbons. Crossings may overlap one another.
+/// The ground that `ribbons` of one kind share outside `nodes`, in the order of the ribbons. Crossings may overlap one
+/// another.
 pub fn crossings(
     ribbons: &[PlanMesh],
     are_alike: impl Fn(usize, usize) -> bool + Sync,

@@ -1,4 +1,4 @@
-//! One ribbon's part in a patch, cut to the ground triangle by triangle, so that what still lies is kept.
+//! One ribbon's part in a patch, cut to the ground triangle by triangle, so that pieces that still fit are kept.
 
 use crate::drape::Draper;
 use crate::plan::{PlanMesh, PlanVertex};

@@ -1,4 +1,4 @@
-//! Where roads meet: which lines go on in one another, and the surface that joins those that do not.
+//! Junctions of roads: which lines continue each other, and the surface that joins those that do not.
 //!
 //! Lines that share a vertex meet there, if they lie on one level; a line that ends there meets what goes on, whatever
 //! the level. Where two ends of one width meet and nothing else does, the ribbons go on in one another and share an edge.
@@ -43,7 +43,7 @@ pub struct Street {
     pub width_m: f64,
     /// How it is stroked.
     pub options: StrokeOptions,
-    /// What passes over what.
+    /// The level, which decides what passes over what.
     pub level: i32,
     /// Its pavement: where it meets [lesser](RibbonSurface::rank) ones it goes through.
     pub surface: RibbonSurface,
@@ -68,11 +68,11 @@ impl Street {
 /// Streets with what they meet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StreetNetwork {
-    /// For each street, what goes on at its ends.
+    /// For each street, the lines that continue it at its ends.
     pub continuations: Vec<Continuations>,
-    /// The pairs of ends that go on in one another.
+    /// The pairs of ends that continue each other.
     pub links: Vec<[LineEnd; 2]>,
-    /// Where streets do not simply go on.
+    /// The places where streets meet without simply continuing each other.
     pub nodes: Vec<JunctionNode>,
 }
 
@@ -97,7 +97,7 @@ struct Arm {
     next: usize,
 }
 
-/// Finds which streets go on in one another, and the nodes of those that do not.
+/// Finds which streets continue each other, and the nodes of those that do not.
 pub fn connect(streets: &[&Street]) -> StreetNetwork {
     let streets = Streets(streets);
     let mut arms: Vec<(VertexKey, Arm)> =

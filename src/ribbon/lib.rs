@@ -1,4 +1,4 @@
-//! What lies on the ground: roads, rivers and lakes as meshes cut to the displayed triangles.
+//! Draped features: roads, rivers and lakes as meshes cut to the displayed triangles.
 //!
 //! `stroke` and `area` make triangles in plan; `drape` cuts them along the edges of the displayed triangles, so
 //! that every piece lies in the plane of one of them and nothing sinks or floats, whatever the level of detail.

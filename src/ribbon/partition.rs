@@ -1,4 +1,4 @@
-//! Takes ribbons that overlap apart, so that no two triangles lie over one another.
+//! Separates ribbons that overlap, so that no two triangles lie over one another.
 //!
 //! Plans are handed in from the one that lies over all others down. Each triangle loses what the triangles before it
 //! cover, those of its own plan included (the inner side of a sharp bend, a line that crosses itself), and what is left
@@ -27,7 +27,7 @@ use sandtable_mesh::sink::{MeshSink, VertexId};
 /// How many triangles are cut in one go by a thread: a few thousand cuts, against a hand-over of a microsecond.
 const CHUNK: usize = 256;
 
-/// The same plans without what those before them cover.
+/// The plans, each without the ground that the plans before it cover.
 pub fn apart<'a>(plans: impl IntoIterator<Item = &'a PlanMesh> + Clone) -> Vec<PlanMesh> {
     let covering = Covering::new(plans.clone());
     let rests: Vec<Rest> = covering.each(|triangle| covering.rest(triangle));
@@ -42,7 +42,7 @@ pub fn overlap_m2<'a>(plans: impl IntoIterator<Item = &'a PlanMesh>) -> f64 {
     covering.each(|triangle| covering.overlap_m2(triangle)).into_iter().sum()
 }
 
-/// What of `plan` lies on `ground`, whose own triangles do not overlap; its texture is kept.
+/// The part of `plan` that lies on `ground`, whose own triangles do not overlap; its texture is kept.
 pub fn within(plan: &PlanMesh, ground: &PlanMesh) -> PlanMesh {
     let covering = Covering::new([ground]);
     let mut inside = PlanMesh::default();

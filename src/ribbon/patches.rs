@@ -1,4 +1,4 @@
-//! Everything that lies on the ground, cut patch by patch, so that a frame cuts again only what changed.
+//! All draped features, cut patch by patch, so that a frame cuts again only the patches that changed.
 //!
 //! Plans are divided once along the borders of the terrain's patches. A patch's part can then be cut to the displayed
 //! triangles without a look at its neighbors, and stays right until one of its own triangles changes; where only some
@@ -78,7 +78,7 @@ impl Borders {
     }
 }
 
-/// A patch in which what lies is to be cut again.
+/// A patch whose draped features must be cut again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StalePatch {
     /// Its number.
@@ -98,7 +98,7 @@ impl StalePatch {
 /// The parts of ribbons in one patch, by their places among the plans given.
 type PatchParts = Vec<(usize, PlanMesh)>;
 
-/// What lies on the ground, by patch.
+/// The draped features, by patch.
 #[derive(Clone, Debug, Default)]
 pub struct Drapes {
     parts: DrapeParts,
@@ -106,7 +106,7 @@ pub struct Drapes {
     cut: Vec<Vec<CutPart>>,
 }
 
-/// What lies on the ground by patch, before it is cut: to be cut on another thread.
+/// The draped features by patch, before they are cut: to be cut on another thread.
 #[derive(Clone, Debug, Default)]
 pub struct DrapeParts(Arc<Vec<PatchParts>>);
 
@@ -202,12 +202,12 @@ impl Drapes {
         self.parts.in_patch(patch).iter().map(|(ribbon, _)| *ribbon)
     }
 
-    /// Whether something lies in a patch.
+    /// Whether a patch has draped features.
     pub fn is_occupied(&self, patch: usize) -> bool {
         !self.parts.in_patch(patch).is_empty()
     }
 
-    /// How many patches hold something.
+    /// The number of patches with draped features.
     pub fn occupied(&self) -> usize {
         self.parts.0.iter().filter(|parts| !parts.is_empty()).count()
     }

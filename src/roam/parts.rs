@@ -137,7 +137,7 @@ impl PartedGround for HeldGround {
     }
 }
 
-/// What is known of the posts on borders that a later part shares: a value each.
+/// The values of border posts that one part of the ground leaves for later parts, one per post.
 #[derive(Clone, Debug)]
 pub struct BorderCarry<T> {
     /// By column, those of the northernmost row of the parts before.
@@ -153,8 +153,8 @@ impl<T: Copy> BorderCarry<T> {
         Self { north: vec![unknown; layout.columns()], east: vec![unknown; layout.rows()], unknown }
     }
 
-    /// Sets the values of some rows of a part, row by row from the south-west: what earlier parts left on its borders, and
-    /// elsewhere that nothing is known.
+    /// Sets the values of some rows of a part, row by row from the south-west: those that earlier parts left on its
+    /// borders, and the unknown value elsewhere.
     pub fn enter(&self, part: PostRect, rows: (u32, u32), values: &mut Vec<T>) {
         let (width, west) = (part.width(), part.first.column as usize);
         values.clear();
@@ -168,7 +168,7 @@ impl<T: Copy> BorderCarry<T> {
         }
     }
 
-    /// Takes what is known of some rows of a part, once they are done.
+    /// Stores the border values of some rows of a part, once they are done.
     pub fn leave(&mut self, part: PostRect, rows: (u32, u32), values: &[T]) {
         let (width, west) = (part.width(), part.first.column as usize);
         let east = &mut self.east[rows.0 as usize..=rows.1 as usize];

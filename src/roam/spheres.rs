@@ -1,4 +1,4 @@
-//! Nested spheres: one radius a vertex says from where the vertex is wanted.
+//! Nested spheres: a radius for each vertex, which is needed while the eye is inside its sphere.
 //!
 //! A vertex is active exactly while the eye is inside its sphere. Each sphere holds the spheres of the vertex's children,
 //! so an eye inside a child's is inside its parents': the active vertices are closed under parents, and no split is forced.

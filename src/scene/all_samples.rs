@@ -1,4 +1,4 @@
-//! All samples of elevation of which a scene holds means, as a lattice in the scene's system of which parts are read.
+//! All samples of an elevation model of which a scene holds only means: a lattice in the scene's system, read in parts.
 
 use glam::DVec2;
 
@@ -58,7 +58,7 @@ pub(super) struct AllSamples {
 }
 
 impl AllSamples {
-    /// Those of `windows`, for a scene whose ground lies in `crs`.
+    /// The samples of `windows`, for a scene whose ground lies in `crs`.
     ///
     /// # Errors
     /// They cannot be read, or brought to that system.

@@ -1,4 +1,5 @@
-//! The ground that numbers and sight are of, where pictures show means of samples: all samples, read where they are needed.
+//! The ground for printed heights and visibility where pictures show means of samples: all samples, read where they are
+//! needed.
 //!
 //! ```text
 //!  means of samples ──► the picture: ground, light, what lies and stands on it
@@ -97,7 +98,7 @@ struct ShapedParts<'a> {
 }
 
 impl<'a> ExactGround<'a> {
-    /// The ground of a picture, of which `all_samples` are the samples where it is of means of them.
+    /// The ground of a picture; `all_samples` are those of which its heights are means, if they are.
     ///
     /// # Errors
     /// The samples cannot be brought to the scene's system.
@@ -118,7 +119,7 @@ impl<'a> ExactGround<'a> {
         Ok(Self { frame, lattice, exact: needed.map(source).transpose()? })
     }
 
-    /// Whether the picture's ground is of means of samples.
+    /// Whether the heights of the picture's ground are means of samples.
     pub fn is_of_means(&self) -> bool {
         self.exact.is_some()
     }

@@ -1,4 +1,4 @@
-//! From a scene file to a draw list.
+//! Builds a scene from a scene file: the ground, the features on it, labels and cameras.
 //!
 //! `build` turns a document and its assets into a [`SceneGround`](build::SceneGround) or a
 //! [`SceneModel`](scene_model::SceneModel), one pass a file: the ground (`ground`), ribbons (`areas`, `water`, `roads`),

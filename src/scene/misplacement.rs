@@ -5,7 +5,7 @@ use glam::DVec2;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::rect::Rect;
 
-/// What would put points onto the ground that lie off it.
+/// A correction with which points off the ground would lie on it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Misplacement {
     /// Their coordinates exchanged.
@@ -21,8 +21,8 @@ const ZONED: [u32; 4] = [32600, 32700, 25800, 26900];
 /// Systems that data are most often in: longitude and latitude, and Web Mercator.
 const USUAL: [u32; 2] = [4326, 3857];
 
-/// What would put most of `points`, which are written in `from`, into `ground`, a box in `scene`; `None` where nothing that
-/// is tried does.
+/// The correction that puts most of `points`, written in `from`, into `ground`, a box in `scene`; `None` where none that is
+/// tried does.
 pub fn misplacement(points: &[DVec2], from: &Crs, scene: &Crs, ground: &Rect) -> Option<Misplacement> {
     let holds = |crs: &Crs, point: &dyn Fn(DVec2) -> DVec2| {
         let is_on = |at: &&DVec2| crs.transform(scene, point(**at)).is_ok_and(|at| ground.contains(at));

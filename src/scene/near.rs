@@ -1,4 +1,4 @@
-//! Leaves out what does not come near the ground.
+//! Leaves out features that do not come near the ground.
 
 use glam::DVec2;
 

@@ -1,5 +1,5 @@
-//! The viewsheds, lines of sight and ranges of a document, placed; where the picture's ground is of means of samples, what is in
-//! sight is found here, on the part of all samples that it reaches.
+//! Places the viewsheds, lines of sight and ranges of a document; where the picture's ground holds means of samples, computes
+//! visibility here, on all samples within reach.
 
 use glam::DVec2;
 

@@ -1,4 +1,4 @@
-//! What a scene is built for, as far as that decides how many samples of its elevation are read.
+//! The pictures that a scene is built for, which decide how many samples of its elevation are read.
 
 use sandtable_description::document::Document;
 use sandtable_description::words::RangeExtent;

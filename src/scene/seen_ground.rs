@@ -1,5 +1,5 @@
-//! What is in sight of an observer: on the ground of the picture when a picture first needs it, or found beforehand on the part of
-//! the samples that it reaches, where the picture's ground is of means of them.
+//! The ground that observers see: computed on the ground of the picture when a picture first needs it, or beforehand on all
+//! samples within reach where the picture's ground holds means of them.
 
 use std::borrow::Cow;
 use std::sync::OnceLock;
@@ -17,7 +17,7 @@ use sandtable_terrain::sight::line::{Sight, SightEnd, line_of_sight};
 use sandtable_terrain::sight::outlook::{VisibleStretch, visible_stretches};
 use sandtable_terrain::sight::viewshed::{PostVisibility, Viewshed, ViewshedOptions, viewshed};
 
-/// What observers see.
+/// The ground that observers see.
 pub struct SceneViewshed {
     /// Its name for the legend; may be empty.
     pub name: String,

@@ -1,4 +1,4 @@
-//! The ground of a document, shaped by what levels, cuts and fills it: lakes, rivers, roads, pads, earthworks.
+//! The ground of a document after all features that shape it: lakes, rivers, roads, pads, earthworks.
 //!
 //! Parts of a ground are shaped by the same passes as the whole, so that they are the same where they overlap.
 

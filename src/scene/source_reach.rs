@@ -1,4 +1,4 @@
-//! Whether what a table states lies on the ground.
+//! Finds out whether the features of a table lie on the ground.
 //!
 //! Every source is measured as it is placed, which costs a comparison a vertex. What lies wholly off the ground is an error:
 //! nobody describes a scene's roads to see none of them.
@@ -127,7 +127,7 @@ impl SourceReach {
         (1.0 - inside / all).clamp(0.0, 1.0)
     }
 
-    /// The error of a source of which nothing lies on the ground; `None` where some of it does.
+    /// The error for a source that lies wholly off the ground; `None` where some of it lies on the ground.
     pub fn error(&self, frame: &WorldFrame<'_>, extent: &Rect) -> Option<Finding> {
         let overlap = self.overlap(extent);
         if overlap.shapes == 0 || overlap.off < overlap.shapes {

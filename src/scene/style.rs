@@ -144,8 +144,8 @@ pub fn grid(document: &Document) -> GridName {
     document.furniture.grid.unwrap_or(if is_military { GridName::Mgrs } else { GridName::None })
 }
 
-/// What the sheet lacks because nobody knows where on Earth `middle` is, the scene's middle in map coordinates; `None` where
-/// it lacks nothing.
+/// A note on what the sheet lacks because the place of `middle`, the scene's middle in map coordinates, on Earth is unknown;
+/// `None` where it lacks nothing.
 pub fn missing_place_note(document: &Document, crs: &Crs, middle: DVec2) -> Option<String> {
     let grid = grid(document);
     let of_earth = matches!(grid, GridName::Utm | GridName::Mgrs | GridName::Geographic)

@@ -41,7 +41,7 @@ pub(super) struct TextureShading {
 }
 
 impl TextureShading {
-    /// Puts it into the shares of the sky of a map of `size` posts, `cell` meters apart. Water keeps its own.
+    /// Adds the texture to the sky visibility of a map of `size` posts, `cell` meters apart. Water keeps its own.
     pub fn apply(&self, posts: &mut [GroundPost], size: PostCount, cell: Vec2) {
         let heights = posts.par_iter().map(|post| post.height_m).collect();
         let values = texture(heights, size.columns as usize, cell);

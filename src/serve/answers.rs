@@ -1,4 +1,4 @@
-//! The memory of answers that nobody has read yet.
+//! The memory of answers that clients have not read yet.
 //!
 //! A client that asks and never reads keeps its answer in memory, and thousands of them would fill it. So a long answer
 //! takes its size from a fixed amount before it is computed, and gives it back when its last byte is with the system.
@@ -82,7 +82,7 @@ impl AnswerMemory {
     }
 }
 
-/// Awaits `resource`, and closes connections that hold one like it and are slow meanwhile.
+/// Awaits `resource`, and meanwhile closes slow connections that hold one like it.
 pub async fn taking_from_slow<T>(
     clients: &Clients,
     kind: HeldResource,

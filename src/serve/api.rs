@@ -1,4 +1,4 @@
-//! What may be asked: every address with its parameters, as a table.
+//! The API of the service: every address with its parameters, as a table.
 //!
 //! The queries refuse what is not in it, and the page at `/` and the OpenAPI document are made of it.
 

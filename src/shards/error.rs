@@ -1,4 +1,4 @@
-//! What goes wrong with plans and shards.
+//! Errors of plans and shards.
 
 use std::path::Path;
 

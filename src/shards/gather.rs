@@ -12,7 +12,7 @@ use sandtable_dem::dem_format::DemFormat;
 use sandtable_dem::formats::WRITTEN_EXTENSIONS;
 use sandtable_files::disk;
 
-/// How far the shards of a plan are, by their numbers.
+/// The states of the shards of a plan, by their numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlanProgress(Vec<ShardState>);
 

@@ -23,7 +23,7 @@ const VERSION: u32 = 1;
 /// A record has a hundred bytes for each file; nothing longer is read.
 const MOST_BYTES: u64 = 1 << 20;
 
-/// How far a shard is.
+/// The state of a shard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShardState {
     /// Its results are there.
@@ -106,7 +106,7 @@ pub fn publish(plan: &ShardPlan, id: usize, results: &[ShardFile]) -> Result<(),
     Ok(files.publish()?)
 }
 
-/// How far a shard is: by its record, and by the sizes of its files.
+/// The state of a shard, by its record and by the sizes of its files.
 pub fn state(plan: &ShardPlan, id: usize) -> ShardState {
     if !result_path(plan, id, "json").exists() {
         return ShardState::Missing;
@@ -118,7 +118,7 @@ pub fn state(plan: &ShardPlan, id: usize) -> ShardState {
     }
 }
 
-/// [`state`], where files count that have the hashes of the record.
+/// [`state`], after a comparison of the files with the hashes of the record.
 pub fn verified_state(plan: &ShardPlan, id: usize) -> ShardState {
     let is_own = |file: &ResultFile| {
         let content = disk::open(&plan.folder.join(&file.path)).ok();

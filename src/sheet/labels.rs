@@ -27,7 +27,7 @@ use sandtable_scene::scene_label::SceneLabel;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_view::camera::Camera;
 
-/// What a picture shows that its scene alone does not tell.
+/// The data of a picture that its scene alone does not have.
 pub struct AnnotatedGround<'a> {
     /// The texts of tactical graphics.
     pub graphics: &'a [PlacedText],

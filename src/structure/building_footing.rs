@@ -1,4 +1,4 @@
-//! Footings: what a building's walls lack down to the ground where that is displayed lower than it is.
+//! Footings: walls that extend a building's own down to the displayed ground where that is lower than the true ground.
 //!
 //! A building's own walls end a little below the lowest ground under it. Far away the ground is displayed more coarsely,
 //! and may lie lower still; there its walls go on down to it, so that no building floats at any level of detail.

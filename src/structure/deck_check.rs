@@ -1,4 +1,4 @@
-//! Whether meshes together enclose what they are the surface of.
+//! Checks that meshes together form a closed surface.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! What stands on the ground and must be set anew wherever the ground is displayed otherwise.
+//! Structures that are placed again wherever the displayed ground changes.
 
 use crate::building_footing::WallFooting;
 use crate::faces::Faces;

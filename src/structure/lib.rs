@@ -1,4 +1,4 @@
-//! What is built on the ground with a shape of its own: outlines and centerlines with elevations become solids.
+//! Structures on the ground: outlines and centerlines with elevations become solids.
 //!
 //! Positions are world space; heights are handed in as they are drawn, so that a solid meets the ground it stands on.
 

@@ -39,7 +39,7 @@ pub struct MilitarySymbol {
     pub frame: SymbolBox,
     /// The point of the symbol that is at the place: its middle, or the foot of a headquarters staff.
     pub anchor: Vec2,
-    /// What the code asks for and the drawing lacks.
+    /// Parts of the code that the drawing lacks.
     pub notes: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! What is known of heights when each was looked at once, by all threads where there are many.
+//! Facts about the heights of a lattice from one pass over them, on all threads where there are many.
 
 use rayon::prelude::*;
 

@@ -1,4 +1,4 @@
-//! A computation that nobody waits for any more is told so by a flag.
+//! A flag that ends a computation whose answer nobody needs any more.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 

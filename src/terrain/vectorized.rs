@@ -6,7 +6,8 @@
 
 use fearless_simd::{Level, dispatch};
 
-/// What `work` returns. It must be inlined to be compiled again: it, and what its loops call, is `#[inline(always)]`.
+/// Runs `work` and returns its result. It must be inlined to be compiled again: it, and what its loops call, is
+/// `#[inline(always)]`.
 ///
 /// Choosing costs some nanoseconds.
 #[inline(always)]

@@ -216,7 +216,7 @@ impl ViewerApp {
         }
     }
 
-    /// Whether a file is being opened or read, a picture drawn, or what stands set anew.
+    /// Whether a file is being opened or read, a picture is being drawn, or solids and models are being placed again.
     pub fn is_busy(&self) -> bool {
         let is_relisting = self.opened.as_ref().is_some_and(|opened| opened.is_relisting());
         let is_looking = self.viewshed.as_ref().is_some_and(ViewshedOverlay::is_busy);
@@ -239,12 +239,12 @@ impl ViewerApp {
         self.failure.as_ref().map_or("", |failure| failure.message.as_str())
     }
 
-    /// Lets each frame count as long as in a script, however long it takes.
+    /// Makes each frame count `seconds`, however long it takes, as in a script.
     pub fn keep_step(&mut self, seconds: f64) {
         self.view.fixed_step_s = Some(seconds);
     }
 
-    /// Says something that went wrong in the window.
+    /// Shows an error in the window.
     pub fn warn(&mut self, text: impl Into<String>) {
         self.notices.warn(text);
     }

@@ -1,4 +1,4 @@
-//! Finer posts of the ground around the eye, by which terrain on disk is tinted and lit, made beside the window.
+//! Finer posts of the ground around the eye, for the tint and light of terrain on disk, made in the background.
 //!
 //! A job makes one window and sends it with the others, the coarsest first; until then the one before is shown, wherever it
 //! lies.

@@ -1,4 +1,4 @@
-//! What happens beside the user: scenes that are opened, files that change on disk.
+//! Background events: scenes that are opened, files that change on disk.
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};

@@ -1,4 +1,4 @@
-//! Making the ground anew beside the window, for a picture of another size or another tolerance.
+//! Rebuilds the ground in the background, for a picture of another size or another tolerance.
 
 use egui::Context;
 
@@ -6,7 +6,7 @@ use crate::opened::OpenedScene;
 use crate::worker::{WorkerFailure, WorkerJob, drop_apart};
 
 impl OpenedScene {
-    /// Whether the ground is being made anew.
+    /// Whether the ground is being rebuilt.
     pub fn is_reaching(&self) -> bool {
         self.reaching.is_some()
     }

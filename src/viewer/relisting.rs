@@ -1,5 +1,5 @@
-//! Making the list of what stands anew while the one before is shown: for another sun, features that are hidden, ground that
-//! was moved under models, an eye that is far from where it was.
+//! Rebuilds the list of solids and models while the old one is shown: for another sun, features that are hidden, ground that
+//! moved under models, an eye that is far from where it was.
 
 use std::sync::Arc;
 
@@ -27,12 +27,12 @@ pub enum RelistingError {
 }
 
 impl OpenedScene {
-    /// Asks for what stands to be set anew; it is shown when it is there.
+    /// Requests a new list of solids and models; it is shown when it is ready.
     pub fn relist(&mut self) {
         self.wants_list = true;
     }
 
-    /// Whether what stands is being set anew.
+    /// Whether a new list of solids and models is being made.
     pub fn is_relisting(&self) -> bool {
         self.wants_list || self.relisting.is_some()
     }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// What leaves the scene as it is edited.
+/// An action that leaves the edited scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Leaving {
     /// Closing the window.

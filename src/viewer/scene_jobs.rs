@@ -1,4 +1,4 @@
-//! What is made anew beside the window for an open scene, while the scene is shown as it was.
+//! Background jobs that rebuild parts of an open scene, while the old parts are shown.
 
 use std::sync::Arc;
 

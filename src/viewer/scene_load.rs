@@ -31,7 +31,7 @@ impl SceneLoad {
 }
 
 impl LoaderSlot {
-    /// There is a renderer, or it has made more pipelines.
+    /// Registers the loader of the renderer, and again when the renderer has made more pipelines.
     pub fn fill(&self, loader: LiveLoader) {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(loader);
     }

@@ -1,4 +1,4 @@
-//! The shadows of an open scene: what they are made of, and how far they are.
+//! The shadows of an open scene: their inputs and their progress.
 
 use std::time::{Duration, Instant};
 
@@ -10,7 +10,7 @@ use sandtable_gpu::live::prepared::PreparedShadows;
 use sandtable_view::camera::Camera;
 use sandtable_walk::shown_ground::ShownGround;
 
-/// What shadows are made of.
+/// The inputs of shadows.
 pub struct ShadowedView {
     /// How it is seen.
     pub camera: Camera,

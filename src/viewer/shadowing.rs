@@ -1,4 +1,4 @@
-//! Shadows of what stands, made beside the window when the camera has come to rest.
+//! Shadows of solids and models, computed in the background when the camera has come to rest.
 //!
 //! A shadow map is right wherever it reaches, whatever the eye does; only how fine it is depends on where the eye was. So it
 //! stays while the camera moves, and is made anew when that rests elsewhere.

@@ -1,4 +1,4 @@
-//! Edits of the ground while it is shown: what depends on it is mended, not made anew.
+//! Edits of the ground while it is shown: data that depends on it is updated, not rebuilt.
 
 use crate::Walk;
 use crate::frame::WalkError;
@@ -18,19 +18,19 @@ const LEANING_M: f64 = 50.0;
 pub struct WalkEdit {
     /// The number of the edit, counted from 1.
     pub number: u64,
-    /// The patches that look otherwise; the next update hands them over if they are in view.
+    /// The patches whose look changed; the next update hands them over if they are in view.
     pub patches: Vec<PatchId>,
     /// The rectangles of posts that changed, with their former elevations: all that taking the edit back needs.
     pub pieces: Vec<Change>,
     /// The earth moved, true to scale.
     pub volumes: Volumes,
-    /// Whether something stands there: lists of [`Walk::static_list`] are of old.
+    /// Whether solids or models stand there, so that lists of [`Walk::static_list`] are outdated.
     pub moves_standing: bool,
 }
 
 impl Walk {
-    /// Lets `brush` change the elevations, true to scale, and mends what depends on them; the next update hands over what
-    /// looks otherwise. `None` where it changed nothing.
+    /// Lets `brush` change the elevations, true to scale, and updates the data that depends on them; the next update
+    /// hands over the changes. `None` where it changed nothing.
     ///
     /// `brush` must return all its changes in the order in which it made them, and may not pin posts.
     ///
@@ -118,8 +118,8 @@ impl Walk {
         })
     }
 
-    /// Makes the elevations those that the scene's height queries answer by. They are a snapshot from then on, which the next
-    /// edit copies: call it when the last edit of several is made.
+    /// Publishes the elevations to the scene's height queries. They are a snapshot from then on, which the next edit copies:
+    /// call it when the last edit of several is made.
     pub fn publish(&self) {
         self.scene.heights.publish(std::sync::Arc::clone(self.elevations()));
     }

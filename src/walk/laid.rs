@@ -1,4 +1,4 @@
-//! What lies on the ground of a walk, cut again where the ground or the view of it changed.
+//! The draped features of a walk, cut again where the ground or the view of it changed.
 
 use std::sync::Arc;
 
@@ -123,7 +123,7 @@ impl LaidGround {
         replanned.into_iter().for_each(|patch| self.patches[patch].is_replanned = true);
     }
 
-    /// Hands all of it over again, a few patches an update.
+    /// Hands over all draped features again, a few patches per update.
     pub fn renew(&mut self) {
         self.patches.iter_mut().for_each(|patch| patch.is_wanted = patch.eye.is_some());
     }
@@ -133,18 +133,18 @@ impl LaidGround {
         self.waiting
     }
 
-    /// Marks what lies on a patch as off the ground, which has moved.
+    /// Marks the draped features of a patch as outdated, because its ground has moved.
     pub fn moved(&mut self, patch: usize) {
         self.patches[patch].is_cut = false;
     }
 
-    /// Marks what lies on some patches as cut to other triangles than they are to display.
+    /// Marks the draped features of some patches as cut to other triangles than those to be displayed.
     pub fn forget_cuts(&mut self, is_meant: impl Fn(usize) -> bool) {
         let patches = self.patches.iter_mut().enumerate();
         patches.filter(|(patch, _)| is_meant(*patch)).for_each(|(_, laid)| laid.is_cut = false);
     }
 
-    /// What lies on the ground, to be cut on another thread.
+    /// The draped features, to be cut on another thread.
     pub fn parts(&self) -> SheetParts {
         self.sheets.parts()
     }
@@ -157,7 +157,7 @@ impl LaidGround {
         planned.into_iter().for_each(|patch| self.patches[patch].is_cut = false);
     }
 
-    /// What lies uppermost on a patch at a world position; `None` for bare ground.
+    /// The uppermost draped feature of a patch at a world position; `None` for bare ground.
     pub fn feature_at(&self, patch: usize, at: DVec2) -> Option<FeatureId> {
         self.sheets.feature_at(patch, at)
     }

@@ -1,4 +1,4 @@
-//! A walk through a scene: the ground refined from frame to frame, and what lies on it cut again where it changed.
+//! A walk through a scene: the ground refined from frame to frame, and draped features cut again where it changed.
 //!
 //! ```text
 //!  camera ─► patches in view ─► deferred refiner ─► patches that changed ─► their triangles, 16 bits an index ─┐
@@ -150,8 +150,8 @@ impl Walk {
         self.options.to_sun = Some(to_sun);
     }
 
-    /// Everything but the ground and what lies on it: the ground map, the light, solids, and models in the form that suits
-    /// their distance from `camera`, whichever way that turns.
+    /// Everything except the ground and the draped features: the ground map, the light, solids, and models in the form
+    /// that suits their distance from `camera`, whichever way that turns.
     ///
     /// Its first material is that of the ground; those of [`DrapedPiece`](sandtable_draw::patches::DrapedPiece)s are among those
     /// that follow, with the same numbers in every list of this walk.

@@ -40,22 +40,22 @@ pub struct AreaMeasure {
     pub zone: Zone,
 }
 
-/// What is seen from a place.
+/// The viewshed from a place.
 pub struct SeenGround {
-    /// What of each post is.
+    /// The visibility of each post.
     pub viewshed: Viewshed,
-    /// How much.
+    /// The area in sight.
     pub summary: ViewshedSummary,
 }
 
-/// What is seen from a place, to be computed on another thread. While it is kept, the next edit copies the heights.
+/// The task of computing a viewshed on another thread. While it is kept, the next edit copies the heights.
 pub struct ViewshedTask {
     elevations: Arc<Lattice>,
     options: ViewshedOptions,
 }
 
 impl ViewshedTask {
-    /// All that is seen.
+    /// Computes the viewshed.
     ///
     /// # Errors
     /// The ground's answer at the observer, where it has no height there.
@@ -126,7 +126,7 @@ impl MeasurableGround for SightGround {
 }
 
 impl Walk {
-    /// All that is seen from a place.
+    /// The viewshed from a place.
     ///
     /// # Errors
     /// The ground's answer at the observer, where it has no height there.

@@ -56,7 +56,7 @@ pub struct PagedElevation {
     pub overview: Arc<Raster>,
 }
 
-/// How much was read, and whether more may be.
+/// Counts the samples that are read, and can stop the reading.
 #[derive(Debug, Default)]
 pub struct ReadingWatch {
     samples: AtomicU64,
@@ -75,7 +75,7 @@ impl ReadingWatch {
         self.samples.load(Ordering::Relaxed)
     }
 
-    /// Lets all that is read from now on fail.
+    /// Makes all further reading fail.
     pub fn stop(&self) {
         self.is_stopped.store(true, Ordering::Relaxed);
     }

@@ -1,4 +1,4 @@
-//! What is under the cursor of who walks through a scene.
+//! Picking: what a ray through the cursor meets in a scene.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -43,7 +43,7 @@ pub struct WalkPick {
     pub aspect_deg: Option<f64>,
 }
 
-/// A draw list as rays meet it.
+/// A draw list, indexed for rays.
 pub struct StandingIndex {
     list: Arc<DrawList>,
     /// The box of each item, world space; `None` for one without triangles.

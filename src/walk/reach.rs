@@ -1,5 +1,5 @@
-//! Making the ground anew for another size of the picture, in an update or on another thread: its nested spheres, the
-//! triangles that they show, and what lies on the ground, cut to these.
+//! Rebuilds the ground for another size of the picture, in an update or on another thread: its nested spheres, the
+//! triangles that they show, and the draped features cut to these.
 
 use glam::{DVec2, Vec3};
 
@@ -19,7 +19,7 @@ const MOST_REACH: f32 = 1.25;
 /// Spheres that are made anew because a picture needs larger ones reach by this factor farther than it needs.
 const SPARE_REACH: f32 = 1.1;
 
-/// What the ground for another picture is made of. While it is kept, the next edit copies heights and errors.
+/// The inputs for the ground of another picture. While it is kept, the next edit copies heights and errors.
 pub struct ReachTask {
     spheres: SphereTask,
     eye: Vec3,
@@ -28,7 +28,7 @@ pub struct ReachTask {
     laid: SheetParts,
 }
 
-/// The ground for another picture; after [`Walk::take_reach`] the one before, to be dropped where no frame waits for it.
+/// The ground for another picture; after [`Walk::take_reach`] the old ground, to be dropped where no frame waits for it.
 pub struct ReachedGround {
     mesh: Deferred<TaskGround>,
     laid: SheetCuts,

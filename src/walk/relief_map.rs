@@ -29,7 +29,7 @@ pub(super) struct ReliefEdits {
 }
 
 impl ReliefEdits {
-    /// Changes a map as the edits did.
+    /// Applies the edits to a map.
     pub fn apply(&self, map: &mut Arc<GroundMap>, elevations: &Lattice) {
         let Some(scale) = self.scale else { return };
         let patches: Vec<GroundMapPatch> =

@@ -1,4 +1,4 @@
-//! What a renderer holds of each patch, so that it is handed what is new to it and no more.
+//! The state of each patch at the renderer, so that only changes are handed over.
 
 use std::sync::Arc;
 
@@ -71,8 +71,8 @@ impl ShownPatches {
         self.held = 0;
     }
 
-    /// What the renderer needs to show what `mesh` does, but for what lies on the ground.
-    /// `positions` are the vertices of a patch with that south-west corner, row by row from there.
+    /// The changes with which the renderer shows the ground of `mesh`, without draped features. `positions` are the
+    /// vertices of a patch with that south-west corner, row by row from there.
     pub fn update<S: BlockSource>(
         &mut self,
         mesh: &Deferred<S>,

@@ -1,4 +1,4 @@
-//! Making the list of what stands on another thread, while the walk goes on.
+//! Makes the list of solids and models on another thread, while the walk goes on.
 //!
 //! A task holds a snapshot of all that the list depends on. What is edited meanwhile is added when the walk takes the list
 //! over.
@@ -16,7 +16,7 @@ use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_view::camera::Camera;
 
-/// What a list of [`Walk::static_list`] is made of.
+/// The inputs of a list of [`Walk::static_list`].
 #[derive(Clone)]
 pub struct StandingTask {
     scene: Arc<SceneModel>,

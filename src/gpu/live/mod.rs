@@ -74,7 +74,7 @@ pub struct LiveQuality {
     pub anisotropy: u16,
 }
 
-/// What of a frame is up to its viewer.
+/// The options of a frame that its viewer chooses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LiveOptions {
     /// Whether the ground's triangles are outlined.
@@ -122,7 +122,7 @@ pub struct LiveRenderer {
     scene: Option<LoadedScene>,
 }
 
-/// What becomes of the patches that are shown when another list is.
+/// The treatment of the patches that are shown when another list is loaded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeptPatches {
     /// They stay: the list is of the same walk, so that its materials of what lies on the ground have the same numbers.
@@ -149,7 +149,7 @@ struct LoadedScene {
 }
 
 impl LiveQuality {
-    /// What an adapter draws fluently: a processor that draws itself takes one sample.
+    /// The quality that an adapter draws fluently: one sample per pixel on a software adapter.
     pub fn of(gpu: &Gpu) -> Self {
         /// The most readings of a texture that a processor affords.
         const SOFTWARE_ANISOTROPY: u16 = 4;
@@ -245,7 +245,7 @@ impl LiveRenderer {
         Ok(())
     }
 
-    /// What prepares scenes for this renderer on other threads.
+    /// A loader that prepares scenes for this renderer on other threads.
     pub fn loader(&self) -> LiveLoader {
         LiveLoader::new(&self.gpu, &self.layouts, [&self.colors, &self.features])
     }
@@ -265,7 +265,7 @@ impl LiveRenderer {
         self.scene = Some(*scene);
     }
 
-    /// Takes over what changed on the ground, and says what was sent for it. Does nothing before a scene is loaded.
+    /// Applies changes of the ground, and returns the bytes sent for them. Does nothing before a scene is loaded.
     ///
     /// # Errors
     /// See [`GpuError`].
@@ -280,7 +280,7 @@ impl LiveRenderer {
         })
     }
 
-    /// Lights the scene anew: sun, sky and haze, not the shadows.
+    /// Sets the light of the scene: sun, sky and haze, not the shadows.
     pub fn set_lighting(&mut self, lighting: Lighting) {
         if let Some(scene) = &mut self.scene {
             scene.lighting = lighting;

@@ -152,7 +152,7 @@ impl PatchStore {
         drapes.map(move |material| material.key(pass, picture))
     }
 
-    /// Takes over what changed; returns what was sent for it.
+    /// Applies changes; returns the bytes sent for them.
     pub fn update(&mut self, gpu: &Gpu, changes: &GroundChanges) -> Result<UploadedBytes, GpuError> {
         let mut sent = UploadedBytes::default();
         for id in &changes.dropped {

@@ -12,7 +12,7 @@ use sandtable_draw::list::FeatureId;
 /// What a pixel shows at its center.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PickedPoint {
-    /// Whose it is; [`FeatureId::GROUND`] for bare ground.
+    /// The feature; [`FeatureId::GROUND`] for bare ground.
     pub feature: FeatureId,
     /// Meters from the eye along the viewing direction.
     pub depth_m: f32,

@@ -110,7 +110,7 @@ impl LiveLoader {
         })
     }
 
-    /// Makes the pipelines that a prepared scene needs once it has windows of finer ground: no frame waits for them then.
+    /// Makes the pipelines that a prepared scene needs for windows of finer ground, so that no frame waits for them.
     ///
     /// # Errors
     /// See [`GpuError`].

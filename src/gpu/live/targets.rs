@@ -15,7 +15,7 @@ pub struct LiveTargets {
     /// Colors to be encoded, where the window's texture does not encode them.
     pub linear: Option<wgpu::TextureView>,
     pub depth: wgpu::TextureView,
-    /// The same for shaders, where the ground is shaded pixel by pixel.
+    /// The depths as a binding for shaders, where the ground is shaded pixel by pixel.
     pub depths_read: Option<wgpu::BindGroup>,
 }
 

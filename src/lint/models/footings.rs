@@ -23,7 +23,7 @@ const BURIED_M: f64 = 0.5;
 /// The corners of a foot, in the order of gaps.
 const CORNERS: [&str; 4] = ["front left", "front right", "back right", "back left"];
 
-/// Finds these among `standing`.
+/// Finds floating and buried models among `standing`.
 pub fn check(context: &LintContext<'_>, standing: &[StandingModel<'_>], sink: &mut FindingSink) {
     let scene = context.scene;
     let finest = scene.scale.ground(&scene.lattice);

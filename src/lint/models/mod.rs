@@ -37,7 +37,7 @@ struct StandingModel<'a> {
     base: [Vec3; 4],
 }
 
-/// Finds all of these.
+/// Runs all checks of models.
 pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     let scene = context.scene;
     let shapes: Vec<ModelShape> = scene.models.iter().map(ModelShape::of).collect();

@@ -38,7 +38,7 @@ const MOST_NEAR: usize = 64;
 /// A roof's triangles face up by more than this; walls have no area in plan.
 const FACES_UP: f32 = 0.1;
 
-/// Finds these among `standing`.
+/// Finds such models among `standing`.
 pub fn check(context: &LintContext<'_>, standing: &[StandingModel<'_>], sink: &mut FindingSink) {
     if standing.is_empty() {
         return;

@@ -34,7 +34,7 @@ const EVEN: f32 = 0.05;
 /// What lies on its side is at least so many times as long as it seems high: less may as well be square.
 const LONGER: f32 = 1.3;
 
-/// Finds these among `standing`.
+/// Finds such models among `standing`.
 pub fn check(context: &LintContext<'_>, standing: &[StandingModel<'_>], sink: &mut FindingSink) {
     let [mut sizes, mut sides] = std::array::from_fn(|_| WorstOfTables::default());
     for model in standing {

@@ -49,7 +49,7 @@ const MOST_SAMPLES: usize = 64;
 /// The most triangles of a model that are looked at.
 const MOST_TRIANGLES: usize = 200_000;
 
-/// Finds these among `standing`: each model once, where it is drawn largest.
+/// Finds stretched textures among `standing`: each model once, where it is drawn largest.
 pub fn check(context: &LintContext<'_>, standing: &[StandingModel<'_>], sink: &mut FindingSink) {
     let mut largest: BTreeMap<usize, &StandingModel<'_>> = BTreeMap::new();
     for model in standing {

@@ -6,7 +6,7 @@ use sandtable::{Dem, Terrain, TriMesh};
 
 use crate::arguments::{Transform, crs_name, transform};
 
-/// An array with its place: what a viewshed or a hillshade is.
+/// An array with its georeference, such as a viewshed or a hillshade.
 #[pyclass(name = "Raster", module = "sandtable", frozen, get_all)]
 pub struct PyRaster {
     /// uint8 of shape (rows, columns), from the north-west.

@@ -1,4 +1,4 @@
-//! Emitters: triangles from bits, one file each.
+//! Emitters: triangles from the active vertices, one file each.
 //!
 //! An emitter calls a closure with triples of grid vertices, counter-clockwise seen from above, and does not read heights:
 //! the closure of `world::placing` writes the triples into a mesh in world space, others count or collect them.

@@ -1,4 +1,4 @@
-//! Triangles for a tolerance without a view: the mesh of a terrain as a file or a tile wants it.
+//! Triangles for a tolerance without a view: the mesh of a terrain for a file or a tile.
 //!
 //! An error map never grows toward the children, so the vertices whose error is above a tolerance are closed under parents,
 //! and no walk from the roots is needed. Three passes in storage order:

@@ -1,4 +1,4 @@
-//! Refiners: policies that set the bits, one file each.
+//! Refiners: policies that decide which vertices are active, one file each.
 //!
 //! For one view all of them make the same mesh, the closure under parents of the wanted vertices that have a wanted parent
 //! (see [`rebuild`]), unless a budget of drawn triangles ends refinement earlier.

@@ -18,7 +18,7 @@ pub struct SightCounts {
 }
 
 impl SightCounts {
-    /// Nobody has looked at any of `posts`, which the caller has counted.
+    /// Counts for `posts`, which no observer has looked at yet; the caller has checked how many posts these are.
     pub fn new(posts: PostRect) -> Self {
         Self { posts, counts: vec![f32::NAN; posts.width() * posts.height()] }
     }

@@ -97,7 +97,7 @@ impl Navigator {
         Self { pose, mode, space, eye_height_m: 1.7, pace: 1.0, transition: None }
     }
 
-    /// Where the eye is and whither it looks.
+    /// The position of the eye and its viewing direction.
     pub fn pose(&self) -> ViewPose {
         self.pose
     }

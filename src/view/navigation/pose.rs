@@ -1,4 +1,4 @@
-//! Where somebody stands and whither they look.
+//! The pose of a viewer: the eye and the viewing direction.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

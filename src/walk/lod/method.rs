@@ -1,4 +1,4 @@
-//! The methods.
+//! The level-of-detail methods.
 //!
 //! A method is an emitter of triangles, a criterion that decides when an error shows, and a refiner. Not all
 //! combinations make sense; a [`LodMethod`] is one that does.

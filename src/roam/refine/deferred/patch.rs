@@ -291,7 +291,7 @@ impl PatchMesh {
         std::mem::take(&mut self.renewed)
     }
 
-    /// Takes back the memory of a list.
+    /// Takes a list back, to reuse its memory.
     pub fn keep(&mut self, mut list: Vec<u16>) {
         list.clear();
         self.renewed = list;
