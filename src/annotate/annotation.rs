@@ -101,7 +101,7 @@ pub struct OverlayText {
 /// Where along its line a name stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LinePlacement {
-    /// Beside the line, once and again at a distance.
+    /// Beside the line, repeated at intervals.
     Repeated,
     /// Beside the line, once, near the middle of its longest part.
     Once,

@@ -57,7 +57,7 @@ pub enum EditError {
 pub enum SaveError {
     #[error("{}: another program has changed this file since it was opened; save anyway, or open it again", .0.display())]
     ChangedOnDisk(PathBuf),
-    #[error("{}: there is such a file already; save under another name", .0.display())]
+    #[error("{}: this file exists already; save under another name", .0.display())]
     Exists(PathBuf),
     #[error("{}: this file is protected against writing", .0.display())]
     Protected(PathBuf),

@@ -31,16 +31,16 @@ const PAD_MARGIN: f32 = 1.3;
 pub enum EditEffect {
     /// The picture stays; views or the texts around the picture may differ.
     Views,
-    /// [`dig`](sandtable_earthworks::earthwork::dig) these, beside [`SceneModel::held`]: the ground, and what lies on it,
-    /// changes. What stands there keeps its height, and what is computed from the ground stays as it is, until the scene
-    /// is built anew.
+    /// [`dig`](sandtable_earthworks::earthwork::dig) these earthworks, except in [`SceneModel::held`]: the ground and its
+    /// draped features change. What stands there keeps its height, and what is computed from the ground stays as it is,
+    /// until the scene is built anew.
     Dig(Vec<Earthwork>),
-    /// The posts of the last digging get their former heights; where there is none since the scene was built, it is built
-    /// anew.
+    /// The posts of the last earthwork get their former heights back; without one since the scene was built, the scene is
+    /// rebuilt.
     TakeBack,
     /// A model stands elsewhere or looks elsewhere.
     Move(MovedModel),
-    /// The scene is built anew of [`SceneSource`](crate::editor::SceneSource).
+    /// The scene is rebuilt from [`SceneSource`](crate::editor::SceneSource).
     Rebuild,
 }
 

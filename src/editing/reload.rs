@@ -22,9 +22,9 @@ pub struct WatchedScene {
 
 /// The outcome of reloading a scene file.
 pub enum ReloadedScene {
-    /// It holds what it held.
+    /// The content is unchanged.
     Unchanged,
-    /// It holds another scene.
+    /// The file holds another scene.
     Scene(Box<SceneModel>),
     /// It cannot be opened; what is shown stays. The message names file, line and column where they are known.
     Wrong(OpenSceneError),

@@ -49,7 +49,7 @@ pub enum ViewSnapshotError {
     Parallel,
     #[error("{} already has {MOST_PICTURES} pictures beside it; move some elsewhere", .0.display())]
     TooMany(PathBuf),
-    #[error("{} is there already; it is not replaced", .0.display())]
+    #[error("{} exists already; it is not replaced", .0.display())]
     Exists(PathBuf),
     #[error(transparent)]
     Scene(#[from] OpenSceneError),

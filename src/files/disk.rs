@@ -61,9 +61,9 @@ pub enum WriteFileCause {
     Address,
     #[error("this is not the name of a file")]
     NoName,
-    #[error("this is a file that is read; name another to write to")]
+    #[error("this is an input file; name another to write to")]
     Input,
-    #[error("this file may not be written over; name another, or let it be written to")]
+    #[error("this file may not be written over; name another, or make it writable")]
     ReadOnly,
     /// The name has another extension than `.png`.
     #[error("pictures are written as PNG; name one that ends in .png")]

@@ -20,7 +20,7 @@ use sandtable_raster::windows::Windows;
 pub enum WriteRasterError {
     #[error(transparent)]
     Format(#[from] FileError<WriteError>),
-    #[error("{}: this belongs to a file that is read and would be replaced; name another to write to", .0.display())]
+    #[error("{}: this belongs to an input file and would be replaced; name another to write to", .0.display())]
     Sidecar(PathBuf),
     #[error(transparent)]
     Read(#[from] ReadFileError),

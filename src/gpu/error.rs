@@ -17,7 +17,7 @@ pub enum GpuError {
     NoAdapter(Vec<(GpuApi, DriverError)>),
     #[error("the draw list is unsound: {0}")]
     List(#[from] DrawListError),
-    /// There is not the memory for the shadow maps, which the processor makes.
+    /// There is not enough memory for the shadow maps, which the processor makes.
     #[error(transparent)]
     Memory(#[from] MemoryRefused),
     #[error("{what} exceed the {limit} {unit} that {adapter} holds; use less detail or --backend cpu")]
@@ -31,7 +31,7 @@ pub enum GpuError {
     },
     #[error("{adapter} ran out of memory while {doing}; ask for a smaller picture or use --backend cpu")]
     OutOfMemory { doing: &'static str, adapter: String },
-    #[error("{adapter} was lost while {doing} ({reason}); open it anew, or use --backend cpu")]
+    #[error("{adapter} was lost while {doing} ({reason}); open it again, or use --backend cpu")]
     DeviceLost { doing: &'static str, adapter: String, reason: String },
     #[error("{adapter} failed while {doing}: {source}; use --backend cpu")]
     Driver { doing: &'static str, adapter: String, source: Arc<DriverError> },

@@ -1,4 +1,4 @@
-//! A tolerance of the drawn ground whose error would be visible.
+//! A tolerance of the drawn ground that is so large that its error shows, or too small to be of use.
 
 use crate::context::LintContext;
 use crate::sink::FindingSink;

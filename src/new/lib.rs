@@ -76,7 +76,7 @@ pub struct WrittenScene {
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum NewSceneError {
-    #[error("{}: there is such a file already; remove it, or name another folder", .0.display())]
+    #[error("{}: this file exists already; remove it, or name another folder", .0.display())]
     Exists(PathBuf),
     #[error(transparent)]
     Folder(#[from] FolderError),

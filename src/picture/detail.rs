@@ -43,7 +43,7 @@ pub(super) enum Viewer<'a> {
     Anyone,
     /// The camera of one picture.
     Camera(&'a Camera),
-    /// Somebody who turns around at the eye of a camera.
+    /// A viewer who turns around at the eye of a camera.
     Around(&'a Camera),
 }
 

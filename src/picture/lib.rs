@@ -133,11 +133,11 @@ struct ListedScene {
 /// What a draw list is made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ListPurpose {
-    /// To be seen.
+    /// For a picture.
     Picture,
-    /// To be measured: nobody asks how the ground is lit.
+    /// For measurements: the ground is not lit.
     Shapes,
-    /// To be modeled: as to be measured, without what is only drawn on it or beside it.
+    /// For models: as for measurements, without what is only drawn on or beside the ground.
     Relief,
 }
 

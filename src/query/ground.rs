@@ -69,7 +69,7 @@ pub enum GroundError {
     Read(#[from] DemErrorKind),
     /// A query reaches too far over elevation that is not kept in memory.
     #[error(
-        "the ground that is asked about has {columns} x {rows} posts, more than the {RASTER_SAMPLES} that are read at once; ask about less of it, with a range or a shorter line, or {RASTER_SAMPLES:#}"
+        "the query needs {columns} x {rows} posts, more than the {RASTER_SAMPLES} that are read at once; query less ground, with a range or a shorter line, or {RASTER_SAMPLES:#}"
     )]
     Reach {
         /// Posts per row.

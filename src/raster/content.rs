@@ -14,10 +14,10 @@ impl<C: Write + Seek + Send> WrittenContent for C {}
 
 /// The content of a file that stays where it is: on disk, or on a server.
 pub trait FileContent: Read + Seek + Send {
-    /// Says which bytes are read next, in ascending order, to content that is far away and fetches them together.
+    /// Announces the bytes that are read next, in ascending order, so that remote content can fetch them together.
     fn announce(&mut self, _ranges: &[Range<u64>]) {}
 
-    /// The same content for threads that read it by the place of its bytes; `None` where these wait for each other.
+    /// The same content for concurrent reads by position; `None` where readers would wait for each other.
     fn by_place(&self) -> Option<Arc<dyn ReadByPlace>> {
         None
     }

@@ -47,12 +47,12 @@ pub enum DemErrorKind {
     Broken { format: &'static str, reason: String },
     #[error(transparent)]
     Archive(#[from] ArchiveError),
-    /// It unpacks to more than is unpacked of any file.
+    /// It unpacks to more bytes than the limit for a file.
     #[error("{0}, or {UNPACKED_RASTER_BYTES:#}")]
     Unpacked(ArchiveError),
     #[error("the {format} is broken: {source}; fetch or export the file again")]
     Undecodable { format: &'static str, source: Box<dyn Error + Send + Sync> },
-    /// What holds the content does not give it: a server, not the system.
+    /// The server that holds the content does not deliver it.
     #[error("{0}")]
     Unread(Box<dyn Error + Send + Sync>),
     #[error(
@@ -64,7 +64,7 @@ pub enum DemErrorKind {
         size: U64Vec2,
         most: &'static WorkLimit,
     },
-    /// There is not the memory for its samples.
+    /// There is not enough memory for its samples.
     #[error(transparent)]
     Memory(#[from] MemoryRefused),
     #[error("{} x {} samples are none; the header is broken or the file is empty", .0.x, .0.y)]
@@ -93,7 +93,7 @@ pub enum DemErrorKind {
         .0.x, .0.y
     )]
     LargeBlocks(UVec2),
-    /// A file that belongs to it unpacks to more than is unpacked of any such file.
+    /// A companion file unpacks to more bytes than the limit for such files.
     #[error("{name}: {source}, or {COMPANION_BYTES:#}")]
     Companion { name: String, source: ArchiveError },
     #[error("its georeference cannot be used: {reason}; {remedy}")]

@@ -175,14 +175,14 @@ pub trait Windows {
         Ok(())
     }
 
-    /// The same ground with samples further apart, where the file holds it so: the coarsest of which one sample stands for no
-    /// more than `step` by `step` of these, and how many a side it stands for, a power of two.
+    /// The coarsest overview in the file of the same ground of which one sample covers no more than `step` by `step` of
+    /// these, and how many samples a side it covers, a power of two.
     fn overview(&self, _step: u32) -> Option<(u32, Box<dyn Windows + Send + '_>)> {
         None
     }
 
-    /// The samples as bytes, where they are some: a file of them is written as it is, and need not be read before to know how
-    /// to store it.
+    /// The samples as bytes, if the raster holds bytes: a file then stores them as they are, without a first pass that
+    /// chooses the type.
     fn bytes(&self) -> Option<&dyn ByteRows> {
         None
     }

@@ -14,12 +14,12 @@ pub enum RemoteError {
     #[error("this address is not read: {0}")]
     Address(&'static str),
     #[error(
-        "it is read from {0}, which this run may not read from; if that is to be trusted, run again with --allow-remote {0}, in \
+        "it is read from {0}, which this run may not read from; if you trust it, run again with --allow-remote {0}, in \
          Python with allow_remote=[\"{0}\"]"
     )]
     HostNotAllowed(String),
     #[error(
-        "the server sends the request on to {0}, which is not encrypted; name that address where it is to be trusted"
+        "the server redirects to {0}, which is not encrypted; name that address if you trust it"
     )]
     Unencrypted(String),
     #[error("there is no such file")]

@@ -28,7 +28,7 @@ pub trait PartedGround {
     /// How it is divided.
     fn plan(&self) -> PartPlan;
 
-    /// The ground of which the posts of a part are held, at least.
+    /// The ground with at least the posts of a part in memory.
     ///
     /// # Errors
     /// They cannot be read.

@@ -51,7 +51,7 @@ pub enum AssetError {
     },
     /// A path out of the folders that may be read.
     #[error(
-        "'{name}' leads to {}, outside {}; if the scene is to be trusted, run again with --allow {}",
+        "'{name}' leads to {}, outside {}; if you trust the scene, run again with --allow {}",
         resolved.display(), root.display(), remedy.display()
     )]
     Outside {

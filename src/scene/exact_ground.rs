@@ -173,13 +173,13 @@ impl<'a> ExactGround<'a> {
         part.map(Some).map_err(ExactPartError::Failed)
     }
 
-    /// Finds how many heights in numbers are without what shapes the ground.
+    /// Reports how many printed heights ignore the features that shape the ground.
     pub fn report(&self, findings: &mut SceneFindings) {
         let Some(exact) = &self.exact else { return };
         let unshaped = exact.borrow().shaped.as_ref().map_or(0, |shaped| shaped.unshaped);
         if unshaped > 0 {
             let message = format!(
-                "{unshaped} heights in numbers are those of the elevation model, without what the scene digs, fills and levels \
+                "{unshaped} printed heights are those of the elevation model, without what the scene digs, fills and levels \
                  there: too many places far apart have one"
             );
             let span = self.frame.document.terrain.dem.span().unwrap_or_default();

@@ -1,4 +1,5 @@
-//! Why points lie off the ground: what they would have to be for it to hold them.
+//! Finds out why points lie off the ground: exchanged coordinates, another zone, or another system with which it would hold
+//! them.
 
 use glam::DVec2;
 

@@ -202,7 +202,7 @@ fn distances(document: &Document, stated: &Stated<Vec<f64>>) -> Result<Vec<f64>,
         return Err(document.error(stated, message).with_help("write distances = [1000, 2000]"));
     }
     if let Some(pair) = stated.windows(2).find(|pair| pair[0] >= pair[1]) {
-        let message = format!("distances are to rise, and {} follows {}", pair[1], pair[0]);
+        let message = format!("distances must rise, and {} follows {}", pair[1], pair[0]);
         return Err(document.error(stated, message).with_help("sort them from the smallest to the largest"));
     }
     Ok(stated.to_vec())

@@ -6,7 +6,7 @@ use sandtable_description::words::RangeExtent;
 /// How many samples of the elevation a scene needs.
 #[derive(Clone, Copy, Debug)]
 pub enum ElevationNeed<'a> {
-    /// All: heights are answered from them.
+    /// All samples, because height queries use them.
     All,
     /// All that fit into the memory, for pictures and meshes that are not known yet.
     AllThatFit,

@@ -18,7 +18,7 @@ use sandtable_raster::windows::Windows;
 const MOST_MEANS: u64 = 2;
 
 /// What a finding adds where a scene [depends on samples](depends_on_samples).
-const EXACT: &str = "; heights in numbers and what is in sight are those of all samples";
+const EXACT: &str = "; printed heights and visibility use all samples";
 
 /// A smaller raster.
 pub(super) struct ReducedElevation {

@@ -46,7 +46,7 @@ pub trait Query: Sized + Send + 'static {
         0
     }
 
-    /// Answers the query; what takes long looks at `stop` and ends early where it is set.
+    /// Answers the query; long computations check `stop` and end early where it is set.
     fn answer(self, service: &Service, stop: &StopFlag) -> Result<Response, HttpError>;
 }
 

@@ -70,7 +70,7 @@ pub enum PictureError {
     /// The scene cannot be drawn.
     #[error(transparent)]
     Render(#[from] RenderError),
-    /// The samples of ground near the eye cannot be had.
+    /// The samples of ground near the eye cannot be read.
     #[error(transparent)]
     Elevation(#[from] Diagnostic),
 }

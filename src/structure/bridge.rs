@@ -56,7 +56,7 @@ const CONCRETE: Srgba = Srgba::opaque(236, 231, 219);
 /// How a deck's end lies across.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Across {
-    /// As the ground does, on which the road goes on.
+    /// As the ground lies, on which the road continues.
     AsGround,
     /// Level, as in a tunnel or on the next bridge.
     Level,

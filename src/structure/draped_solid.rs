@@ -20,7 +20,7 @@ pub enum DrapedSolid {
     Obstacles(Obstacles),
     /// Pylons and wires.
     PowerLine(PowerLine),
-    /// What keeps a building from floating.
+    /// The footing that keeps a building from floating.
     Footing(WallFooting),
 }
 

@@ -62,7 +62,7 @@ pub enum LatticeError {
     /// The raster's rows do not run east with north up.
     #[error("the elevation model's grid is rotated or upside down; it must be warped north-up first")]
     NotNorthUp,
-    /// There is not the memory for its posts.
+    /// There is not enough memory for its posts.
     #[error(transparent)]
     Memory(#[from] MemoryRefused),
     /// All samples are no-data.

@@ -6,7 +6,7 @@
 
 use fearless_simd::{Level, dispatch};
 
-/// Runs `work` and returns its result. It must be inlined to be compiled again: it, and what its loops call, is
+/// Runs `work` and returns its result. The closure must be inlined to be compiled again: it, and what its loops call, is
 /// `#[inline(always)]`.
 ///
 /// Choosing costs some nanoseconds.

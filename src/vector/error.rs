@@ -24,7 +24,7 @@ pub enum VectorError {
     TooLarge { bytes: usize },
     #[error(transparent)]
     Archive(#[from] ArchiveError),
-    /// It unpacks to more than is unpacked of any file.
+    /// It unpacks to more bytes than the limit for a file.
     #[error("{0}, or {UNPACKED_VECTOR_BYTES:#}")]
     Unpacked(ArchiveError),
     #[error("its \"type\" is \"{found}\", not a feature, a collection of features or a geometry; {remedy}")]

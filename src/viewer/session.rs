@@ -45,7 +45,7 @@ impl EditingSession {
         Self { editor, settings: ToolSettings::for_cell(cell_m), built_of, moved: None, dug: Vec::new() }
     }
 
-    /// The scene was built of `text`.
+    /// Records that the scene was built of `text`.
     pub fn rebuilt(&mut self, text: String) {
         self.built_of = text;
         self.dug.clear();

@@ -53,7 +53,7 @@ const MOUTH_M: DVec2 = DVec2::new(0.7, 0.9);
 pub enum StripEnd {
     /// Nothing, or more road: batters go round it.
     Open,
-    /// An abutment, from which a bridge goes on: the ground goes on below its carriageway and falls away from it.
+    /// An abutment at which a bridge begins: the ground continues below its carriageway and falls away from it.
     Abutment {
         /// How the bridge rises away from the strip, meters per meter.
         grade: f64,

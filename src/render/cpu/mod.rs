@@ -91,7 +91,7 @@ pub enum CpuRenderError {
     /// [`DrawList::check`] failed.
     #[error("the draw list is unsound: {0}")]
     List(#[from] DrawListError),
-    /// There is not the memory for the picture.
+    /// There is not enough memory for the picture.
     #[error(transparent)]
     Memory(#[from] MemoryRefused),
     /// There are too many triangles.

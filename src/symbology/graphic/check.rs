@@ -40,7 +40,7 @@ pub enum GraphicError {
     NoWidth { what: &'static str },
     #[error("{kind} has no {what}")]
     Missing { kind: &'static str, what: &'static str },
-    #[error("distances are to rise, and {0} follows {1}")]
+    #[error("distances must rise, and {0} follows {1}")]
     FallingDistances(f64, f64),
     #[error("{found} azimuths do not make {needed} pairs, one for each distance")]
     AzimuthPairs { found: usize, needed: usize },

@@ -58,9 +58,9 @@ pub enum GraphicShape {
 /// What colors a graphic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GraphicTint {
-    /// Its side.
+    /// The color of its side.
     Own,
-    /// It is an obstacle, whoever made it.
+    /// The color of obstacles, whatever the side.
     Obstacle,
 }
 

@@ -80,7 +80,7 @@ pub enum Surface {
     Source,
     /// The lattice after earthworks.
     Ground,
-    /// The triangles drawn now; always planar, whatever the interpolation.
+    /// The triangles of the current level of detail; always planar, whatever the interpolation.
     Displayed,
     /// The higher of the ground and the decks over it: what one stands on.
     Scene,

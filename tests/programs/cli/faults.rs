@@ -144,7 +144,7 @@ fn a_link_is_followed_to_its_file() {
     fs::copy(dem, scratch.at("in.tif")).expect("copied");
     symlink("in.tif", scratch.at("out.tif")).expect("a link");
     let said = run_in(scratch.folder(), &["dem", "convert", "in.tif", "-o", "out.tif"]).failed(1);
-    assert!(said.contains("this is a file that is read"), "{said}");
+    assert!(said.contains("this is an input file"), "{said}");
 }
 
 #[test]

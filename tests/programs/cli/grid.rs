@@ -76,7 +76,7 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
         );
     }
     for (arguments, wanted) in [
-        (&["points.tif", "points.tif", "--cell", "1"][..], "this is a file that is read"),
+        (&["points.tif", "points.tif", "--cell", "1"][..], "this is an input file"),
         (&["bad.csv", "out.asc", "--cell", "1"], "bad.csv: line 2: found '4,5,six'"),
         (&["points.csv", "out.asc", "--cell", "0"], "the cell size is 0"),
         (&["points.csv", "out.asc", "--cell", "1", "--k", "3"], "--k goes with --method idw"),

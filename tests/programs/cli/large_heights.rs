@@ -39,7 +39,7 @@ impl LabeledPicture {
     fn is_of_means(&self) -> bool {
         self.said["notes"]
             .to_string()
-            .contains("heights in numbers and what is in sight are those of all samples")
+            .contains("printed heights and visibility use all samples")
     }
 
     /// The share of bytes that differ from those of another by no more than `levels`.
@@ -124,7 +124,7 @@ fn more_places_far_apart_than_parts_are_built_for_are_said_to_be_unshaped() {
         scratch.write("s.toml", format!("{TERRAIN}{lake}{labels}{FAR}"));
         LabeledPicture::of(&scratch, &LARGE).said["notes"].to_string()
     };
-    let unshaped = "heights in numbers are those of the elevation model";
+    let unshaped = "printed heights are those of the elevation model";
     assert!(!notes(8).contains(unshaped));
     assert!(notes(16).contains(&format!("8 {unshaped}")), "{}", notes(16));
 }

@@ -51,7 +51,7 @@ fn a_scene_that_is_there_is_not_written_over() {
     let scratch = valley();
     scratch.write("project/scene/scene.toml", "mine");
     let refused = new(&scratch, &[]).failed(1);
-    assert!(refused.contains("scene/scene.toml: there is such a file already"), "{refused}");
+    assert!(refused.contains("scene/scene.toml: this file exists already"), "{refused}");
     assert_eq!(text_of(&scratch), "mine");
 }
 
