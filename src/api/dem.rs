@@ -101,7 +101,7 @@ impl Dem {
         self.raster.crs.as_ref()
     }
 
-    /// Where it lies, in GDAL's order: x of the outer north-west corner, x per column, x per row, and the same of y.
+    /// The georeference in GDAL's order: x of the outer north-west corner, x per column, x per row, and the same of y.
     pub fn geotransform(&self) -> [f64; 6] {
         self.raster.geotransform()
     }

@@ -72,7 +72,7 @@ impl Elevation {
         (header.width, header.height)
     }
 
-    /// Where the samples lie, as [`Dem::geotransform`].
+    /// The georeference of the samples, as [`Dem::geotransform`].
     pub fn geotransform(&self) -> [f64; 6] {
         self.dataset.header().geotransform()
     }
@@ -138,8 +138,8 @@ impl Elevation {
         Ok(SightReport::new(&ground, query)?)
     }
 
-    /// What an observer, whose position is in coordinates of `crs`, sees, as [`Terrain::viewshed`]. Where the file stays on disk
-    /// the raster covers the square around the range.
+    /// The viewshed of an observer whose position is in coordinates of `crs`, as [`Terrain::viewshed`]. Where the file stays
+    /// on disk the raster covers the square around the range.
     ///
     /// # Errors
     /// [`Error::Query`].

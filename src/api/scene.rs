@@ -85,7 +85,7 @@ impl Scene {
         Ok((Self { model }, findings))
     }
 
-    /// What was done that a user should know: features off the model, missing textures, earth moved.
+    /// Notes for the user about the build: features off the model, missing textures, earth moved.
     pub fn notes(&self) -> Vec<&str> {
         self.model.notes()
     }
@@ -123,7 +123,7 @@ impl Scene {
 }
 
 impl View {
-    /// The same view on a picture of another size, 16 to 16384 pixels each side.
+    /// This view on a picture of another size, 16 to 16384 pixels each side.
     pub fn with_size(self, width: u32, height: u32) -> Self {
         Self { size: PictureSize { width, height }, ..self }
     }

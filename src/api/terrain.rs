@@ -126,14 +126,15 @@ impl Terrain {
         Ok(BoundedMesh::new(self.ground.lattice(), max_error_m)?.to_mesh())
     }
 
-    /// How directly the ground faces the sun, a gray for each post: 1 facing away, 255 facing it, no data (0 in a file) where
-    /// there is none. Equal to `gdaldem hillshade` within one gray level.
+    /// The hillshade of the ground, a gray for each post: 1 facing away from the sun, 255 facing it, no data (0 in a file)
+    /// where there is none. Equal to `gdaldem hillshade` within one gray level.
     pub fn hillshade(&self, options: &HillshadeOptions) -> Dem {
         let lattice = self.ground.lattice();
         Dem { raster: Arc::new(hillshade_raster(lattice, options, self.crs())) }
     }
 
-    /// What an observer sees, as a raster: 1 in sight, 0 hidden, no data (255 in a file) where it was not looked at.
+    /// The viewshed of an observer as a raster: 1 in sight, 0 hidden, no data (255 in a file) for posts that were not
+    /// examined.
     ///
     /// # Errors
     /// [`Error::NoHeight`] at the observer.

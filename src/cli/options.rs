@@ -106,7 +106,7 @@ fn full_datum_name(stated: &str) -> String {
 }
 
 impl DatasetArguments {
-    /// How the dataset is opened.
+    /// The options for opening the dataset.
     pub fn options(&self) -> DatasetOptions {
         let (dem, allowed) = (self.heights.dem_options(), self.access.allow.clone());
         DatasetOptions { dem, allowed, ..DatasetOptions::default() }

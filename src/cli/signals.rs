@@ -45,7 +45,7 @@ fn try_to_handle() -> io::Result<()> {
     Ok(())
 }
 
-/// Those of the signals that end programs which this program was not started to ignore.
+/// Those signals that end programs and that this program was not started to ignore.
 pub fn heeded() -> Vec<i32> {
     ENDING.into_iter().filter(|&signal| !is_ignored(signal)).collect()
 }

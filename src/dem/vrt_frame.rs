@@ -68,7 +68,7 @@ impl VrtFrame {
         Ok(Raster { samples, ..windows.metadata().without_samples() })
     }
 
-    /// The same of tiles that are read in windows.
+    /// The frame with the joined tiles in it, of tiles that are read in windows.
     ///
     /// # Errors
     /// They reach beyond it, or lie between its samples; it has more samples than are read in windows.

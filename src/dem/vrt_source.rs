@@ -142,7 +142,7 @@ impl VrtSource {
         Ok(Raster { samples, ..windows.header })
     }
 
-    /// The same of a tile that is read in windows.
+    /// The samples of a tile as the virtual raster has them, of a tile that is read in windows.
     ///
     /// # Errors
     /// The tile has fewer samples than are taken.

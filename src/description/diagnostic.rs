@@ -100,7 +100,7 @@ impl Diagnostics {
         &self.list
     }
 
-    /// How many more there are.
+    /// The number of further errors, which are not kept.
     pub fn omitted(&self) -> usize {
         self.omitted
     }

@@ -84,7 +84,7 @@ impl Finding {
         Self { more, ..self }
     }
 
-    /// How much it matters.
+    /// The severity of the finding.
     pub fn severity(&self) -> Severity {
         self.code.severity()
     }

@@ -349,12 +349,12 @@ impl FindingCode {
         ROWS[self as usize].1
     }
 
-    /// How much its findings matter.
+    /// The severity of its findings.
     pub fn severity(self) -> Severity {
         ROWS[self as usize].2
     }
 
-    /// What it means, why it matters and what to do, in sentences.
+    /// The explanation in sentences: what it means, why it matters and what to do.
     pub fn text(self) -> &'static str {
         ROWS[self as usize].3
     }

@@ -77,7 +77,7 @@ impl<'r, 't> TableReader<'r, 't> {
         self.context.phases.chosen()
     }
 
-    /// What no table uses; of the whole scene once all its tables are read.
+    /// The definitions that no table uses; those of the whole scene once all its tables are read.
     pub fn unused(&mut self) -> UnusedDefinitions {
         let DecodeContext { report, styles, phases, unused_includes, .. } = &mut *self.context;
         let source = report.source();

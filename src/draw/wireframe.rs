@@ -17,8 +17,8 @@ pub const WIDTH_PX: f32 = 1.0;
 /// Triangles this many pixels high show no edges, and as high as the second whole ones.
 pub const FADE_PX: [f32; 2] = [2.0, 7.0];
 
-/// How much of a pixel the edges of its triangle cover, 0..=1; by the distances of the pixel's center from the three
-/// edges, and the triangle's heights over them, in pixels.
+/// The share of a pixel that the edges of its triangle cover, 0..=1; by the distances of the pixel's center from the
+/// three edges, and the triangle's heights over them, in pixels.
 pub fn edge_cover(from_edges_px: Vec3, heights_px: Vec3) -> f32 {
     let [none, all] = FADE_PX;
     let shown = ((heights_px.min_element() - none) / (all - none)).clamp(0.0, 1.0);

@@ -67,17 +67,17 @@ pub struct Flooded {
     pub lower_level_m: Option<f32>,
 }
 
-/// How far from the shore of a lake of an area ground may be moved, in meters.
+/// The distance from the shore within which a lake of this area may move ground, in meters.
 pub fn reach_m(area_m2: f64) -> f64 {
     REACH_M.max(area_m2.max(0.0).sqrt() * REACH_SHARE)
 }
 
-/// How close posts must be for bed and shore to lie within a reach, in meters.
+/// The greatest distance between posts with which bed and shore lie within a reach, in meters.
 pub fn spacing_m(reach_m: f64) -> f64 {
     reach_m / POSTS_ASHORE
 }
 
-/// How far from the shore the bed of a lake reaches on a lattice, in meters: the diagonal of a cell.
+/// The distance that the bed of a lake extends beyond the shore on a lattice, in meters: the diagonal of a cell.
 pub fn bed_reach_m(lattice: &Lattice) -> f64 {
     lattice.cell().length()
 }

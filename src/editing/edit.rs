@@ -67,20 +67,20 @@ impl NewTable {
         Self { name: name.to_owned(), keys: Vec::new() }
     }
 
-    /// The same with one more key.
+    /// This table with one more key.
     #[must_use]
     pub fn with(mut self, key: &str, value: EditValue) -> Self {
         self.keys.push((key.to_owned(), value));
         self
     }
 
-    /// The same with a text.
+    /// This table with one more key, whose value is a text.
     #[must_use]
     pub fn with_text(self, key: &str, text: &str) -> Self {
         self.with(key, EditValue::Text(text.to_owned()))
     }
 
-    /// The same with a number.
+    /// This table with one more key, whose value is a number.
     #[must_use]
     pub fn with_number(self, key: &str, number: f64) -> Self {
         self.with(key, EditValue::Number(number))

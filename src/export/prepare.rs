@@ -13,8 +13,8 @@ use sandtable_draw::material::{Albedo, AlphaMode, NormalSource};
 /// would flicker. Arbitrary, but too small to see.
 const LIFT_M: f32 = 0.05;
 
-/// The same picture with a texture in place of the ground map, a ground that is cut out under opaque drapes, and
-/// normals at every vertex. Items without triangles are dropped.
+/// The draw list of the same picture with a texture in place of the ground map, a ground that is cut out under opaque
+/// drapes, and normals at every vertex. Items without triangles are dropped.
 pub fn prepare(mut list: DrawList) -> DrawList {
     let baked = list.ground.as_deref().map(bake);
     let meshes: Vec<Option<DrawMesh>> = {

@@ -82,7 +82,7 @@ impl PartFile {
         Err(io::ErrorKind::AlreadyExists.into())
     }
 
-    /// What is written.
+    /// The file to write to.
     pub fn file(&self) -> &File {
         &self.file
     }

@@ -88,7 +88,7 @@ impl LineBend {
         Some(if before.perp_dot(after) > 0.0 { [inner_end, -outer_end] } else { [outer_end, -inner_end] })
     }
 
-    /// How far the line turns, counter-clockwise, in −π..=π.
+    /// The angle by which the line turns, counter-clockwise, in −π..=π.
     pub fn turn_rad(&self) -> f64 {
         let [before, after] = self.directions();
         libm::atan2(before.perp_dot(after), before.dot(after))

@@ -25,7 +25,7 @@ impl Rect {
         Self { min: self.min.min(point), max: self.max.max(point) }
     }
 
-    /// What this rectangle and `other` have in common; possibly empty.
+    /// The intersection of this rectangle and `other`; possibly empty.
     pub fn intersection(&self, other: &Self) -> Self {
         Self { min: self.min.max(other.min), max: self.max.min(other.max) }
     }

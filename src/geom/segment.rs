@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-/// How far along the segment, 0..=1, its point nearest to `at` lies; NaN for a segment without length.
+/// The position along the segment, 0..=1, of its point nearest to `at`; NaN for a segment without length.
 pub fn nearest_part((from, to): (DVec2, DVec2), at: DVec2) -> f64 {
     let along = to - from;
     ((at - from).dot(along) / along.length_squared()).clamp(0.0, 1.0)
@@ -13,7 +13,7 @@ pub fn distance_squared((from, to): (DVec2, DVec2), at: DVec2) -> f64 {
     at.distance_squared(from + (to - from) * nearest_part((from, to), at))
 }
 
-/// How far along each of two segments, 0..=1, they cross or touch; `None` where they do not, or are parallel.
+/// The positions along two segments, 0..=1, at which they cross or touch; `None` where they do not, or are parallel.
 pub fn crossing((a, b): (DVec2, DVec2), (c, d): (DVec2, DVec2)) -> Option<[f64; 2]> {
     let (one, other) = (b - a, d - c);
     let area = one.perp_dot(other);

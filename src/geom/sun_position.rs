@@ -12,7 +12,7 @@ pub struct SunPosition {
     pub altitude_rad: f64,
 }
 
-/// Where the sun stands at a time, in seconds since 1970 UTC, over longitude and latitude in degrees.
+/// The position of the sun at a time, in seconds since 1970 UTC, over longitude and latitude in degrees.
 pub fn sun_position(unix_s: f64, place: DVec2) -> SunPosition {
     // Days since noon of the first of January 2000.
     let days = unix_s / 86_400.0 - 10_957.5;

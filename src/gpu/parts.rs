@@ -54,7 +54,7 @@ impl ShaderParts {
         if is_there { self } else { Self::NONE }
     }
 
-    /// What `material` shows.
+    /// The parts for a `material`.
     pub fn of_material(material: &Material) -> Self {
         let light = match (material.normals, material.albedo) {
             (NormalSource::Ground, _) => Self::GROUND_LIGHT,
@@ -73,7 +73,7 @@ impl ShaderParts {
             .with(Self::EDGES.when(material.shows_edges))
     }
 
-    /// What a picture shows of a checked map and a light, with these shadow maps of the sun and of the sky.
+    /// The parts for a picture of a checked map and a light, with these shadow maps of the sun and of the sky.
     pub fn of_picture(map: Option<&GroundMap>, lighting: &Lighting, has_shadows: [bool; 2]) -> Self {
         let [sun, sky] = has_shadows;
         let light = Self::HAZE

@@ -75,7 +75,7 @@ impl PipelineKey {
     /// The edges of bare ground by patches.
     pub const PATCH_LINES: Self = Self { rule: DepthRule::Lines, two_sided: true, ..Self::PATCH };
 
-    /// The same with parts of the shading.
+    /// This key with parts of the shading.
     pub fn with_parts(self, parts: ShaderParts) -> Self {
         Self { parts, ..self }
     }

@@ -78,7 +78,7 @@ struct TransparentCall {
 }
 
 impl DrawCall {
-    /// What it is drawn with in a picture that has the parts `picture`.
+    /// The key of its pipeline in a picture that has the parts `picture`.
     pub fn key(&self, picture: ShaderParts) -> PipelineKey {
         let source = match self.shape {
             DrawShape::Merged { .. } => VertexSource::Merged,

@@ -158,7 +158,7 @@ impl FrameUniforms {
         }
     }
 
-    /// The same for a picture of another size.
+    /// These constants for a picture of another size.
     pub fn with_size(mut self, (width, height): (u32, u32)) -> Self {
         [self.depth[2], self.depth[3]] = [width as f32, height as f32];
         self

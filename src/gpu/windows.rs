@@ -69,7 +69,7 @@ impl WindowTexture {
         &self.posts
     }
 
-    /// Where they lie, the coarsest first.
+    /// The places of the windows, the coarsest first.
     pub fn places(&self) -> &[WindowPlace] {
         &self.places
     }

@@ -46,7 +46,7 @@ pub fn standing_index(scene: &SceneModel, is_wanted: &dyn Fn(FeatureId, &Rect) -
     StandingIndex::new(Arc::new(list))
 }
 
-/// How far a model reaches from its origin, in its own units.
+/// The greatest distance of a model from its origin, in its own units.
 pub fn reach(model: &Model) -> f32 {
     model.bounds().map_or(0.0, |bounds| bounds.farthest_from(Vec3::ZERO).length())
 }

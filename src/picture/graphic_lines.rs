@@ -89,7 +89,7 @@ impl GraphicPen {
         [casings, lines]
     }
 
-    /// What the lines become on the displayed ground: casings, then lines.
+    /// The lines draped on the displayed ground: casings, then lines.
     pub fn draped(&self, displayed: &dyn TriangleSurface) -> [Vec<DrapedPart>; 2] {
         let part = |plan: &PlanMesh, color: Srgba, feature: FeatureId| {
             let mut mesh = DrawMesh::default();

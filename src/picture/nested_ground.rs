@@ -106,7 +106,7 @@ pub struct NestedHeights {
 }
 
 impl NestedHeights {
-    /// Those of `grounds`.
+    /// The heights of `grounds`.
     pub fn new(grounds: &[NestedGround]) -> Self {
         Self { lattices: grounds.iter().map(|ground| Arc::clone(&ground.scene.lattice)).collect() }
     }

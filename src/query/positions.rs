@@ -94,7 +94,7 @@ pub struct PositionColumns {
 }
 
 impl PositionColumns {
-    /// Those that the first line of a table names, or the first two where it names none.
+    /// The columns that the first line of a table names, or the first two where it names none.
     ///
     /// # Errors
     /// [`PositionFault::Header`].

@@ -83,7 +83,7 @@ impl WindowedElevation {
         Stats::range_of_windows(&mut **self.source())
     }
 
-    /// How the ground in meters is made.
+    /// The plan for the ground in meters.
     ///
     /// # Errors
     /// The raster has no ground, or cannot be read.

@@ -22,7 +22,7 @@ pub struct StoredSamples {
 }
 
 impl StoredSamples {
-    /// How the samples of `raster` are stored without a loss.
+    /// The sample type and nodata value that store `raster` without loss.
     pub fn new(raster: &Raster) -> Self {
         let mut survey = SampleSurvey::new(raster);
         survey.add(&raster.samples);
@@ -129,7 +129,7 @@ impl SampleSurvey {
         SurveyedSamples { has_holes, taken: taken.collect(), kept }
     }
 
-    /// How the samples are stored without a loss.
+    /// The sample type and nodata value that store the samples without loss.
     pub fn stored(&self) -> StoredSamples {
         let integers = self.integers.iter().zip(&self.found.kept).filter(|(_, kept)| **kept);
         let types = integers.map(|(sample, _)| *sample).chain([self.float]);

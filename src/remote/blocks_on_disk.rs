@@ -42,7 +42,7 @@ pub(crate) struct BlocksOnDisk {
 }
 
 impl BlocksOnDisk {
-    /// Those of the file at `address` in a version, in the folder of all.
+    /// The blocks of the file at `address` in a version, in the folder of all.
     pub fn new(root: &Path, address: &str, version: &str) -> Self {
         Self::with_limit(root, address, version, REMOTE_DISK_BYTES.get())
     }

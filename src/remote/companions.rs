@@ -13,7 +13,7 @@ pub struct CompanionFiles<F, E> {
 }
 
 impl<E, F: Fn(&str) -> FoundCompanion<E>> CompanionFiles<F, E> {
-    /// Those that `find` finds.
+    /// The companions that `find` finds.
     pub fn found_by(find: F) -> Self {
         Self { find, fault: RefCell::new(None) }
     }

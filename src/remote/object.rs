@@ -68,7 +68,7 @@ impl RemoteObject {
         Ok((Self { file, size: meta.size, version: ObjectVersion::of(&meta) }, bytes))
     }
 
-    /// What tells this version of the file from others.
+    /// An identifier of this version of the file.
     pub fn version(&self) -> &ObjectVersion {
         &self.version
     }

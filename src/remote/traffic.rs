@@ -15,7 +15,7 @@ pub struct Traffic {
 }
 
 impl Traffic {
-    /// That of this run so far.
+    /// The traffic of this run so far.
     pub fn of_run() -> Self {
         Self { requests: REQUESTS.load(Ordering::Relaxed), bytes: BYTES.load(Ordering::Relaxed) }
     }

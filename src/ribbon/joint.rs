@@ -54,7 +54,7 @@ enum RibbonSide {
 }
 
 impl JointFan {
-    /// How far across the ribbon its rim lies: 0 at the left edge, 1 at the right.
+    /// The position of its rim across the ribbon: 0 at the left edge, 1 at the right.
     pub fn rim_u(&self) -> f32 {
         match self.outer {
             RibbonSide::Left => 0.0,
@@ -62,7 +62,7 @@ impl JointFan {
         }
     }
 
-    /// How far across its center lies.
+    /// The position of its center across the ribbon.
     pub fn center_u(&self) -> f32 {
         if self.center == DVec2::ZERO { 0.5 } else { 1.0 - self.rim_u() }
     }

@@ -45,7 +45,7 @@ impl LevelPass {
         posts.grown(dx, dy)
     }
 
-    /// Where the children of its vertices are; `None` where they have none.
+    /// The places of the children of its vertices; `None` where they have none.
     pub fn children(self) -> Option<ChildPlaces> {
         match (self.child_reach(), self.kind) {
             (0, _) => None,
@@ -113,7 +113,7 @@ pub struct StridedColumns {
 }
 
 impl StridedColumns {
-    /// Those from `first` on that are less than `end`.
+    /// The columns from `first` on that are less than `end`.
     pub fn until(first: usize, end: usize, shift: u32) -> Self {
         Self { first, shift, count: (end + (1 << shift) - 1).saturating_sub(first) >> shift }
     }

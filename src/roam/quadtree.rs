@@ -69,7 +69,7 @@ impl Address {
         digits.chars().try_fold(Self::ROOT, |address, digit| address.child(digit.to_digit(4)?))
     }
 
-    /// How many digits it has: how far below the root the node is.
+    /// The number of its digits: how far below the root the node is.
     pub const fn level(self) -> u32 {
         (31 - self.0.leading_zeros()) / 2
     }

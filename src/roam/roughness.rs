@@ -34,7 +34,7 @@ impl Roughness {
         Self { columns, half_window, values }
     }
 
-    /// How many posts a window reaches east and north.
+    /// The number of posts that a window reaches east and north.
     pub fn half_window(&self) -> (u32, u32) {
         self.half_window
     }

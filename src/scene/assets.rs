@@ -154,7 +154,7 @@ impl Assets {
         Ok(Self { folder, root, allowed, allowed_as_written, read: Arc::default(), elevation: None })
     }
 
-    /// The same files, but for the elevation: that is `elevation`, whatever the scene names. For files that are larger than
+    /// The same files, but with `elevation` in place of the elevation that the scene names. For files that are larger than
     /// the memory, of which this is an overview.
     pub fn with_elevation(self, elevation: Arc<Raster>) -> Self {
         Self { elevation: Some(elevation), ..self }
@@ -265,7 +265,7 @@ impl Assets {
         Ok(bytes)
     }
 
-    /// Where the file `name` is, with all links resolved.
+    /// The path of the file `name`, with all links resolved.
     ///
     /// # Errors
     /// [`AssetError`] where it is not there or may not be read.
@@ -337,7 +337,7 @@ pub struct SiblingFiles<'a> {
 }
 
 impl SiblingFiles<'_> {
-    /// Where the file that the model calls `name` is.
+    /// The path of the file that the model calls `name`.
     ///
     /// Tried in this order: as named; the same in another case, folder by folder, since many models were made
     /// where case does not matter; and the bare file name beside the model, since many name the folder of the

@@ -66,7 +66,7 @@ impl Attributes {
         }
     }
 
-    /// Where the feature comes from, which `source` states.
+    /// The origin of the feature, which `source` states.
     pub fn origin(&self, source: &FeatureSource) -> FeatureOrigin {
         FeatureOrigin { span: source.span(), number: self.feature.as_ref().map(|(_, feature)| feature + 1) }
     }

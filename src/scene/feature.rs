@@ -68,7 +68,7 @@ pub struct SceneFeature {
 }
 
 impl SceneFeature {
-    /// What a message calls it: its kind with its name, or with its number in its file.
+    /// The name of the feature in messages: its kind with its name, or with its number in its file.
     pub fn described(&self) -> String {
         let kind = self.kind.noun(1);
         match (self.name.as_str(), self.origin.number) {

@@ -12,7 +12,7 @@ pub struct FeatureOrigin {
 }
 
 impl FeatureOrigin {
-    /// Of what the scene file states at the bytes `span`.
+    /// The origin of a feature that the scene file states at the bytes `span`.
     pub fn stated(span: Option<Range<usize>>) -> Self {
         Self { span: span.unwrap_or_default(), number: None }
     }

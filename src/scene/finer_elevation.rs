@@ -26,7 +26,7 @@ pub struct FinerElevation {
 }
 
 impl FinerElevation {
-    /// Those of a document of which means of `step` × `step` samples are held.
+    /// The finer samples of a document of which means of `step` × `step` samples are held.
     pub fn new(document: &Document, assets: &Assets, step: u32) -> Self {
         Self { document: document.clone(), assets: assets.clone(), step }
     }

@@ -19,7 +19,7 @@ use sandtable_terrain::terraces::without_terraces;
 use sandtable_terrain::water_shore::WaterShore;
 
 impl SceneModel {
-    /// What the ground looks like, its light computed unless the last picture had the same; `making` is called before.
+    /// The ground map, its light computed unless the last picture had the same; `making` is called before.
     pub fn map(&self, key: GroundMapKey, making: impl FnOnce()) -> Arc<GroundMap> {
         self.maps.get(key, || {
             making();
@@ -99,7 +99,8 @@ pub fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: Gr
 /// The generalized ground keeps forms wider than this share of the extent: about as many as a map of the whole names.
 const FORM_SHARE: f64 = 1.0 / 100.0;
 
-/// How often the cells of the lattice are doubled until they are as wide as the forms of the generalized ground.
+/// The number of times that the cells of the lattice are doubled until they are as wide as the forms of the generalized
+/// ground.
 pub fn form_level(lattice: &Lattice) -> u32 {
     libm::log2((form_m(lattice) / lattice.cell().max_element()).max(1.0)).round() as u32
 }

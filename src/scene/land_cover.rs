@@ -29,7 +29,7 @@ pub struct CoverLines {
 }
 
 impl CoverLines {
-    /// Those at a latitude in degrees; `None` for a scene without a place on Earth.
+    /// The elevations for a latitude in degrees; `None` for a scene without a place on Earth.
     pub fn at(latitude_deg: Option<f64>) -> Self {
         let latitude = latitude_deg.filter(|degrees| degrees.is_finite()).unwrap_or(MIDDLE_DEG).abs();
         let line = |elevations: &[f64]| value_at(&LATITUDES_DEG, elevations, latitude);

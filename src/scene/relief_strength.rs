@@ -40,7 +40,8 @@ pub struct ReliefStrength {
 }
 
 impl ReliefStrength {
-    /// Of the land of `lattice`, drawn at `scale` in the colors of `ramp`, under a sun in direction `to_sun` (unit vector).
+    /// The strength for the land of `lattice`, drawn at `scale` in the colors of `ramp`, under a sun in direction `to_sun`
+    /// (unit vector).
     pub fn of(
         lattice: &Lattice,
         scale: VerticalScale,

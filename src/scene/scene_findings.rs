@@ -30,7 +30,7 @@ pub struct FeatureTable<'a> {
 }
 
 impl SceneFindings {
-    /// None yet, about the file of `document`.
+    /// No findings yet, about the file of `document`.
     pub fn new(document: &Document) -> Self {
         Self { source: Arc::clone(&document.source), list: Vec::new() }
     }

@@ -174,7 +174,7 @@ impl SceneModel {
         self.ramp.over(&TintedGround { range_m: (low, high), latitude_deg: self.latitude_deg })
     }
 
-    /// Where the covers of natural ground change; `None` where the picture shows none.
+    /// The elevations where the covers of natural ground change; `None` where the picture shows none.
     pub fn cover(&self) -> Option<GroundCover> {
         let lines = CoverLines::at(self.latitude_deg);
         self.land_cover.then(|| GroundCover {
@@ -206,7 +206,7 @@ impl SceneModel {
         self.findings.iter().map(|finding| finding.message.as_str()).collect()
     }
 
-    /// What a picture shows that no file states, for the user.
+    /// Notes for the user about what a picture shows and no file states.
     pub fn inferred_notes(&self) -> Vec<String> {
         let WaterCover { sea_posts, lakes, .. } = self.water();
         let area = |posts: usize| format!("{:.2} km²", posts as f64 * self.lattice.cell_m2() / 1e6);
@@ -237,7 +237,7 @@ impl SceneModel {
         }
     }
 
-    /// What a feature is called: its kind and its name; empty for nothing.
+    /// The name of a feature: its kind and its own name; empty for nothing.
     pub fn feature_name(&self, feature: FeatureId) -> String {
         match feature {
             FeatureId::GROUND => return "ground".into(),

@@ -58,7 +58,7 @@ pub struct SightedLine {
 }
 
 impl PostFrame {
-    /// Those of a lattice.
+    /// The places of the posts of a lattice.
     pub fn of(lattice: &Lattice) -> Self {
         let first = lattice.first().grid() + lattice.held().first.grid();
         Self { origin: lattice.origin(), cell: lattice.cell(), first }
@@ -71,7 +71,7 @@ impl PostFrame {
 }
 
 impl SceneViewshed {
-    /// Of observers, on the ground of the picture.
+    /// The viewshed of observers, on the ground of the picture.
     pub fn new(
         name: String,
         observers: Vec<ViewshedOptions>,
@@ -91,7 +91,7 @@ impl SceneViewshed {
         (!around.is_empty()).then_some(around)
     }
 
-    /// What is in sight of one of the observers at least, on `lattice` unless it was found before, computed on first use; `None`
+    /// The posts that at least one observer sees, on `lattice` unless they were found before, computed on first use; `None`
     /// without observers on the ground.
     pub fn seen(&self, lattice: &Lattice) -> Option<&SeenPosts> {
         self.seen.get_or_init(|| self.compute(lattice)).as_ref()
@@ -135,8 +135,8 @@ pub struct SceneSight {
 }
 
 impl SceneSight {
-    /// What is in sight along the line to each target, on `lattice` unless it was found before; `None` without ground under the
-    /// observer.
+    /// The visible stretches of the line to each target, on `lattice` unless they were found before; `None` without ground
+    /// under the observer.
     pub fn lines(&self, lattice: &Lattice) -> Cow<'_, [Option<SightedLine>]> {
         match &self.found {
             Some(found) => Cow::Borrowed(found),

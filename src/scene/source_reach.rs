@@ -93,7 +93,7 @@ impl SourceReach {
         }
     }
 
-    /// How much of it lies off the ground, whose extent is in world coordinates.
+    /// The part of the source that lies off the ground, whose extent is in world coordinates.
     pub fn overlap(&self, extent: &Rect) -> SourceOverlap {
         let is_inside = |rect: &Rect| extent.contains(rect.min) && extent.contains(rect.max);
         let off = self.boxes.iter().filter(|rect| !rect.meets(extent)).count();

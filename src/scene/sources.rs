@@ -340,7 +340,7 @@ impl<'a> Sources<'a> {
         Ok(())
     }
 
-    /// Where the sources that were read lie, in the order of the scene file.
+    /// The reach of the sources that were read, in the order of the scene file.
     pub fn reaches(&self) -> Vec<SourceReach> {
         self.reaches.borrow().values().cloned().collect()
     }

@@ -120,7 +120,7 @@ pub struct Surroundings {
 }
 
 impl Surroundings {
-    /// Those of a document.
+    /// The surroundings of a document.
     pub fn new(document: &Document) -> Self {
         let style = &document.style;
         let is_clear = matches!(

@@ -99,7 +99,7 @@ impl LineSymbol {
         }
     }
 
-    /// By what its least width is multiplied at a station.
+    /// The factor of its least width at a station.
     pub fn growth_at(&self, station_m: f64) -> f64 {
         self.order.as_ref().map_or(1.0, |order| growth(order.at(station_m)))
     }

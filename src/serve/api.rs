@@ -65,7 +65,7 @@ impl std::fmt::Debug for ApiValue {
 }
 
 impl ApiValue {
-    /// How it is written.
+    /// The written form of the value.
     pub fn form(&self, limits: &ServiceLimits) -> String {
         match self {
             Self::Text(form) => (*form).to_owned(),

@@ -22,7 +22,7 @@ pub struct ServedDataset {
 }
 
 impl ServedDataset {
-    /// What it is.
+    /// The facts about the dataset.
     pub fn facts(&self) -> DatasetFacts<'_> {
         let source = self.dataset.header();
         let extent = source.extent();

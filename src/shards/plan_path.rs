@@ -11,7 +11,7 @@ pub fn written(path: &Path, folder: &Path) -> PathBuf {
     if path.is_absolute() { path.to_owned() } else { relative(path, folder) }
 }
 
-/// Where a file is that a plan in `folder` calls `written`.
+/// The path of the file that a plan in `folder` calls `written`.
 pub fn place(written: &Path, folder: &Path) -> PathBuf {
     if is_address_path(written) { written.to_owned() } else { folder.join(written) }
 }

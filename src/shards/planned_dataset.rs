@@ -63,7 +63,7 @@ impl PlannedDataset {
         }
     }
 
-    /// Where the file is, of a plan in `folder`.
+    /// The path of the file, of a plan in `folder`.
     pub fn path(&self, folder: &Path) -> PathBuf {
         place(&self.file, folder)
     }

@@ -59,7 +59,7 @@ fn result_name(id: usize, extension: &str) -> String {
     format!("shards/{}.{extension}", stem(id))
 }
 
-/// Where a result of a shard lies.
+/// The path of a result of a shard.
 pub fn result_path(plan: &ShardPlan, id: usize, extension: &str) -> PathBuf {
     plan.folder.join(result_name(id, extension))
 }

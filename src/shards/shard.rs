@@ -68,7 +68,7 @@ pub struct SheetNeighbors {
 }
 
 impl SheetNeighbors {
-    /// Those that are there, with the names of their sides.
+    /// The neighbors that exist, with the names of their sides.
     pub fn sides(&self) -> impl Iterator<Item = (&'static str, usize)> {
         let Self { north, east, south, west } = *self;
         let all = [("north", north), ("east", east), ("south", south), ("west", west)];

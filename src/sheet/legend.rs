@@ -148,7 +148,7 @@ fn classes(scene: &SceneModel) -> Vec<Option<ShownClass>> {
     scene.features.iter().enumerate().map(class).collect()
 }
 
-/// How each feature is printed in black.
+/// The print inks of features.
 pub fn feature_inks(scene: &SceneModel) -> Vec<Option<PrintInk>> {
     classes(scene).into_iter().map(|class| class.and_then(|class| class.ink())).collect()
 }

@@ -127,7 +127,7 @@ pub fn page_frame(scene: &SceneModel, size: PictureSize) -> Option<SheetFrame> {
     SheetFrame::new(furniture.layout, page, has_title, furniture.classification.is_some())
 }
 
-/// How a view is seen on a page of `size`, and the page's frame where the picture is not the page.
+/// The camera of a view on a page of `size`, and the page's frame where the picture is not the page.
 ///
 /// # Errors
 /// See [`CameraError`].

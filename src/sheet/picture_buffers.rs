@@ -48,8 +48,8 @@ pub struct PickedPlace {
     pub feature: FeatureId,
 }
 
-/// What a view shows at `pixels`, columns and rows from the upper left corner; `None` for sky, and beside the picture.
-/// Nothing is lit or colored for it.
+/// The place that a view shows at each of `pixels`, columns and rows from the upper left corner; `None` for sky, and
+/// beside the picture. Nothing is lit or colored for it.
 ///
 /// # Errors
 /// See [`PictureError`].
@@ -87,7 +87,7 @@ impl PictureBuffers<'_> {
         depth_m.is_finite().then_some((self.rendering.features[index], at))
     }
 
-    /// What a pixel shows at its center.
+    /// The place that a pixel shows at its center.
     pub fn place(&self, column: u32, row: u32) -> Option<PickedPlace> {
         let (feature, at) = self.world(column, row)?;
         let distance = match self.camera.parallel_frame() {

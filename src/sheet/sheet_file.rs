@@ -24,7 +24,7 @@ pub enum WriteSheetError {
     Pdf(#[from] FileError<PdfError>),
 }
 
-/// How a picture of `scene` was seen, for those who find it later.
+/// A description of the camera of a picture of `scene`, for those who find it later.
 pub fn picture_description(scene: &SceneModel, view: &SceneView) -> String {
     format!("camera {}, coordinates {}, heights times {}", view.name, scene.crs.name(), scene.scale.0)
 }

@@ -62,7 +62,7 @@ pub fn hedge(alignment: &Alignment, size: BandSize) -> FenceBand {
     }
 }
 
-/// From the outer foot of one parapet of a trench to that of the other, in meters: all the ground that is bare earth.
+/// The width in meters of all bare earth of a trench: from the outer foot of one parapet to that of the other.
 pub fn bare_m(width_m: f64) -> f64 {
     width_m * (1.0 + 2.0 * PARAPET_WIDTH)
 }

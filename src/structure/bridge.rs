@@ -92,12 +92,12 @@ pub struct BridgeSolids {
     pub piers: usize,
 }
 
-/// How deep a deck is for its longest span: an eighteenth of it, as for girders of concrete, from 0.6 to 4 meters.
+/// The depth of a deck by its longest span: an eighteenth of it, as for girders of concrete, from 0.6 to 4 meters.
 pub fn depth_m(longest_span_m: f64) -> f64 {
     (longest_span_m / 18.0).clamp(0.6, 4.0)
 }
 
-/// How much larger than life a structure on a road of this width is drawn, at least 1.
+/// The factor by which a structure on a road of this width is drawn larger than it is, at least 1.
 pub fn magnified(width_m: f64) -> f64 {
     (width_m / WIDEST_REAL_M).max(1.0)
 }

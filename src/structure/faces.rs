@@ -14,7 +14,7 @@ pub struct Faces {
 }
 
 impl Faces {
-    /// What was collected.
+    /// The collected faces as a mesh.
     pub fn into_mesh(self) -> DrawMesh {
         self.mesh
     }

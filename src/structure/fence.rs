@@ -52,8 +52,8 @@ impl Posts {
     }
 }
 
-/// Where posts stand along a line: at every vertex and, evenly in between, no more than `spacing_m`
-/// apart. Each stands along the bisector of the line at it.
+/// The positions of posts along a line: at every vertex and, evenly in between, no more than `spacing_m` apart. Each
+/// stands along the bisector of the line at it.
 pub fn stands(line: &Polyline, spacing_m: f64) -> Vec<PostPosition> {
     let (points, round, mut stands) = (line.points(), line.is_closed(), Vec::new());
     let direction = |from: DVec2, to: DVec2| (to - from).normalize_or(DVec2::X);
@@ -75,7 +75,7 @@ pub fn stands(line: &Polyline, spacing_m: f64) -> Vec<PostPosition> {
     stands
 }
 
-/// How many spans of up to `spacing_m` a length takes; at least one.
+/// The number of spans of up to `spacing_m` that a length takes; at least one.
 pub fn spans(length_m: f64, spacing_m: f64) -> u32 {
     // A hair's breadth over a whole number is rounding, not a span.
     (length_m / spacing_m - 1e-9).ceil().clamp(1.0, f64::from(u32::MAX)) as u32

@@ -76,13 +76,13 @@ fn hedgehog(faces: &mut Faces, at: Vec3, along: Vec3, height_m: f32) {
     }
 }
 
-/// How many rows a belt of `width_m` has.
+/// The number of rows of a belt of `width_m`.
 pub fn rows(width_m: f64, spacing_m: f64) -> u32 {
     (width_m / spacing_m).floor().min(f64::from(u32::MAX - 1)) as u32 + 1
 }
 
-/// Where the obstacles of a belt stand: along every leg of an alignment in rows across its width, every other row moved
-/// on by half a spacing.
+/// The positions of the obstacles of a belt: along every leg of an alignment in rows across its width, every other row
+/// moved on by half a spacing.
 pub fn belt(alignment: &Alignment, spacing_m: f64) -> Vec<(PostPosition, Obstacle)> {
     let rows = rows(alignment.width.widest_m(), spacing_m);
     let mut stands = Vec::new();

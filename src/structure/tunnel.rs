@@ -93,8 +93,8 @@ impl Portal {
         Self { at: self.at + self.outward * out, ..self }
     }
 
-    /// How far behind the mouth the hill has risen to the part `share` of the wall's height; `None` where it has not
-    /// within what the roof may reach.
+    /// The distance behind the mouth at which the hill has risen to the part `share` of the wall's height; `None` where
+    /// it has not within what the roof may reach.
     pub fn covered_after_m(&self, share: f64, ground: &GroundHeight<'_>) -> Option<f64> {
         let wanted = share * self.height_m();
         let longest = LONGEST_ROOF * self.height_m();

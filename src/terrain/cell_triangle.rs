@@ -91,7 +91,8 @@ impl CellTriangle {
         }
     }
 
-    /// How far a position in the cell lies on this triangle's side of the diagonal.
+    /// The signed distance of a position in the cell from the diagonal, along an axis of the cell: positive on this triangle's
+    /// side.
     pub fn side(self, at: DVec2) -> f64 {
         match self {
             Self::SouthEast => at.x - at.y,

@@ -43,7 +43,7 @@ pub fn bring_to(lattice: &mut Lattice, spacing_m: f64) -> u32 {
     0
 }
 
-/// How often the lattice must be doubled for its posts to be at most `spacing_m` apart; no more than
+/// The number of doublings of the lattice after which its posts are at most `spacing_m` apart; no more than
 /// `MOST_DOUBLINGS` of the measured posts.
 pub fn doublings_for(lattice: &Lattice, spacing_m: f64) -> u32 {
     let spacing = |times: u32| lattice.cell().max_element() / f64::from(1u32 << times);

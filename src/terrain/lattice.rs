@@ -307,7 +307,7 @@ impl Lattice {
         self.rows
     }
 
-    /// How often the spacing of the measured posts was halved; see [`crate::densify`].
+    /// The number of times that the spacing of the measured posts was halved; see [`crate::densify`].
     pub fn doublings(&self) -> u32 {
         self.doublings
     }
@@ -399,7 +399,8 @@ impl Lattice {
         &self.pinned
     }
 
-    /// How far drawn ground may be off a pinned post, meters: rounding of heights, which [`Lattice::stretched`] multiplies.
+    /// The greatest difference of drawn ground from a pinned post, meters: rounding of heights, which
+    /// [`Lattice::stretched`] multiplies.
     pub fn pin_slack_m(&self) -> f32 {
         self.pin_slack_m
     }

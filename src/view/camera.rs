@@ -140,7 +140,7 @@ impl Camera {
         Self { eye: self.eye + by, ..*self }
     }
 
-    /// How rays reach the picture.
+    /// The projection.
     pub fn projection(&self) -> ViewProjection {
         self.projection
     }
@@ -161,8 +161,7 @@ impl Camera {
         Some(f64::from(dpi) / (INCH_M * pixels_per_meter))
     }
 
-    /// How many times as many pixels a meter spans up the picture as across it, of meters across the rays; 1 in
-    /// perspective.
+    /// The ratio of the pixels that a meter across the rays spans up the picture to those across it; 1 in perspective.
     pub fn stretch(&self) -> f32 {
         match self.projection {
             ViewProjection::Perspective { .. } => 1.0,
@@ -192,7 +191,7 @@ impl Camera {
         self.up
     }
 
-    /// From `point` toward the eye, in world space; of any length.
+    /// The vector from `point` toward the eye, in world space; of any length.
     pub fn toward_eye(&self, point: Vec3) -> Vec3 {
         if self.parallel_frame().is_some() { -self.forward } else { self.eye - point }
     }

@@ -171,7 +171,7 @@ impl ViewerApp {
         app
     }
 
-    /// What the middle of the window shows.
+    /// The content of the middle of the window.
     pub fn stage(&self) -> ViewerStage {
         match (&self.opened, &self.loading, &self.failure) {
             (Some(_), _, _) => ViewerStage::Ready,
@@ -181,12 +181,12 @@ impl ViewerApp {
         }
     }
 
-    /// What the window has to do since this was called last.
+    /// The requests to the window since this was called last.
     pub fn take_requests(&mut self) -> Vec<WindowRequest> {
         std::mem::take(&mut self.requests)
     }
 
-    /// What the scene's renderer has to draw; `None` where there is no scene, or its camera sees nothing.
+    /// The frame for the scene's renderer; `None` where there is no scene, or its camera sees nothing.
     pub fn scene_frame(&mut self) -> Option<SceneFrame> {
         let opened = self.opened.as_mut().filter(|_| self.view.size.0 > 0)?;
         match opened.frame(self.view.size) {
@@ -229,7 +229,7 @@ impl ViewerApp {
             || self.answers.is_busy()
     }
 
-    /// What is said in the window, the oldest first.
+    /// The notices in the window, the oldest first.
     pub fn notice_texts(&self) -> impl Iterator<Item = &str> {
         self.notices.texts()
     }

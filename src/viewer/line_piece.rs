@@ -112,7 +112,7 @@ impl NamePoint {
     }
 }
 
-/// Where a station on the ground is along a piece; `None` where the piece lacks it.
+/// The position along a piece of a station on the ground; `None` where the piece lacks it.
 pub fn along_at(piece: &[NamePoint], station_m: f32) -> Option<f32> {
     let after = piece.partition_point(|point| point.station_m < station_m);
     let (from, to) = (piece.get(after.checked_sub(1)?)?, piece.get(after)?);

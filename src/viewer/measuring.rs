@@ -163,7 +163,7 @@ pub fn viewshed_from(at: DVec2) -> ViewshedOptions {
     ViewshedOptions::new(SightEnd { at, above_m: EYE_M })
 }
 
-/// What a viewshed comes to; `None` for a place without ground.
+/// The figures of a viewshed; `None` for a place without ground.
 pub fn seen_facts(seen: Option<&ViewshedSummary>) -> Vec<String> {
     match seen {
         Some(seen) => vec![

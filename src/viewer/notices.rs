@@ -52,7 +52,7 @@ impl ViewerNotices {
         self.notices.clear();
     }
 
-    /// What is said now.
+    /// The texts of the current notices.
     pub fn texts(&self) -> impl Iterator<Item = &str> {
         self.notices.iter().map(|notice| notice.text.as_str())
     }

@@ -263,7 +263,7 @@ impl OpenedScene {
         pose.camera(&ViewPicture { fov_y_rad, size, planes })
     }
 
-    /// From where it is seen now, on a picture of `size` pixels.
+    /// The current point of view, on a picture of `size` pixels.
     pub fn seen_from(&self, size: (u32, u32)) -> SeenFrom {
         let (pose, scale) = (self.navigator.pose(), self.scene.scale.0);
         SeenFrom { pose, scale, fov_y_rad: self.fov_y_rad, size: (size.0.max(16), size.1.max(16)) }
@@ -315,7 +315,7 @@ impl OpenedScene {
         self.navigator.zoom(place, factor, &|at| ground_z(ground, at));
     }
 
-    /// What the renderer has to take over for a picture of `size` pixels.
+    /// The changes that the renderer has to take over for a picture of `size` pixels.
     ///
     /// # Errors
     /// See [`SceneFrameError`].
@@ -403,7 +403,7 @@ impl OpenedScene {
         }
     }
 
-    /// What lies on the ground, or the ground, at a pixel; `None` for the sky.
+    /// The draped feature, or the ground, at a pixel; `None` for the sky.
     pub fn pick_ground(&self, camera: &Camera, pixel: Vec2) -> Option<WalkPick> {
         let ray = pixel_ray(camera, pixel);
         match &self.paged {

@@ -155,7 +155,7 @@ impl PagedTerrain {
         })
     }
 
-    /// How far it is.
+    /// The stage that the terrain has reached.
     pub fn stage(&self) -> PagingStage {
         match &self.stage {
             PagingStage::Measuring(_) => {
@@ -210,7 +210,7 @@ impl PagedTerrain {
         self.heights.iter_mut().for_each(PageHeights::clear);
     }
 
-    /// What changed on the ground since the call before, and what it cost; begins to bring it up to date with `camera`.
+    /// The changes of the ground since the last call, and their cost; begins to bring it up to date with `camera`.
     pub fn update(&mut self, camera: &Camera) -> (GroundChanges, WalkStatistics) {
         // What was asked for before the renderer was begun anew is of no use to it.
         let arrived = self.arrived.take().filter(|_| !self.is_anew);
@@ -245,7 +245,8 @@ impl PagedTerrain {
         self.heights.as_ref()
     }
 
-    /// Where a ray meets the ground of pages in memory, or else the overview at `coarse`; `None` where it meets neither.
+    /// The point where a ray meets the ground of pages in memory, or else the overview at `coarse`; `None` where it
+    /// meets neither.
     pub fn pick(&self, ray: Ray, coarse: Option<DVec3>) -> Option<DVec3> {
         let Some(heights) = &self.heights else { return coarse };
         let page = heights.pick(ray).map(|hit| hit.at);

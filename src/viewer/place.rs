@@ -28,7 +28,7 @@ pub struct PlaceText {
 const LYING_M: f64 = 0.05;
 
 impl PlaceText {
-    /// What was picked in `scene`.
+    /// The texts of a picked place in `scene`.
     pub fn of(scene: &SceneModel, pick: &WalkPick) -> Self {
         let ground = pick.ground_m.map(|ground_m| format!("{ground_m:.1} m (ground)"));
         // Ground of which no height is known is not in memory.

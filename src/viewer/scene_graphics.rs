@@ -47,7 +47,7 @@ impl SceneGraphics {
         Ok(Self { renderer: LiveRenderer::new(&gpu, drawn)?, drawn, picture: None, texture: None })
     }
 
-    /// What prepares scenes for this renderer on other threads.
+    /// The loader that prepares scenes for this renderer on other threads.
     pub fn loader(&self) -> LiveLoader {
         self.renderer.loader()
     }

@@ -214,7 +214,7 @@ impl ScriptRun {
         self.awaited = Some((line, notices));
     }
 
-    /// What the script did and what its frames took.
+    /// The report of what the script did and of the times of its frames.
     pub fn report(&self, adapter: &str) -> Value {
         let part = |part: fn(&FrameTime) -> f32| {
             let values: Vec<f32> = self.times.iter().map(part).collect();

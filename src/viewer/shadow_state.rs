@@ -46,7 +46,7 @@ impl ShadowState {
         (self.made_for, self.job, self.ready) = (Some(camera), None, None);
     }
 
-    /// What stands or the ground is otherwise now.
+    /// Marks the shadows as outdated: the ground, or what stands on it, has changed.
     pub fn forget(&mut self) {
         self.made_for = None;
     }
@@ -56,7 +56,7 @@ impl ShadowState {
         self.ready.take()
     }
 
-    /// How long `camera` is the same.
+    /// The time since `camera` last changed.
     pub fn rest(&mut self, camera: &Camera) -> Duration {
         match &self.rests {
             Some((before, since)) if before == camera => since.elapsed(),

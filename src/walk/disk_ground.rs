@@ -74,8 +74,8 @@ impl<W: Windows> DiskGround<W> {
         Ok(read_part(&mut self.windows, (self.origin, self.cell), rect)?)
     }
 
-    /// Where a ray in world space meets the ground from above, near where it is expected to, and the ground there; `None` where
-    /// it meets none.
+    /// The point where a ray in world space meets the ground from above, near where it is expected to, and the ground there;
+    /// `None` where it meets none.
     ///
     /// # Errors
     /// See [`DiskGroundError`].

@@ -74,7 +74,7 @@ pub struct GroundWindowPlan {
 }
 
 impl GroundWindowPlan {
-    /// Of how many samples, east and north, it has one.
+    /// The step between its samples, in samples of the terrain east and north.
     pub fn every(&self) -> u32 {
         self.every
     }

@@ -100,7 +100,7 @@ impl LaidGround {
         self.tints += 1;
     }
 
-    /// How many tints there were.
+    /// The number of tints so far.
     pub fn tints(&self) -> u32 {
         self.tints
     }
@@ -128,7 +128,7 @@ impl LaidGround {
         self.patches.iter_mut().for_each(|patch| patch.is_wanted = patch.eye.is_some());
     }
 
-    /// How many patches in view wait to be handed over in later updates.
+    /// The number of patches in view that wait to be handed over in later updates.
     pub fn waiting(&self) -> usize {
         self.waiting
     }
@@ -167,7 +167,8 @@ impl LaidGround {
         self.patches.iter_mut().for_each(|patch| patch.eye = None);
     }
 
-    /// What lies on the patches that changed or came into view, and what looks otherwise from where the camera is now.
+    /// The draped features of the patches that changed or came into view, and those that look different from where the
+    /// camera is now.
     pub fn update(
         &mut self,
         scene: &SceneModel,

@@ -168,7 +168,7 @@ impl Walk {
         self.moves.insert(placement, to);
     }
 
-    /// How a model stands now, by its number among the scene's placements.
+    /// The current pose of a model, by its number among the scene's placements.
     pub fn model_pose(&self, placement: usize) -> PlacementMove {
         self.moves.get(&placement).copied().unwrap_or_else(|| {
             let Placement { at, heading_rad, .. } = self.scene.placements[placement];

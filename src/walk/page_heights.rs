@@ -82,7 +82,7 @@ impl PageHeights {
         Some(ground_height(page, Interpolation::Planar, at + self.frame.origin))
     }
 
-    /// Where a ray in world space first meets the ground of these patches.
+    /// The point where a ray in world space first meets the ground of these patches.
     pub fn pick(&self, ray: Ray) -> Option<RayHit> {
         let hits = self.pages.values().filter_map(|page| page.pick(ray, f64::INFINITY));
         hits.min_by(|a, b| a.distance_m.total_cmp(&b.distance_m))

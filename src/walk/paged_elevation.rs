@@ -87,7 +87,7 @@ impl<W> WatchedWindows<W> {
         Self { windows, watch: Arc::default() }
     }
 
-    /// How much is read, for another thread.
+    /// A handle for another thread that counts the samples read.
     pub fn watch(&self) -> &Arc<ReadingWatch> {
         &self.watch
     }

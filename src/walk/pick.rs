@@ -141,7 +141,8 @@ impl Walk {
         self.sight.get_or_init(|| SightGround::new(Arc::clone(self.elevations())))
     }
 
-    /// What a ray in world space meets first: the ground, what lies on it, or something of `standing`; `None` for the sky.
+    /// The first thing that a ray in world space meets: the ground, a draped feature, or something of `standing`; `None`
+    /// for the sky.
     pub fn pick(&self, ray: Ray, standing: Option<&StandingIndex>) -> Option<WalkPick> {
         let direction = ray.direction.try_normalize()?;
         let ground = self.pick_ground(ray);
@@ -155,7 +156,7 @@ impl Walk {
         Some(self.described(world, world.distance(ray.origin), feature))
     }
 
-    /// Where a ray in world space meets the ground, in world space.
+    /// The point where a ray in world space meets the ground, in world space.
     pub fn pick_ground(&self, ray: Ray) -> Option<DVec3> {
         // Elevations are true to scale, the ray is not: scaled alike, both meet at the same place.
         let scale = f64::from(self.scene.scale.0);
@@ -172,7 +173,7 @@ impl Walk {
         height.height_m().map(|height_m| self.scene.scale.world_z(height_m))
     }
 
-    /// What lies uppermost on the ground at a world position, of what was in view in the last update.
+    /// The uppermost draped feature at a world position, of those in view in the last update.
     pub fn feature_at(&self, at: DVec2) -> Option<FeatureId> {
         let lattice = self.lattice();
         let layout = self.mesh.source().ground().layout;

@@ -73,7 +73,7 @@ impl ReliefMap {
         self.new.extend(loaded.as_deref().and_then(|map| patch(map, elevations, scale, posts)));
     }
 
-    /// What has changed of the loaded map since the last call.
+    /// The changes of the loaded map since the last call.
     pub fn take_new(&mut self) -> Vec<GroundMapPatch> {
         std::mem::take(&mut self.new)
     }

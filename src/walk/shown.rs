@@ -38,7 +38,7 @@ pub(super) struct ShownPatches {
 }
 
 impl ShownPatches {
-    /// None of so many patches; `kept` of them are kept where no more are in view.
+    /// No patches shown yet, of so many; `kept` of them are kept where no more are in view.
     pub fn new(count: usize, kept: usize) -> Self {
         let patches = vec![ShownPatch::default(); count];
         Self { frame: 0, patches, visible: Vec::new(), changed: Vec::new(), held: 0, kept }

@@ -70,7 +70,7 @@ impl<R: FileContent> SharedFile<R> {
         Ok(decoder.with_limits(limits(self.length)))
     }
 
-    /// How one image of the file is stored.
+    /// The storage of one image of the file.
     pub fn storage(&self, image: usize) -> Result<Storage, DemErrorKind> {
         let mut file = self.lock();
         let mut decoder = self.decoder(&mut file)?;

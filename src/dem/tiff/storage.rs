@@ -222,7 +222,7 @@ impl Storage {
         self.block_bytes.get(index as usize).is_none_or(|&bytes| bytes > 0)
     }
 
-    /// Where a block lies in the file: its start and its packed bytes; `None` where the tables do not list it.
+    /// The place of a block in the file: its start and its packed bytes; `None` where the tables do not list it.
     pub fn place(&self, index: u32) -> Option<(u64, u64)> {
         Some((*self.block_starts.get(index as usize)?, *self.block_bytes.get(index as usize)?))
     }

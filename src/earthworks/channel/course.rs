@@ -53,9 +53,9 @@ pub(super) struct CourseStation {
 }
 
 impl CourseStation {
-    /// How far from the centerline posts are set to the water's level: under the water, and as far again on either side
-    /// as the water is wide, but no further than the corners of the cells it touches. So water as wide as cells are lies
-    /// level on its whole width, and a brook on wide cells leaves the posts beside it alone.
+    /// The distance from the centerline within which posts are set to the water's level: under the water, and as far
+    /// again on either side as the water is wide, but no further than the corners of the cells it touches. So water as
+    /// wide as cells are lies level on its whole width, and a brook on wide cells leaves the posts beside it alone.
     pub fn bed_m(&self, lattice: &Lattice) -> f64 {
         self.half_m + self.half_m.min(lattice.cell().length())
     }

@@ -89,7 +89,7 @@ pub struct StripOffset {
 }
 
 impl GradingStrip {
-    /// How many legs it has.
+    /// The number of its legs.
     pub fn legs(&self) -> usize {
         self.alignment.line.points().len() - 1
     }
@@ -98,7 +98,7 @@ impl GradingStrip {
         self.alignment.width.widest_m() / 2.0
     }
 
-    /// From the centerline to the edge of the formation, in meters.
+    /// The distance from the centerline to the edge of the formation, in meters.
     pub fn reach_m(&self) -> f64 {
         self.half_width_m() + self.section.shoulder_m
     }
@@ -169,7 +169,7 @@ impl GradingStrip {
         self.ends[usize::from(beside.station_m > self.alignment.line.length() / 2.0)]
     }
 
-    /// How far a place is from what has to lie level: the formation, and a portal's mouth.
+    /// The distance of a place from the ground that must be level: the formation, and a portal's mouth.
     pub fn out_of_level_m(&self, beside: &StripOffset) -> f64 {
         let from_end_m = beside.station_m.min(self.alignment.line.length() - beside.station_m);
         if self.end(beside) != StripEnd::Wall || from_end_m > MOUTH_M.y {
@@ -179,13 +179,13 @@ impl GradingStrip {
         beside.out_m.min(away.max(DVec2::ZERO).length())
     }
 
-    /// How far beyond the formation's edge a place may be for [`GradingStrip::out_of_level_m`] to be less, in meters.
+    /// The distance beyond the formation's edge within which [`GradingStrip::out_of_level_m`] may be less, in meters.
     pub fn mouth_reach_m(&self) -> f64 {
         if self.ends.contains(&StripEnd::Wall) { MOUTH_M.max_element() } else { 0.0 }
     }
 
-    /// Where the batters at a place would lie: the fill's, below which there may be no ground, and the cut's, above
-    /// which there may be none.
+    /// The levels of the batters at a place: the fill's, below which there may be no ground, and the cut's, above which
+    /// there may be none.
     pub fn batters(&self, beside: &StripOffset) -> (f64, f64) {
         let edge = self.formation(beside);
         let CrossSection { fill_slope, cut_slope, .. } = self.section;

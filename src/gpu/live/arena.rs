@@ -95,7 +95,7 @@ impl Arena {
         }
     }
 
-    /// What is stored, to be bound; `None` for a range of another arena.
+    /// The stored bytes, to be bound; `None` for a range of another arena.
     pub fn slice(&self, range: &StoredRange) -> Option<wgpu::BufferSlice<'_>> {
         let block = self.blocks.get(range.block)?.as_ref()?;
         Some(block.buffer.slice(range.bytes.clone()))

@@ -25,7 +25,7 @@ impl<'a> CrsTransform<'a> {
         Self { to_center: center.map(|center| center.x), ..transform }
     }
 
-    /// From the raster's system.
+    /// Transforms from the raster's system.
     pub fn forward(&self, at: DVec2) -> Result<DVec2, CrsError> {
         match (self.from, self.to) {
             (Some(from), Some(to)) => from.transform(to, at).map(|at| nearest_turn(at, self.to_center)),
@@ -33,7 +33,7 @@ impl<'a> CrsTransform<'a> {
         }
     }
 
-    /// To the raster's system.
+    /// Transforms to the raster's system.
     pub fn back(&self, at: DVec2) -> Option<DVec2> {
         match (self.from, self.to) {
             (Some(from), Some(to)) => {

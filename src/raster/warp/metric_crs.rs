@@ -84,8 +84,8 @@ pub(super) fn metric_crs_around(
     Ok(Some(off.and_then(|off| off.zone).unwrap_or_else(|| stated.clone())))
 }
 
-/// What is off where a raster in meters, or `target`, stretches lengths by more than [`MOST_SCALE_ERROR`] at the center of
-/// the raster; `None` where lengths are true.
+/// The scale error where a raster in meters, or `target`, stretches lengths by more than [`MOST_SCALE_ERROR`] at the
+/// center of the raster; `None` where lengths are true.
 ///
 /// # Errors
 /// [`WarpError`]: the raster holds no data, or its border lies outside what its system covers.

@@ -42,7 +42,7 @@ pub struct MetricSystem {
 }
 
 impl MetricSystem {
-    /// That of a raster on disk, of which few samples are read in most cases.
+    /// The metric system for a raster on disk, of which few samples are read in most cases.
     ///
     /// # Errors
     /// [`WarpWindowsError`].
@@ -77,7 +77,7 @@ enum MetricMaking {
 }
 
 impl MetricPlan {
-    /// What [`to_metric`](crate::warp::to_metric) makes of `source`.
+    /// The result of [`to_metric`](crate::warp::to_metric) for `source`.
     ///
     /// # Errors
     /// [`WarpWindowsError`].

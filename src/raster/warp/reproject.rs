@@ -78,7 +78,8 @@ pub fn reproject<'a>(
     Ok(Warped { raster: Cow::Owned(raster), method })
 }
 
-/// What [`reproject`] makes of a raster that stays on disk, in memory; `None` where its samples are kept, or mirrored.
+/// The result of [`reproject`] in memory, for a raster that stays on disk; `None` where its samples are kept, or
+/// mirrored.
 ///
 /// # Errors
 /// As [`reproject`], and samples that cannot be read.

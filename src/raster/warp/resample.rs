@@ -34,7 +34,8 @@ pub(super) struct Resampler<'a> {
 }
 
 impl<'a> Resampler<'a> {
-    /// To cells around the valid samples, on multiples of the cell; by default as large as the source's at the center.
+    /// Resamples to cells around the valid samples, on multiples of the cell; by default as large as the source's at
+    /// the center.
     pub fn around(
         source: &'a Raster,
         transform: &'a CrsTransform<'a>,
@@ -66,7 +67,7 @@ impl<'a> Resampler<'a> {
         Self::new(source, transform, CellGrid::around(extent, side), most)
     }
 
-    /// To cells over a raster with north up, from its own corner.
+    /// Resamples to cells over a raster with north up, from its own corner.
     pub fn over(source: &'a Raster, transform: &'a CrsTransform<'a>, cell: f64) -> Result<Self, WarpError> {
         Self::new(source, transform, CellGrid::within(source.extent(), cell), RASTER_SAMPLES.get())
     }
@@ -93,7 +94,7 @@ impl<'a> Resampler<'a> {
         }
     }
 
-    /// To cells that were found before.
+    /// Resamples to cells that were found before.
     pub fn to_cells(source: &'a Raster, transform: &'a CrsTransform<'a>, cells: CellGrid) -> Self {
         Self { source, transform, cells }
     }
@@ -129,7 +130,7 @@ impl<'a> Resampler<'a> {
         T::into_samples(rows.flatten_iter().collect())
     }
 
-    /// Where the centers of some cells of a row lie in the source's grid; NaN where they have no place.
+    /// The positions of the centers of some cells of a row in the source's grid; NaN where they have no place.
     pub fn row_positions(&self, row: u32, columns: Range<u32>) -> Vec<DVec2> {
         let position = |column: usize| {
             let at = self.transform.back(self.cells.center(column as u32, row))?;
@@ -227,7 +228,7 @@ pub(super) struct CellSize {
 }
 
 impl CellSize {
-    /// Of the cell around the grid position `center`.
+    /// The size of the cell around the grid position `center`.
     pub fn new(center: DVec2, at: &impl Fn(DVec2) -> Result<DVec2, CrsError>) -> Result<Self, WarpError> {
         let half = DVec2::splat(0.5);
         let east = at(center + half * DVec2::X)? - at(center - half * DVec2::X)?;

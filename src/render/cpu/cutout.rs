@@ -32,7 +32,7 @@ pub struct Cutout<'a> {
 }
 
 impl Cutout<'_> {
-    /// Those of `samples` of pixel `(x, y)`, all on the face, that are not in a hole.
+    /// Those of `samples` of pixel `(x, y)`, all on the face, that do not lie in a hole.
     pub fn solid<const N: usize>(
         &self,
         (x, y): (u32, u32),

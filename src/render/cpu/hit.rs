@@ -49,7 +49,7 @@ impl FacePoint {
 }
 
 impl FacePoint {
-    /// How wide the pixel is in plan at the most, in meters.
+    /// The greatest width of the pixel in plan, in meters.
     pub fn pixel_m(&self) -> f32 {
         self.right.truncate().length_squared().max(self.down.truncate().length_squared()).sqrt()
     }

@@ -69,8 +69,8 @@ impl TrianglePlanes {
         Some(Self { nearness, is_parallel: true, ..planes })
     }
 
-    /// What the planes of weights are divided by at a pixel position, with its change from pixel to pixel: the nearness
-    /// in perspective, else 1.
+    /// The divisor of the planes of weights at a pixel position, with its change from pixel to pixel: the nearness in
+    /// perspective, else 1.
     pub fn divisor(&self) -> ScreenPlane {
         if self.is_parallel { ScreenPlane { right: 0.0, down: 0.0, start: 1.0 } } else { self.nearness }
     }

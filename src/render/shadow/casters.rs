@@ -95,7 +95,7 @@ impl ListTriangles {
         counted.map(|item| item.triangles.len() as u64).sum::<u64>() * BYTES
     }
 
-    /// What casts in a checked list; `None` where no solid does or nothing is seen.
+    /// The shadow casters of a checked list; `None` where no solid casts or nothing is seen.
     pub fn new(list: &DrawList, camera: &Camera) -> Option<Self> {
         let is_caster = |item: &DrawItem| is_caster(list, item);
         let first = list.items.partition_point(|item| item.layer < DepthLayer::Solid);

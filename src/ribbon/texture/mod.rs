@@ -62,7 +62,7 @@ impl RibbonSurface {
         matches!(self, Self::AsphaltJunction | Self::GravelJunction | Self::TrackJunction | Self::Confluence)
     }
 
-    /// How good a pavement it is: a road goes through the lesser ones that it meets.
+    /// The rank of the pavement: a road continues through the lesser ones that it meets.
     pub fn rank(self) -> u8 {
         match self {
             Self::Track | Self::Shoulder => 0,
@@ -71,7 +71,7 @@ impl RibbonSurface {
         }
     }
 
-    /// The same pavement without lines.
+    /// This pavement without lines.
     pub fn unmarked(self) -> Self {
         match self {
             Self::Asphalt | Self::AsphaltSolid | Self::AsphaltEdges => Self::AsphaltPlain,
@@ -131,8 +131,8 @@ pub fn texture(surface: RibbonSurface) -> Pixels {
     })
 }
 
-/// What is painted on `surface`, on nothing: over the texture of [`RibbonSurface::unmarked`] it makes that of the surface.
-/// `None` where nothing is.
+/// The markings of `surface` on a transparent ground: over the texture of [`RibbonSurface::unmarked`] they make that of
+/// the surface. `None` where nothing is.
 pub fn markings(surface: RibbonSurface) -> Option<Pixels> {
     let plain = (surface != surface.unmarked()).then(|| texture(surface.unmarked()))?;
     let marked = texture(surface);

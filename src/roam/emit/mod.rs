@@ -80,7 +80,7 @@ mod examples {
         sandtable_mesh::check::check(&mesh).expect("the full mesh is conforming").plan_area_m2
     }
 
-    /// What `emit` emits as a set: triangles rotated to start at their least corner, in order.
+    /// The triangles of `emit` as a set: rotated to start at their least corner, in order.
     pub fn sorted(emit: impl FnOnce(&mut dyn FnMut([Vertex; 3]))) -> Vec<[Vertex; 3]> {
         let mut found = Vec::new();
         emit(&mut |corners| found.push(turned(corners)));

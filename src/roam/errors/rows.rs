@@ -28,7 +28,7 @@ impl RowSpans {
         Self { corners, row: rows[0].min(rows[1]).min(rows[2]), last_row: rows[0].max(rows[1]).max(rows[2]) }
     }
 
-    /// Of these rows those from `first` to `last`.
+    /// Those rows of the triangle from `first` to `last`.
     pub fn within(self, first: u32, last: u32) -> Self {
         Self { row: self.row.max(first.into()), last_row: self.last_row.min(last.into()), ..self }
     }

@@ -87,7 +87,7 @@ impl<'a> Library<'a> {
         &self.about[model].0
     }
 
-    /// What a model's height is measured from. A built-in model stands on the ground by its origin, since its root lies
+    /// The reference of a model's height. A built-in model stands on the ground by its origin, since its root lies
     /// below that.
     pub fn clamp(&self, model: usize, stated: Clamp) -> Clamp {
         match (stated, self.about[model].1) {
@@ -96,7 +96,7 @@ impl<'a> Library<'a> {
         }
     }
 
-    /// How far a model reaches from its origin in plan, in its own units.
+    /// The greatest distance of a model from its origin in plan, in its own units.
     pub fn reach(&self, model: usize) -> f32 {
         let bounds = self.models[model].bounds();
         bounds.map_or(0.0, |bounds| bounds.min.abs().max(bounds.max.abs()).truncate().max_element())

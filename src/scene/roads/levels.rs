@@ -60,7 +60,7 @@ impl Site<'_> {
         ground_height(self.lattice, Interpolation::Planar, at + self.lattice.origin()).height_m()
     }
 
-    /// The same as it is drawn.
+    /// The ground's World Z at a world position, as it is drawn.
     pub fn ground_z(&self, at: DVec2) -> Option<f64> {
         self.ground_m(at).map(|height_m| self.scale.world_z(height_m))
     }

@@ -53,7 +53,7 @@ impl PointPattern {
         Self { seed, spacing_m, side_m: 1.0 / candidates.sqrt(), density, is_crowded: density < asked }
     }
 
-    /// How many places there are to the square meter.
+    /// The number of places to the square meter.
     pub fn density(&self) -> f64 {
         self.density
     }

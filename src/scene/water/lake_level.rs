@@ -17,14 +17,14 @@ pub struct LakeSurface {
     pub is_stated: bool,
 }
 
-/// How far a level lies below the lowest or above the highest ground along its shore, in meters, where that is too far to
-/// be meant; below, less than 0.
+/// The height of a level above the highest ground along its shore, or below the lowest (then negative), in meters, if it
+/// is too great to be meant.
 pub fn far_off_m(level_m: f64, [lowest_m, highest_m]: [f64; 2]) -> Option<f64> {
     let off_m = (level_m - lowest_m).min(0.0) + (level_m - highest_m).max(0.0);
     (off_m.abs() > ABSURD_M).then_some(off_m)
 }
 
-/// What a message says of such a lake.
+/// The message about such a lake.
 pub fn far_off_message(lake: &str, level_m: f64, shore_m: [f64; 2], off_m: f64) -> String {
     let (side, [lowest_m, highest_m]) = (if off_m < 0.0 { "below" } else { "above" }, shore_m);
     format!(

@@ -52,7 +52,7 @@ fn square((width, height): (u32, u32), across: u32, grid: DVec2) -> usize {
 }
 
 impl PointSquares {
-    /// Of a raster with so many samples per row and rows, without points.
+    /// The squares of a raster with so many samples per row and rows, without points.
     pub fn new(size: (u32, u32)) -> Self {
         let (across, down) = (size.0.div_ceil(SQUARE), size.1.div_ceil(SQUARE));
         Self { size, across, counts: vec![0; across as usize * down as usize] }

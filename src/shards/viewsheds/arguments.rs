@@ -51,7 +51,7 @@ impl ViewshedsArguments {
         }
     }
 
-    /// How far an observer looks, meters; may be infinite.
+    /// The range of an observer, meters; may be infinite.
     pub fn range_m(&self) -> f64 {
         self.range.unwrap_or(f64::INFINITY)
     }

@@ -43,7 +43,7 @@ pub fn grid_over(scene: &SceneModel, camera: &Camera, picture: &Rendering) -> Op
     ground_grid(scene, APART_PX / pixels_per_m)
 }
 
-/// What a picture shows of a grid.
+/// The part of a grid that a picture shows.
 pub fn picture_grid(
     grid: &GroundGrid,
     scene: &SceneModel,

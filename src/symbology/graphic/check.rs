@@ -47,7 +47,7 @@ pub enum GraphicError {
 }
 
 impl GraphicError {
-    /// What to do about it.
+    /// The remedy.
     pub fn help(&self) -> String {
         match self {
             Self::PointCount { .. } => {

@@ -71,7 +71,7 @@ impl<'a> CoarseField<'a> {
         }
     }
 
-    /// By what the field must be reduced to have at most `most` cells along its longer side.
+    /// The factor by which the field must be reduced to have at most `most` cells along its longer side.
     pub fn factor(&self, most: usize) -> usize {
         (self.columns.max(self.rows) - 1).div_ceil(most).max(1)
     }

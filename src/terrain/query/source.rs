@@ -106,7 +106,7 @@ pub struct SourceTransform<'a> {
 }
 
 impl<'a> SourceTransform<'a> {
-    /// To the system of `source`, whose samples are not used.
+    /// The transform to the system of `source`, whose samples are not used.
     pub fn new(source: &'a Raster, from: &'a Crs) -> Self {
         let own = source.crs.as_ref();
         let degrees = own.filter(|own| own.is_geographic()).map(|_| source.extent());

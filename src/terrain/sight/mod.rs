@@ -44,7 +44,7 @@ impl Curvature {
     /// A flat Earth without air.
     pub const FLAT: Self = Self { radius_m: f64::INFINITY, refraction: 0.0 };
 
-    /// How many meters the ground drops below the observer's horizontal, per square meter of distance.
+    /// The drop of the ground below the observer's horizontal in meters, per square meter of distance.
     pub fn drop_per_square_m(self) -> f64 {
         (1.0 - self.refraction) / (2.0 * self.radius_m)
     }

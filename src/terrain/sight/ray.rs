@@ -39,8 +39,8 @@ pub struct RayHit {
 }
 
 impl SightGround {
-    /// Where `ray` first meets a finest triangle, borders included, at most `farthest_m` along it; `None` where it does
-    /// not, or where the ray is not finite or has no direction.
+    /// The point where `ray` first meets a finest triangle, borders included, at most `farthest_m` along it; `None`
+    /// where it does not, or where the ray is not finite or has no direction.
     ///
     /// A ray within a triangle's plane meets it where it enters it.
     pub fn pick(&self, ray: Ray, farthest_m: f64) -> Option<RayHit> {

@@ -102,7 +102,7 @@ impl Navigator {
         self.pose
     }
 
-    /// How steps move the eye.
+    /// The mode, which decides how steps move the eye.
     pub fn mode(&self) -> NavigationMode {
         self.mode
     }

@@ -75,12 +75,12 @@ impl ViewPose {
         DVec3::new(libm::sin(self.azimuth_rad), libm::cos(self.azimuth_rad), 0.0)
     }
 
-    /// To the right, level, of length 1.
+    /// The direction to the right, level, of length 1.
     pub fn right(&self) -> DVec3 {
         DVec3::new(libm::cos(self.azimuth_rad), -libm::sin(self.azimuth_rad), 0.0)
     }
 
-    /// To the top of the picture, of length 1.
+    /// The direction to the top of the picture, of length 1.
     pub fn up(&self) -> DVec3 {
         self.right().cross(self.forward())
     }

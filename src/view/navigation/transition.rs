@@ -12,7 +12,7 @@ pub struct PoseTransition {
 }
 
 impl PoseTransition {
-    /// From one pose to another in `seconds`; at once where that is not above 0.
+    /// A transition from one pose to another in `seconds`; at once where that is not above 0.
     pub fn new(from: ViewPose, to: ViewPose, seconds: f64) -> Self {
         Self { from, to, seconds, passed_s: 0.0 }
     }

@@ -61,8 +61,8 @@ impl EyeStation {
         (self.traveled + ahead) as u64
     }
 
-    /// How far the eye is inside the sphere about (`x`, `y`, `z`), meters; negative outside, −∞ for a radius of 0. In f64, so
-    /// that neighbors agree to the last bit and nested spheres stay nested.
+    /// The depth of the eye inside the sphere about (`x`, `y`, `z`), meters; negative outside, −∞ for a radius of 0. In f64,
+    /// so that neighbors agree to the last bit and nested spheres stay nested.
     #[inline]
     pub fn inside_m(&self, [x, y, z, radius]: [f32; 4]) -> f64 {
         let (dx, dy, dz) = (

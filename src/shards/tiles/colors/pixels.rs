@@ -17,7 +17,7 @@ pub const TILE_PIXELS: usize = (PIXELS * PIXELS) as usize;
 pub struct PixelHeights(Vec<f32>);
 
 impl PixelHeights {
-    /// Of a tile whose pixels have these heights; `None` where none has elevation.
+    /// The tile whose pixels have these heights; `None` where none has elevation.
     ///
     /// # Panics
     /// Where there are not as many as pixels.

@@ -19,7 +19,7 @@ pub fn natural_zoom(cell_deg: f64) -> u32 {
     TileScheme::Geographic.level_of(CELLS, cell_deg)
 }
 
-/// What meshes of an opened dataset need.
+/// The mesh arguments of an opened dataset.
 ///
 /// # Errors
 /// The elevation cannot be read.

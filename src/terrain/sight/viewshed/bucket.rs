@@ -49,7 +49,7 @@ pub(super) struct EdgeChain<'a> {
 }
 
 impl EdgeChain<'_> {
-    /// How many there are.
+    /// The number of edges.
     pub fn edges(&self) -> usize {
         self.u.len() - 1
     }
