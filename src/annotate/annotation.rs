@@ -98,7 +98,7 @@ pub struct OverlayText {
     pub visible: bool,
 }
 
-/// Where along its line a name stands.
+/// The place of a name along its line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LinePlacement {
     /// Beside the line, repeated at intervals.

@@ -28,7 +28,7 @@ pub struct ContactPicture<'a> {
     pub pixels: &'a Pixels,
 }
 
-/// Where pictures are on a sheet: in rows, as large as there is room for.
+/// The layout of pictures on a sheet: in rows, as large as there is room for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ContactSheet {
     width: u32,

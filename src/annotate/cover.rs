@@ -1,4 +1,4 @@
-//! Where a picture shows its scene, and where its background.
+//! The parts of a picture that show its scene, and those that show its background.
 
 use glam::UVec2;
 

@@ -36,7 +36,7 @@ pub struct SetLetter {
     pub along: Vec2,
 }
 
-/// Where a name is set along a line.
+/// The place of a name along a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LetterCourse {
     /// The station of its middle.

@@ -20,9 +20,9 @@ const LEANS: [f32; 2] = [9.0, 32.0];
 /// The norths at the middle of a picture; angles in degrees clockwise from true north.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ThreeNorths {
-    /// Of the grid.
+    /// The direction of grid north.
     pub grid_deg: Option<f64>,
-    /// Of a compass needle, and its standard error.
+    /// The direction of a compass needle, and its standard error.
     pub magnetic_deg: Option<(f64, f64)>,
     /// The date of the declination, or the reason why it is missing.
     pub magnetic_note: String,

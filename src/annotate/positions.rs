@@ -39,7 +39,7 @@ pub struct LabelMetrics {
     /// The gap between text and leader line, and text and symbol.
     pub gap: f32,
     pub longest: f32,
-    /// Whether the text is wished at the end of a leader line.
+    /// Whether the text is preferred at the end of a leader line.
     pub leads_first: bool,
     /// Whether the first position is on the place itself, without symbol and leader line.
     pub may_lie_on_place: bool,

@@ -44,7 +44,7 @@ const BLACK: Srgba = Srgba::opaque(0, 0, 0);
 #[derive(Default)]
 pub struct DrawnSymbols {
     pub drawing: Drawing,
-    /// Of the symbols, then of their staffs and arrows.
+    /// The boxes of the symbols, then of their staffs and arrows.
     pub boxes: Vec<PixelBox>,
 }
 

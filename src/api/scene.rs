@@ -18,7 +18,7 @@ pub struct Scene {
     model: scene::scene_model::SceneModel,
 }
 
-/// How a scene is opened.
+/// The options for opening a scene.
 ///
 /// The steps of opening one:
 ///

@@ -1,4 +1,4 @@
-//! What a format declares of itself: how its files are recognized, read, opened in windows and written.
+//! The declaration of a format: how its files are recognized, read, opened in windows and written.
 //!
 //! The declarations know nothing of each other; [`FORMATS`](crate::formats::FORMATS) lists them.
 

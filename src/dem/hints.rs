@@ -1,10 +1,10 @@
-//! What a caller states of an elevation file, and how it hands out the files beside it.
+//! What a caller states about an elevation file, and access to the files beside it.
 
 use crate::formats::height_encoding::HeightEncoding;
 use crate::formats::raw_layout::RawLayout;
 use sandtable_geom::crs::Crs;
 
-/// What a caller states of elevation, in place of what the file does or besides it.
+/// Statements of a caller about elevation, which replace or complement those of the file.
 #[derive(Clone, Debug, Default)]
 pub struct DemOptions {
     /// Meters per gray value of a PNG, which is refused without it, or per value of a RAW file (default 1).
@@ -25,7 +25,7 @@ pub struct DemOptions {
     pub crs: Option<Crs>,
 }
 
-/// How one elevation file is read.
+/// Options for reading one elevation file.
 #[derive(Clone)]
 pub struct DemHints<'a> {
     /// What is stated of it.

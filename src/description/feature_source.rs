@@ -1,4 +1,4 @@
-//! Where the coordinates of a feature come from: the keys that inline points and files have in every table.
+//! The source of a feature's coordinates: the keys that inline points and files have in every table.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! What a check of a scene finds: a code, a place, a sentence with its numbers, and a remedy.
+//! A finding of the check of a scene: a code, a place, a sentence with its numbers, and a remedy.
 //!
 //! ```text
 //! hill.toml:12:10: warning[river-uphill]: river 'Ay' rises downstream by 14.2 m at 1.3 km
@@ -19,7 +19,7 @@ use crate::finding_code::FindingCode;
 use crate::source_place::{SourcePlace, harmless};
 use crate::source_text::SourceText;
 
-/// How much a finding matters. The gravest comes first.
+/// The severity of a finding. The gravest comes first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
     /// The picture would be wrong: a check fails.

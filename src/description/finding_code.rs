@@ -9,7 +9,7 @@ use crate::finding::Severity;
 /// Declares the codes.
 macro_rules! finding_codes {
     ($($variant:ident = $code:literal, $severity:ident, $text:literal;)+) => {
-        /// What a finding is about.
+        /// The code of a finding.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum FindingCode {
             $(

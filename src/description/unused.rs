@@ -1,4 +1,4 @@
-//! What a scene file defines and no table uses.
+//! Definitions of a scene file that no table uses.
 
 use crate::stated::Stated;
 

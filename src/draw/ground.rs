@@ -38,8 +38,8 @@ pub struct GroundMap {
     /// How often the distance between posts is doubled in the generalized ground whose large forms are shaded; see
     /// [`ReliefShading`].
     pub form_level: u32,
-    /// By what slopes are multiplied before they are shaded, at least 0: a z-factor, as if heights were exaggerated for
-    /// their shading alone.
+    /// The factor on slopes before they are shaded, at least 0: a z-factor, as if heights were exaggerated for their
+    /// shading alone.
     pub z_factor: f32,
     /// The change of brightness with shade; see [`ReliefShading::shade_gain`].
     pub shade_gain: f32,
@@ -162,7 +162,7 @@ impl Contours {
     }
 }
 
-/// What a pixel of the ground shows besides the map's own values.
+/// The values of a pixel of the ground besides the map's own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundDetail {
     /// The factor of [`ground_grain`](crate::ground_grain::ground_grain).
@@ -176,9 +176,9 @@ pub struct GroundDetail {
 /// The change of the ground's values across a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PixelChange {
-    /// Of the elevation, in meters.
+    /// The change of the elevation, in meters.
     pub height_m: f32,
-    /// Of [`GroundPost::water`].
+    /// The change of [`GroundPost::water`].
     pub water: f32,
 }
 

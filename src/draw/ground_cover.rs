@@ -1,5 +1,4 @@
-//! What grows and lies on natural ground: meadow, scree, rock and snow by elevation, slope and aspect, as tints over the
-//! ramp's.
+//! Natural land cover: meadow, scree, rock and snow by elevation, slope and aspect, as tints over the ramp's.
 //!
 //! Trees end at the tree line and snow begins at the snow line, both higher on slopes toward the equator. Scree lies up to
 //! its angle of repose, about 36°; what is steeper is rock, and holds no snow. Value noise of three wavelengths in the
@@ -34,7 +33,7 @@ const SNOW: (Vec3, f32) = (Vec3::new(0.86, 0.90, 0.97), 1.2);
 /// The greatest share of a cover over the tint.
 const MOST: f32 = 0.8;
 
-/// Where covers change.
+/// The elevations at which covers change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundCover {
     /// The elevation of the tree line, meters.

@@ -5,7 +5,7 @@
 
 use std::f32::consts::FRAC_1_SQRT_2;
 
-/// From line to line in pixels: less becomes a gray tone, more looks like single lines.
+/// The distance from line to line in pixels: less becomes a gray tone, more looks like single lines.
 pub const PITCH_PX: f32 = 8.0;
 
 /// The width of a line in pixels.

@@ -45,9 +45,9 @@ pub struct Haze {
 /// The shares of the light that reach a point past solids, each 0..=1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReceivedLight {
-    /// Of the sun.
+    /// The share of the sun.
     pub sun: f32,
-    /// Of the sky.
+    /// The share of the sky.
     pub sky: f32,
 }
 

@@ -39,7 +39,7 @@ pub struct DrapedPiece {
     pub mesh: DrawMesh,
     /// A material of the draw list that was loaded last.
     pub material: MaterialId,
-    /// Where in the order of what lies on the ground.
+    /// The order among the features draped on the ground.
     pub layer: DepthLayer,
     /// Whose it is.
     pub feature: FeatureId,
@@ -65,7 +65,7 @@ pub struct GroundMapPatch {
     pub posts: Vec<GroundPost>,
 }
 
-/// What changed on the ground since the frame before.
+/// The changes of the ground since the last frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GroundChanges {
     /// Vertices of patches that are shown for the first time, or whose heights changed.

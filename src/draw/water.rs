@@ -30,11 +30,12 @@ impl WaterColor {
     pub const SURFACE: Srgba = Srgba::opaque(92, 150, 190);
     /// Open water.
     pub const OPEN: Srgba = Srgba::opaque(72, 128, 174);
-    /// Where the color is that of [`Self::SURFACE`], as a share of the way from the shore to open water.
+    /// The distance at which the color is that of [`Self::SURFACE`], as a share of the way from the shore to open
+    /// water.
     pub const OFF_SHORE: f32 = 0.3;
     /// The line along a shore.
     pub const SHORE_LINE: Srgba = Srgba::opaque(46, 96, 138);
-    /// By which share the line along the shore is darker than land and water.
+    /// The share by which the line along the shore is darker than land and water.
     pub const SHORE: f32 = 0.4;
     /// Half the width of that line in pixels, and half a pixel.
     pub const SHORE_PX: f32 = 1.25;

@@ -52,7 +52,7 @@ pub struct RaisedGround {
     pub run: f64,
 }
 
-/// How high the crown of raised ground lies.
+/// The height of the crown of raised ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CrownHeight {
     /// So many meters above the ground under each point of the line, straight in between.

@@ -67,7 +67,7 @@ pub enum SaveError {
     Write(#[from] WriteFileError),
 }
 
-/// What saving does to changes that another program made to the file.
+/// The treatment of changes that another program made to the file, when a scene is saved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OnConflict {
     /// The scene is not saved.

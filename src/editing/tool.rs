@@ -8,7 +8,7 @@
 use crate::edit::{EarthworkDraft, SceneEdit};
 use sandtable_base::message::choice::{Choice, ChoiceWord, word};
 
-/// What a tool draws.
+/// The kind of thing that a tool draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[allow(missing_docs, reason = "the words and their meanings explain the variants")]
 pub enum ToolKind {

@@ -1,4 +1,4 @@
-//! What a window shows, as a scene file states a camera.
+//! The view of a window, as a scene file states a camera.
 
 use glam::DVec2;
 

@@ -1,11 +1,11 @@
-//! What a window shows: a scene file, or an elevation file on its own.
+//! The content of a window: a scene file, or an elevation file on its own.
 
 use std::path::{Path, PathBuf};
 
 use crate::editor::SceneEditor;
 use sandtable_scene::scene_file::OpenSceneError;
 
-/// What a window is opened for.
+/// The options of a window.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ViewerOptions {
     /// The scene or elevation file; `None` shows a list of files to open.

@@ -17,7 +17,7 @@ pub struct PartName {
     pub role: PartRole,
 }
 
-/// What such a file is.
+/// The role of such a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum PartRole {
     /// A file that is being written, or an old one that is kept until all new ones are in place.

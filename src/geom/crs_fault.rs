@@ -1,11 +1,11 @@
-//! What can be wrong with a coordinate reference system or a coordinate in it.
+//! The faults of a coordinate reference system or of a coordinate in it.
 
 use std::sync::Arc;
 
 use crate::projection::DefinitionError;
 use crate::wkt::WktError;
 
-/// What is wrong with a system or a coordinate.
+/// The fault of a system or a coordinate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CrsFault {
     /// The EPSG code is unknown.

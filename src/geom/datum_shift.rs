@@ -27,7 +27,7 @@ const NAMED: [(&str, &str); 15] = [
     ("nad83", "0,0,0"),
 ];
 
-/// How a transform moves positions from one datum to another.
+/// The way in which a transform moves positions from one datum to another.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DatumShift {
     /// Both systems have the same datum.

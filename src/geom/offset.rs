@@ -1,4 +1,4 @@
-//! What happens to the sides of a line with a width at a vertex: the miter, its limits, and the arc of a round join.
+//! The sides of a line with a width at a vertex: the miter, its limits, and the arc of a round join.
 
 use glam::DVec2;
 
@@ -8,7 +8,7 @@ use crate::polyline::Polyline;
 /// know of each other end on one edge, as if they were one line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Continuations {
-    /// Before its first vertex; `None` where nothing goes on there.
+    /// The vertex before its first; `None` where no line continues it there.
     pub before: Option<DVec2>,
     /// After its last.
     pub after: Option<DVec2>,

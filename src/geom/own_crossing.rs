@@ -1,4 +1,4 @@
-//! Where a line or a ring crosses itself.
+//! Crossings of a line or a ring with itself.
 
 use glam::DVec2;
 

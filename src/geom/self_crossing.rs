@@ -1,4 +1,5 @@
-//! How often rings cross themselves and each other: what resolves such rings takes time and memory for each crossing.
+//! Counts how often rings cross themselves and each other: resolving such rings takes time and memory for each
+//! crossing.
 
 use glam::DVec2;
 

@@ -1,4 +1,4 @@
-//! Where the sun stands in the sky: the low-precision formulas of the Astronomical Almanac (Michalsky 1988, "The
+//! The position of the sun in the sky: the low-precision formulas of the Astronomical Almanac (Michalsky 1988, "The
 //! Astronomical Almanac's algorithm for approximate solar position"), within 0.01° from 1950 to 2050.
 
 use glam::DVec2;

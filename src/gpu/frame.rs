@@ -1,4 +1,5 @@
-//! What a whole picture shares: camera, light, ground map, shadow maps and the draped picture, as group 0.
+//! The resources that a whole picture shares: camera, light, ground map, shadow maps and the draped picture, as group
+//! 0.
 
 use bytemuck::{bytes_of, cast_slice};
 use rayon::prelude::*;

@@ -15,7 +15,7 @@ use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh, DrawVertex};
 use sandtable_mesh::sink::VertexId;
 use sandtable_view::camera::Camera;
 
-/// What the texture coordinates of merged corners are.
+/// The meaning of the texture coordinates of merged corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CornerUv {
     /// Those of the mesh.

@@ -37,7 +37,7 @@ impl ArrayId {
     pub const NONE: Self = Self(0);
 }
 
-/// Where the textures of materials lie.
+/// The places of the textures of materials.
 #[derive(Debug, Default)]
 pub struct TexturePlaces {
     /// By material: the array and the layer.
@@ -61,7 +61,7 @@ struct TextureForm {
     multiplied: bool,
 }
 
-/// Which textures of a list are sent.
+/// The textures of a list that are sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextureScope {
     /// Those of its items.

@@ -39,7 +39,7 @@ impl ShaderParts {
     /// Windows of finer posts.
     pub const WINDOWS: Self = Self(32_768);
 
-    /// What bare ground shows.
+    /// The parts of bare ground.
     pub const GROUND: Self = Self(Self::GROUND_COLOR.0 | Self::GROUND_LIGHT.0);
 
     pub fn with(self, other: Self) -> Self {

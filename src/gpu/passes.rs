@@ -10,7 +10,7 @@ use crate::pipeline_key::PipelineKey;
 use crate::pipelines::Pipelines;
 use crate::plan::DrawCall;
 
-/// What a pass draws of a picture.
+/// The part of a picture that a pass draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PassStage {
     /// All, over the color black and nothing, and the farthest depth.

@@ -20,7 +20,7 @@ pub enum DepthRule {
     Seen,
 }
 
-/// Where a vertex shader reads corners from.
+/// The source of the corners that a vertex shader reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum VertexSource {
     /// Many items, in world space.

@@ -75,7 +75,7 @@ pub enum GpuPass {
     Feature,
 }
 
-/// What pipelines draw to.
+/// The targets that pipelines draw to.
 #[derive(Clone, Copy, Debug)]
 pub struct PassTarget {
     pub pass: GpuPass,

@@ -28,7 +28,7 @@ use sandtable_view::camera::Camera;
 /// buffers save few calls, and some drivers cannot hold them.
 pub const MERGED_TRIANGLES: u32 = 1 << 19;
 
-/// What is drawn by one call.
+/// The shape that one call draws.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DrawShape {
     /// A range of the indices of a merged buffer.

@@ -85,7 +85,7 @@ pub struct Instance {
     world_from_mesh: [[f32; 4]; 4],
 }
 
-/// What the constants of a picture are made from, besides the camera.
+/// The inputs for the constants of a picture, besides the camera.
 #[derive(Clone, Copy, Debug)]
 pub struct FrameScene<'a> {
     pub ground: Option<&'a GroundMap>,

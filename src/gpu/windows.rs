@@ -18,7 +18,7 @@ pub const MOST_WINDOWS: usize = 8;
 /// Posts are sent in portions of about this many bytes: while one is copied, no frame can be sent.
 const WINDOW_PORTION_BYTES: u32 = 1 << 20;
 
-/// Where a window lies.
+/// The place of a window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WindowPlace {
     /// The column and the row of its first post, counted in its own posts.

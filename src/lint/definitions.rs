@@ -1,4 +1,4 @@
-//! What the scene file defines and nothing uses, or defines twice.
+//! Definitions of the scene file that nothing uses, or that are repeated.
 
 use std::collections::BTreeMap;
 

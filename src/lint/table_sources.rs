@@ -15,7 +15,7 @@ pub struct TableSource<'a> {
     pub role: SourceRole,
 }
 
-/// How the features of a table lie on the ground.
+/// The way in which the features of a table lie on the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SourceRole {
     /// Along or at a place of the ground: roads, rivers, fences, models.

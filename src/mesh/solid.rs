@@ -38,7 +38,7 @@ const JOINTS_AT: [f32; 2] = [0.25, 0.75];
 /// A side shorter than this, in millimeters, has no room for two joints.
 const LEAST_JOINED_MM: f32 = 40.0;
 
-/// What a side of a block holds for its neighbor.
+/// The joint of a block's side with its neighbor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Joint {
     /// Nothing: the side is plane.

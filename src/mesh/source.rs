@@ -10,7 +10,7 @@ use crate::sink::VertexId;
 use crate::trimesh::TriMesh;
 use sandtable_geom::aabb::Aabb;
 
-/// How large a mesh is.
+/// The size of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MeshSize {
     /// The number of vertices.

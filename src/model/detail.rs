@@ -35,7 +35,7 @@ pub struct ModelDetail {
     pub impostor: OnceLock<Option<Impostor>>,
 }
 
-/// How a placed model is seen.
+/// The apparent size of a placed model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ApparentSize {
     /// Pixels per unit of the model at its nearest point.

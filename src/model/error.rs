@@ -1,4 +1,4 @@
-//! Why a model file cannot be read.
+//! Errors of reading a model file.
 
 use std::error::Error;
 use std::sync::Arc;

@@ -23,7 +23,7 @@ pub(super) struct TableRule {
     pub keys: &'static [&'static str],
     /// Parts of the name of a layer or a file that holds nothing else, in lower case.
     pub names: &'static [&'static str],
-    /// Of labels: what they say and which count most.
+    /// For labels, their text and their importance.
     pub label: Option<LabelRule>,
 }
 

@@ -1,4 +1,4 @@
-//! How wide a pixel is on the ground, across a line.
+//! The width of a pixel on the ground, across a line.
 
 use glam::{DVec2, DVec3};
 

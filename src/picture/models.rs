@@ -22,7 +22,7 @@ use sandtable_terrain::triangle_surface::TriangleSurface;
 /// The seed of tints: any other gives others.
 const TINT_SEED: u64 = 0x7ea5;
 
-/// Where a model stands instead, while a user moves it.
+/// The place of a model while a user moves it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlacementMove {
     /// World X and Y of its origin.

@@ -1,4 +1,4 @@
-//! What lies over everything else on the ground: tints of sight, then lines of sight and tactical graphics.
+//! Overlays on the ground: tints of visibility, then lines of sight and tactical graphics.
 
 use std::collections::BTreeSet;
 

@@ -22,7 +22,8 @@ pub struct PlacedText {
     pub feature: FeatureId,
 }
 
-/// How a text follows a line on the ground: the parts of it that are in the frustum, their vertices close together.
+/// The way in which a text follows a line on the ground: the parts of it that are in the frustum, their vertices close
+/// together.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PlacedCourse {
     /// It does not: it is level, at its place.

@@ -20,7 +20,7 @@ use sandtable_view::camera::Camera;
 /// The most posts of a walk's ground map: a hundred megabytes.
 const MOST_MAP_POSTS: u64 = 1 << 22;
 
-/// How the ground of a walk is drawn, by what light, and which models stand elsewhere on it.
+/// The ground of a walk as it is drawn, its light, and the models that were moved on it.
 #[derive(Clone, Copy, Debug)]
 pub struct WalkedGround<'a> {
     /// The models that stand elsewhere.

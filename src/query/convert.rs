@@ -15,7 +15,7 @@ use sandtable_raster::windows::Windows;
 /// A larger cell, in degrees, is taken for one in meters.
 const LARGEST_CELL_DEG: f64 = 1.0;
 
-/// How elevation is converted.
+/// The options for converting elevation.
 #[derive(Clone, Debug, Default)]
 pub struct ConvertOptions {
     /// The coordinate system to bring it to; its own where `None`.

@@ -10,7 +10,7 @@ use sandtable_terrain::sight::viewshed::{PostVisibility, Viewshed, ViewshedCount
 /// The value of posts that were not looked at or have no data.
 const NO_DATA: u8 = 255;
 
-/// How much is in sight.
+/// The summary of a viewshed: how much is in sight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewshedSummary {
     /// Posts of each kind.

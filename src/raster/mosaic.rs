@@ -16,7 +16,7 @@ use sandtable_base::limits::RASTER_SAMPLES;
 use sandtable_base::limits::TILE_SAMPLES;
 use sandtable_geom::crs::Crs;
 
-/// How far, in cells, a tile's samples may lie from the nodes of the first tile's grid.
+/// The greatest distance, in cells, of a tile's samples from the nodes of the first tile's grid.
 pub const ALIGNMENT: f64 = 1e-3;
 
 /// Tiles joined to one raster, with statistics of their overlaps and gaps.

@@ -27,7 +27,7 @@ const LEAST_HOLE: u64 = 9;
 const LEAST_STEP_M: f64 = 5.0;
 const STEP_RATIO: f64 = 8.0;
 
-/// What is odd about samples.
+/// The kind of outliers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum OutlierKind {
     /// Single samples far above their neighbors.

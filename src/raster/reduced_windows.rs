@@ -5,7 +5,7 @@ use crate::raster::{Raster, Samples};
 use crate::reduced::{reduced_header, reduced_part};
 use crate::windows::{RasterWindow, Windows};
 
-/// What [`reduced_by_overview`](crate::reduced::reduced_by_overview) makes of a raster, of which only windows are read and averaged.
+/// The raster that [`reduced_by_overview`](crate::reduced::reduced_by_overview) makes, read and averaged in windows only.
 pub struct ReducedWindows {
     source: Box<dyn Windows + Send>,
     step: u32,

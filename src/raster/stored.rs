@@ -42,7 +42,7 @@ fn candidates(sample: SampleType) -> &'static [f64] {
     }
 }
 
-/// What decides how samples are stored, of a raster of which never all need be in memory.
+/// The facts that decide how samples are stored, of a raster that need never be in memory as a whole.
 pub struct SampleSurvey {
     /// The types of integers that may keep the samples, the preferred first.
     integers: &'static [SampleType],

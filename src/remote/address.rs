@@ -9,7 +9,7 @@ use sandtable_base::message::suggest::quoted;
 /// The longest address: keys of S3 have up to 1024 bytes.
 const MOST_BYTES: usize = 4096;
 
-/// How a file is reached.
+/// The scheme of an address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum AddressScheme {
     /// A web server without encryption.

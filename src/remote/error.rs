@@ -1,4 +1,4 @@
-//! Why a file cannot be read by its address.
+//! Errors of reading a file by its address.
 
 use std::time::Duration;
 

@@ -1,4 +1,4 @@
-//! How long servers are waited for: to connect, between the parts of a reply, and for all tries of a request together.
+//! Timeouts for servers: to connect, between the parts of a reply, and for all tries of a request together.
 //!
 //! The last bounds what the others leave: a server that sends a byte now and then is never silent, and its reply never ends.
 

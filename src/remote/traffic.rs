@@ -1,4 +1,4 @@
-//! What a run has read from servers, for its note.
+//! The requests and bytes that a run has read from servers, for its note.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 

@@ -1,4 +1,4 @@
-//! How two segments of a ribbon meet.
+//! The joint of two segments of a ribbon.
 //!
 //! Both end on the miter, the line that halves the angle between them, and share an edge. Where the join is not a miter,
 //! or the miter would be longer than its limit, they share the inner corner only, and a fan from there fills the outer

@@ -31,7 +31,7 @@ use sandtable_geom::polyline::{VertexKey, vertex_key};
 /// Widths that differ by less than this are one, in meters: what two file formats make of one number.
 const SAME_WIDTH_M: f64 = 1e-6;
 
-/// How far a junction may reach along an arm, in widths of its widest arm: curbs at a small angle meet far away.
+/// The greatest reach of a junction along an arm, in widths of its widest arm: curbs at a small angle meet far away.
 pub const LONGEST_REACH: f64 = 2.5;
 
 /// A road or river among those that it may meet.

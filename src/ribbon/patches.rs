@@ -31,8 +31,8 @@ use sandtable_terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
 /// Parts smaller than this are rounding, in square meters.
 const SLIVER_M2: f64 = 1e-7;
 
-/// Where patches meet: rising world X of the borders that run north, and Y of those that run east, the outermost among
-/// them.
+/// The borders of patches: rising world X of the borders that run north, and Y of those that run east, the outermost
+/// among them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Borders {
     /// One more than there are columns of patches.
@@ -83,8 +83,8 @@ impl Borders {
 pub struct StalePatch {
     /// Its number.
     pub patch: usize,
-    /// Boxes, in world space, around all of its triangles that are displayed otherwise than when it was cut last; `None` for
-    /// all of them.
+    /// Boxes, in world space, around all of its displayed triangles that have changed since it was last cut; `None` for all
+    /// of them.
     pub areas: Option<Vec<Rect>>,
 }
 

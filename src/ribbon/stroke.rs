@@ -24,7 +24,7 @@ const MOST_STEPS: f64 = 32.0;
 /// Triangles smaller than this have no direction worth a texture, in square meters.
 const NOTHING_M2: f64 = 1e-9;
 
-/// How a ribbon is stroked.
+/// The options for stroking a ribbon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrokeOptions {
     /// How segments meet. Default: mitered.

@@ -19,7 +19,7 @@ use sandtable_view::camera::Camera;
 use sandtable_view::frustum::Frustum;
 use sandtable_view::wedge::GroundWedge;
 
-/// What patches are culled against.
+/// The shape against which patches are culled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Culling {
     /// Nothing: every patch with data is listed.

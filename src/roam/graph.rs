@@ -24,7 +24,7 @@ pub struct Vertex {
     pub y: i32,
 }
 
-/// What a vertex is the middle of.
+/// The kind of a vertex: what it is the middle of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VertexKind {
     /// A square of side 2k: its hypotenuse is a diagonal.

@@ -8,7 +8,7 @@
 use crate::graph::Vertex;
 use sandtable_terrain::lattice::Post;
 
-/// How patches cover a lattice.
+/// The layout of patches over a lattice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PatchLayout {
     patch: i32,

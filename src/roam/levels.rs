@@ -92,7 +92,7 @@ impl LevelPass {
     }
 }
 
-/// Where the children of a vertex are.
+/// The places of the children of a vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChildPlaces {
     /// This far along both axes at once: those of an edge middle.

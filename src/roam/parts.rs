@@ -35,7 +35,7 @@ pub trait PartedGround {
     fn part(&mut self, part: usize) -> Result<Arc<Lattice>, Self::Error>;
 }
 
-/// How the patches of a layout are divided into parts.
+/// The division of the patches of a layout into parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PartPlan {
     layout: PatchLayout,

@@ -1,4 +1,4 @@
-//! What one frame shows: for each patch an index list of 16 bits into its own block of vertices.
+//! The triangles of one frame: for each patch an index list of 16 bits into its own block of vertices.
 //!
 //! Index lists are what a graphics adapter receives, so methods of refining and emitting are compared by them: their
 //! triangles, what changed since the frame before, and what was sent.

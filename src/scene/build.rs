@@ -1,4 +1,4 @@
-//! From a document and its assets to a scene, pass by pass, in two stages.
+//! Builds a scene from a document and its assets, pass by pass, in two stages.
 //!
 //! ```text
 //!  elevation ─► lakes, rivers, roads, pads, trenches, bridges ─► earthworks ─┬─► pads of models ─► SceneGround: heights

@@ -12,7 +12,7 @@ use sandtable_description::finding_code::FindingCode;
 use sandtable_geom::own_crossing::own_crossing;
 use sandtable_vector::feature::Polygon;
 
-/// Those of one table.
+/// The crossed shapes of one table.
 #[derive(Debug, Default)]
 pub struct CrossedShapes {
     /// The name of the first, which may be empty, and where it crosses itself, in world coordinates.

@@ -1,4 +1,4 @@
-//! Where a feature comes from.
+//! The origin of a feature.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! What stands or runs along lines: fences, walls, hedges, power lines, trenches, obstacle belts and boundaries.
+//! Features along lines: fences, walls, hedges, power lines, trenches, obstacle belts and boundaries.
 //!
 //! Two passes, as for buildings: trenches are dug before the roads come, everything is set where the ground is finished.
 //! What stands is only planned here; [`sandtable_structure::draped_solid`] sets it on the displayed ground for every picture.

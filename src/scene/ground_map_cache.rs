@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use sandtable_draw::ground::GroundMap;
 
-/// What a scene's ground map depends on.
+/// The inputs that a scene's ground map depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundMapKey {
     /// 0 for every post, each further level for every second post of the one before, smoothed.

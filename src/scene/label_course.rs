@@ -1,4 +1,4 @@
-//! What the name of a feature follows on the ground: a line, or the outline of an area.
+//! The course of a feature's name on the ground: a line, or the outline of an area.
 
 use glam::{DVec2, Vec3};
 
@@ -12,7 +12,7 @@ use sandtable_vector::feature::Polygon;
 /// Vertices of one line or outline on the ground: more than the pixels across a picture help no name.
 const MOST_VERTICES: f64 = 600.0;
 
-/// What a name follows; places on the ground in world space, displayed height.
+/// The course that a name follows; places on the ground in world space, displayed height.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum LabelCourse {
     /// A place alone.

@@ -1,4 +1,4 @@
-//! Where land cover changes with elevation and latitude: the tree line and the snow line.
+//! The elevations at which land cover changes by latitude: the tree line and the snow line.
 //!
 //! Both follow the profiles along the Americas, Europe and Africa that Körner (1998) compiled: no trend between 32° N
 //! and 20° S, then a fall of about 110 m for each degree of latitude. Mountains far from the sea differ by some hundred

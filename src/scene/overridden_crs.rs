@@ -20,7 +20,7 @@ pub struct OverriddenCrs<'a> {
     pub file: &'a str,
     /// Its own system.
     pub own: &'a Crs,
-    /// That of the scene, which is believed.
+    /// The system that the scene states, which takes precedence.
     pub stated: &'a Crs,
 }
 

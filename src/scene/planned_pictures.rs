@@ -3,7 +3,7 @@
 use sandtable_description::document::Document;
 use sandtable_description::words::RangeExtent;
 
-/// How many samples of the elevation a scene needs.
+/// The samples of the elevation that a scene needs.
 #[derive(Clone, Copy, Debug)]
 pub enum ElevationNeed<'a> {
     /// All samples, because height queries use them.
@@ -30,7 +30,7 @@ pub struct PlannedPictures {
     pub near: NearGround,
 }
 
-/// What pictures show of ground near the eye where its samples are too many to be read everywhere.
+/// The ground that pictures show near the eye where its samples are too many to be read everywhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum NearGround {
     /// A nested ground, of more samples, in the part of the scene's that needs more samples.

@@ -44,7 +44,7 @@ const FORMULA_STOPS: u8 = 32;
 /// The part of a scientific ramp that is left out at its dark end, where shade could not be seen.
 const DARK_PART: f64 = 0.25;
 
-/// What the colors of the ground depend on besides the ramp.
+/// The properties of the ground that its colors depend on, besides the ramp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TintedGround {
     /// The lowest and the highest ground in meters that is not the bed of a sea.

@@ -1,4 +1,4 @@
-//! How strongly the relief of a scene's ground is shaded: gentle ground more than mountains, so that both fill the scale from
+//! The strength of a scene's relief shading: gentle ground is shaded more than mountains, so that both fill the scale from
 //! dark to light.
 //!
 //! It depends on the ground and the sun alone, so that all pictures of a scene under one sun are shaded alike.
@@ -30,10 +30,10 @@ const DARK: f32 = 0.0755;
 /// The greatest gain of shade: above it every dent of a plain would be a hole.
 const MOST_SHADE_GAIN: f32 = 6.0;
 
-/// How strongly the relief of a ground is shaded.
+/// The strength of the relief shading of a ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReliefStrength {
-    /// By what slopes are multiplied, at least 1.
+    /// The factor on slopes, at least 1.
     pub z_factor: f32,
     /// See [`ReliefShading::shade_gain`].
     pub shade_gain: f32,

@@ -1,4 +1,4 @@
-//! What building a scene found, for the user.
+//! The findings of building a scene, for the user.
 
 use std::ops::Range;
 use std::sync::Arc;

@@ -56,7 +56,7 @@ impl SceneView {
     }
 }
 
-/// From where a view looks, and whereto.
+/// The eye and the target of a view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ViewAim {
     /// From a place to a place, world space.

@@ -30,7 +30,7 @@ pub struct SceneViewshed {
     seen: OnceLock<Option<SeenPosts>>,
 }
 
-/// Which posts are in sight, and where they lie.
+/// The posts in sight, and their places.
 pub struct SeenPosts {
     /// The posts.
     pub viewshed: Viewshed,
@@ -48,7 +48,7 @@ pub struct PostFrame {
     first: DVec2,
 }
 
-/// What is in sight along a line.
+/// The stretches in sight along a line.
 #[derive(Clone)]
 pub struct SightedLine {
     /// The ground in sight of the observer.

@@ -21,7 +21,7 @@ const SAMPLED: usize = 256;
 /// The vertices of a file that are kept to measure how much of it lies off the ground; between half of it and all.
 const MEASURED: usize = 8192;
 
-/// Where the shapes of one source lie.
+/// The places of the shapes of one source.
 #[derive(Clone, Debug)]
 pub struct SourceReach {
     /// The bytes of the scene file that state its points, or the name of its file.
@@ -40,7 +40,7 @@ pub struct SourceReach {
     boxes: Vec<Rect>,
 }
 
-/// How much of a source lies off the ground.
+/// The extent to which a source lies off the ground.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SourceOverlap {
     /// The bytes of the scene file that state its points, or the name of its file.

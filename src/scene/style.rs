@@ -1,4 +1,4 @@
-//! How the ground looks: ramp and contours.
+//! The look of the ground: ramp and contours.
 
 use glam::{DVec2, Vec3};
 
@@ -17,7 +17,7 @@ use sandtable_geom::declination::CalendarDay;
 /// A translucent brown.
 const CONTOUR_COLOR: Srgba = Srgba([112, 74, 40, 150]);
 
-/// Where the colors of the ground come from.
+/// The source of the ground's colors.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RampSource {
     /// A built-in ramp, which spans the heights of the ground.
@@ -115,7 +115,7 @@ pub struct Surroundings {
     pub table: TableTop,
     /// Whether the ground's natural cover shows.
     pub land_cover: bool,
-    /// Whether the ground is there to carry symbols and graphics: its shade is lighter then.
+    /// Whether the ground is a base map for symbols and graphics: its shade is lighter then.
     pub is_base_map: bool,
 }
 

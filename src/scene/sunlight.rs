@@ -1,5 +1,5 @@
-//! Where a scene's light comes from: from the left of each picture, the upper left in views from above, as on maps; or
-//! from where the sun stood at a time.
+//! The direction of a scene's light: from the left of each picture, the upper left in views from above, as on maps; or
+//! from the sun's position at a time.
 
 use glam::{DVec2, Vec2, Vec3};
 
@@ -9,7 +9,7 @@ use sandtable_geom::crs::Crs;
 use sandtable_geom::sun_position::{SunPosition, sun_position, unix_seconds};
 use sandtable_view::camera::Camera;
 
-/// Where the light of a scene comes from.
+/// The direction of the light of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sunlight {
     /// Clockwise from north, radians; `None` for the upper left of each picture: forms that are lit from below look like

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use sandtable_geom::rect::Rect;
 use sandtable_terrain::lattice::{Lattice, Post};
 
-/// How the block keeps light from a table.
+/// The shadow of the block on its table.
 #[derive(Clone, Copy, Debug)]
 pub struct TableShadow<'a> {
     /// The drawn ground.

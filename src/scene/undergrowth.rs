@@ -1,4 +1,4 @@
-//! Where trees cover the ground: the share of it around each post that lies under crowns.
+//! The ground under trees: the share of it around each post that lies under crowns.
 //!
 //! A crown is spread over the posts around it by a cone, at least as wide as the posts lie apart, so that a wood of any
 //! density covers as much of the ground as its crowns do, and a lone tree darkens the ground about its foot.

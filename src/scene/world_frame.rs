@@ -1,4 +1,4 @@
-//! From coordinates in a scene file to world space.
+//! Transforms coordinates in a scene file to world space.
 
 use glam::{DVec2, Vec3};
 

@@ -37,7 +37,7 @@ pub struct ApiParameter {
     pub text: &'static str,
 }
 
-/// Whether a parameter must be stated.
+/// The need for a parameter: required or optional.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ApiNeed {
     Required,
@@ -45,7 +45,7 @@ pub enum ApiNeed {
     Optional(&'static str),
 }
 
-/// What a parameter may be.
+/// The values of a parameter.
 #[derive(Clone, Copy)]
 pub enum ApiValue {
     /// A text of this form.

@@ -27,7 +27,7 @@ const SLOW: f64 = 8.0 * 1024.0;
 /// How long a connection may take to gain speed.
 const START: Duration = Duration::from_secs(1);
 
-/// How much one client may have of everything that is limited.
+/// The shares of one client in every limited resource.
 #[derive(Clone, Copy, Debug)]
 pub struct ClientShares {
     pub connections: usize,

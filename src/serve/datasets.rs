@@ -56,7 +56,7 @@ impl ServedDataset {
     }
 }
 
-/// What a dataset is, in answers.
+/// The description of a dataset in answers.
 #[derive(Serialize)]
 pub struct DatasetFacts<'a> {
     name: &'a str,

@@ -111,7 +111,7 @@ const SHORT_BODY: u64 = 32 * 1024;
 /// as long as its client likes to send.
 pub const LONG_BODIES: usize = 64;
 
-/// How many of these one client may send.
+/// The number of these that one client may send.
 pub const LONG_BODIES_OF_CLIENT: usize = LONG_BODIES / 2;
 
 impl Parameters {

@@ -25,7 +25,7 @@ pub const PATH: &str = "/ready";
 /// Seconds until a proxy should ask again.
 const ASK_AGAIN_S: u16 = 1;
 
-/// Whether the service answers.
+/// The readiness of the service.
 #[derive(Debug, Default)]
 pub struct Readiness {
     /// Whether each dataset has answered a height, or why one cannot.

@@ -18,7 +18,7 @@ pub struct Service {
     pub limits: ServiceLimits,
     /// WGS 84, the system of most requests.
     pub wgs84: Crs,
-    /// The names under which it is asked for, beside its addresses.
+    /// The names by which clients may reach it, beside its addresses.
     pub hosts: Vec<String>,
     /// What paths begin with.
     pub prefix: PathPrefix,

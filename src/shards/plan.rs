@@ -25,7 +25,7 @@ const VERSION: u32 = 1;
 /// The version of this program.
 const PROGRAM: &str = env!("CARGO_PKG_VERSION");
 
-/// What is planned, and its arguments.
+/// The product of a plan, and its arguments.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "product", content = "arguments", rename_all = "lowercase")]
 pub enum PlannedProduct {

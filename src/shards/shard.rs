@@ -76,7 +76,7 @@ impl SheetNeighbors {
     }
 }
 
-/// What a shard reads.
+/// The part of the input that a shard reads.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum ShardWindow {

@@ -13,7 +13,7 @@ use crate::tiles::arguments::TilesArguments;
 use crate::viewsheds::arguments::ViewshedsArguments;
 use crate::{atlas, heights, tiles, viewsheds};
 
-/// What all shards of a plan share, opened once.
+/// A worker: everything that all shards of a plan share, opened once.
 pub struct ShardWorker {
     plan: Arc<ShardPlan>,
     opened: OpenedProduct,

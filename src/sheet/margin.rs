@@ -1,4 +1,4 @@
-//! What the margin of a sheet says: facts on the coordinates, sources, the three norths, the locator.
+//! The texts of a sheet's margin: facts on the coordinates, sources, the three norths, the locator.
 
 use glam::{DVec2, UVec2, Vec2, Vec3};
 

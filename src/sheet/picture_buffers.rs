@@ -1,4 +1,4 @@
-//! What a picture shows at each pixel: where it is, how high and of which feature.
+//! The values of a picture at each pixel: position, elevation and feature.
 
 use std::path::Path;
 
@@ -35,7 +35,7 @@ pub struct PictureBuffers<'a> {
     pub rendering: &'a Rendering,
 }
 
-/// What a pixel shows.
+/// The place that a pixel shows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PickedPlace {
     /// Map coordinates in the scene's system.

@@ -1,4 +1,4 @@
-//! What a script wants to know of a picture before furniture covers it: how much of it is ground, and how light.
+//! Statistics of a picture before furniture covers it, for scripts: how much of it is ground, and how light.
 
 use sandtable_draw::color::lightness;
 use sandtable_draw::list::FeatureId;
@@ -7,7 +7,7 @@ use sandtable_render::picture::Rendering;
 /// Measures of a picture without its annotations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PictureStatistics {
-    /// The share of pixels that show the ground, what lies on it or what stands on it, 0..=1.
+    /// The share of pixels that show the ground or any feature on it, 0..=1.
     pub filled: f64,
     /// The share of pixels that show bare ground, without the walls of its block, 0..=1.
     pub ground: f64,

@@ -1,8 +1,8 @@
-//! How classes are printed in black.
+//! The ink of classes in black print.
 
 use sandtable_draw::print_pattern::PrintPattern;
 
-/// How a class is printed.
+/// The ink of a class.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PrintInk {
     /// The relief with a pattern over it.

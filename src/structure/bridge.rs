@@ -32,8 +32,8 @@ use sandtable_terrain::triangle_surface::SurfaceTriangle;
 /// The elevation of the ground at a world position in meters; `None` where there is none.
 pub type GroundHeight<'a> = dyn Fn(DVec2) -> Option<f64> + 'a;
 
-/// How far below the ground walls and piers are founded, in meters: the ground is drawn coarser when it is far away, by
-/// about a pixel, and nothing may show its foot then.
+/// The depth below the ground to which walls and piers are founded, in meters: the ground is drawn coarser when it is
+/// far away, by about a pixel, and nothing may show its foot then.
 pub const FOUNDED_M: f64 = 3.0;
 
 /// The width of the widest bridges that are built, about, in meters: a wider one is a symbol, drawn larger than life.
@@ -53,7 +53,7 @@ const MOST_TILT: f64 = 0.25;
 
 const CONCRETE: Srgba = Srgba::opaque(236, 231, 219);
 
-/// How a deck's end lies across.
+/// The cross slope at a deck's end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Across {
     /// As the ground lies, on which the road continues.
@@ -73,7 +73,7 @@ pub struct BridgeOptions {
     pub abutments_m: [Option<f64>; 2],
     /// How its start and end lie across.
     pub across: [Across; 2],
-    /// What goes on at its ends.
+    /// The lines that continue it at its ends.
     pub beyond: Continuations,
     /// How long a miter may be, in half widths, at least 1.
     pub miter_limit: f64,

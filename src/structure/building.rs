@@ -192,7 +192,7 @@ fn floor(faces: &mut Faces, footprint: &BuildingFootprint, roof: &UnitRoof, foot
     faces.flat(&corners, &triangles, paint.foundation);
 }
 
-/// What a sound building measures.
+/// The measures of a sound building.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measures {
     /// Cubic meters within its faces.

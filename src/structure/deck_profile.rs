@@ -1,4 +1,4 @@
-//! How high a deck lies: a rope pulled taut over what it has to clear.
+//! The profile of a deck: a rope pulled taut over what it has to clear.
 //!
 //! The ends lie where the road leaves the ground. Between them the deck is the upper hull of what it must clear: ground,
 //! roads, water. Clearance that could only be reached too steeply from either end is reduced. The hull's corners are
@@ -32,7 +32,7 @@ const OVER_GROUND_M: f64 = 0.3;
 /// How fast it may rise to that from its ends: [`OVER_GROUND_M`] within ten meters.
 const TO_OVER_GROUND: f64 = 0.03;
 
-/// What a deck has to clear at a station.
+/// A point that a deck has to clear at a station.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClearancePoint {
     /// Where, in meters along the deck.

@@ -43,7 +43,7 @@ pub struct BandSection {
     pub colors: Vec<Srgba>,
 }
 
-/// How a band's surface departs from its section.
+/// The irregularity of a band's surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ruffle {
     /// By what share its corners above the ground wander, in 0..=1: 0 for masonry, more for leaves.

@@ -18,7 +18,7 @@ use sandtable_geom::offset::{self, Continuations, LineBend};
 /// How long a miter may be in half widths: turns of up to 120 degrees keep theirs.
 const MITER_LIMIT: f64 = 2.0;
 
-/// Where two segments meet, or one ends.
+/// The joint of two segments, or the end of one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackJoint {
     /// World X and Y, meters.
@@ -34,7 +34,7 @@ impl TrackJoint {
     }
 }
 
-/// Whether a stretch of track has ends or runs round.
+/// The ends of a stretch of track, if it does not run round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ends {
     /// It has two.

@@ -22,7 +22,7 @@ const STEEL: Srgba = Srgba::opaque(112, 84, 68);
 /// The angle that each of three beams at right angles to each other makes with the upright, as cosine and sine.
 const TO_UPRIGHT: (f32, f32) = (0.577_350_3, 0.816_496_6);
 
-/// What an obstacle is.
+/// The kind of an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Obstacle {
     /// A blunt pyramid of concrete.

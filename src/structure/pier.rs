@@ -1,4 +1,4 @@
-//! What carries a deck: piers, abutments, and the posts that end its parapets.
+//! The supports of a deck: piers, abutments, and the posts that end its parapets.
 //!
 //! ```text
 //!      ═══════════════════        deck

@@ -1,4 +1,4 @@
-//! What is drawn at a frame: echelon, mobility, headquarters staff, task force, feint or dummy, condition.
+//! Amplifiers around a frame: echelon, mobility, headquarters staff, task force, feint or dummy, condition.
 //!
 //! MIL-STD-2525D, 5.3.7, tables D-III (echelons) and IX (mobility).
 

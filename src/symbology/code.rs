@@ -85,7 +85,7 @@ pub enum SymbolCodeError {
     },
 }
 
-/// Where a field is in a code.
+/// The place of a field in a code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CodePlaces {
     /// The first character, from 1.

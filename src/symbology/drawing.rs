@@ -49,7 +49,7 @@ pub enum PathStep {
     Close,
 }
 
-/// How a path is stroked.
+/// The pen that strokes a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SymbolPen {
     /// In units of the box.

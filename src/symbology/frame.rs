@@ -31,7 +31,7 @@ impl SymbolBox {
     }
 }
 
-/// Which side of a frame is open: below in the air, above under water.
+/// The open side of a frame: below in the air, above under water.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameOpening {
     /// Air and space.

@@ -44,7 +44,7 @@ pub enum SymbolText {
     SpecialHeadquarters,
 }
 
-/// Where a field stands.
+/// The place of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextPlace {
     /// Over the frame, centered.

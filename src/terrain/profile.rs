@@ -23,7 +23,7 @@ pub struct ProfileStation {
     pub ground: Answer,
 }
 
-/// How a profile is sampled.
+/// The sampling of a profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampling {
     /// The interpolation between posts. Only the planar ground is straight between stations.

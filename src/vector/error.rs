@@ -1,4 +1,4 @@
-//! Why a vector file cannot be read.
+//! Errors of reading a vector file.
 
 use std::borrow::Cow;
 use std::error::Error;

@@ -11,7 +11,7 @@ use glam::{Vec2, Vec3};
 use crate::axes::DirectionAxes;
 use sandtable_geom::aabb::Aabb;
 
-/// How rays reach the picture.
+/// The projection of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ViewProjection {
     /// Rays meet in the eye.

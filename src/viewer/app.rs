@@ -38,7 +38,7 @@ use sandtable_files::disk;
 use sandtable_view::navigation::pose::{ViewPose, wrapped};
 use sandtable_view::navigation::{NavigationMode, TRANSITION_S};
 
-/// What the window has to do for the app.
+/// A request of the app to the window.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WindowRequest {
     /// Shows this title.
@@ -51,7 +51,7 @@ pub enum WindowRequest {
     Close,
 }
 
-/// What the middle of the window shows.
+/// The content of the middle of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ViewerStage {
     /// Nothing is open.
@@ -71,7 +71,7 @@ pub(super) struct OpeningFailure {
     pub message: String,
 }
 
-/// What was clicked at.
+/// The texts about a picked place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PickedText {
     /// The kind and the name of the feature; of bare ground, `ground`.

@@ -5,7 +5,7 @@ use crate::worker::WorkerJob;
 use sandtable_walk::disk_ground::DiskGroundError;
 use sandtable_walk::pick::WalkPick;
 
-/// What a click comes to; `None` where there is no ground after all.
+/// The result of a click, while it is awaited; `None` where there is no ground after all.
 pub type PickJob = WorkerJob<Result<Option<WalkPick>, DiskGroundError>>;
 
 /// Answers that are awaited; a newer question takes the place of the one before.

@@ -1,4 +1,4 @@
-//! What a user can tell the window, and the keys for it: one table for help and dispatch.
+//! The commands of the window, and the keys for them: one table for help and dispatch.
 
 use egui::{Event, Key, KeyboardShortcut, Modifiers};
 
@@ -61,7 +61,7 @@ pub enum ViewCommand {
     Quit,
 }
 
-/// What happens while a key is held.
+/// A motion that continues while a key is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum HeldMotion {
     /// Moves toward what is looked at.
@@ -90,7 +90,7 @@ pub enum HeldMotion {
     ZoomOut,
 }
 
-/// What a key does.
+/// The action of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeyAction {
     /// Once, when it is pressed.

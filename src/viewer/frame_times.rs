@@ -1,4 +1,4 @@
-//! How long frames took, and with what: the last few seconds of them.
+//! The times of the frames of the last few seconds, and what they were spent on.
 
 use std::collections::VecDeque;
 
@@ -8,7 +8,7 @@ const KEPT: usize = 240;
 /// The times of one frame, in milliseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrameTime {
-    /// Refining the ground and cutting what lies on it.
+    /// Refining the ground and cutting its draped features.
     pub update_ms: f32,
     /// Handing over what changed.
     pub upload_ms: f32,
@@ -25,14 +25,14 @@ impl FrameTime {
     }
 }
 
-/// What a frame showed and sent.
+/// The load of a frame: what it showed and sent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameLoad {
     /// Triangles of ground in view.
     pub ground_triangles: usize,
     /// Patches in view.
     pub patches: usize,
-    /// Triangles drawn, of ground and of what lies on it.
+    /// Triangles drawn, of the ground and of its draped features.
     pub drawn_triangles: u64,
     /// Calls of the device.
     pub calls: u32,

@@ -31,7 +31,7 @@ pub struct WindowGraphics {
     painter: Renderer,
 }
 
-/// What the panels of one frame are painted from.
+/// The input for painting the panels of one frame.
 pub struct PaintedPanels<'a> {
     /// Their triangles.
     pub primitives: &'a [ClippedPrimitive],
@@ -41,7 +41,7 @@ pub struct PaintedPanels<'a> {
     pub pixels_per_point: f32,
 }
 
-/// What became of a frame.
+/// The outcome of presenting a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FramePresented {
     /// It is on the screen.

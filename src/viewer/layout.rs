@@ -1,4 +1,4 @@
-//! Where the panels lie: the menu above, the status below, the sections at the side, windows over the middle.
+//! The layout of the panels: the menu above, the status below, the sections at the side, windows over the middle.
 
 use egui::{
     Align2, CollapsingHeader, ComboBox, Context, Grid, Panel, RichText, ScrollArea, TextureId, Ui, Window,

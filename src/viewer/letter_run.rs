@@ -38,7 +38,7 @@ pub struct LineLetter {
     pub angle: f32,
 }
 
-/// What a name holds from frame to frame.
+/// The place that a name keeps from frame to frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeldPlace {
     /// Which of its lines.

@@ -33,7 +33,7 @@ pub struct SceneLoading {
     news: Receiver<LoadingNews>,
 }
 
-/// What is opened.
+/// The task of opening a file.
 pub enum LoadingTask {
     /// A file, with the folders that it may read.
     File(PathBuf, Vec<PathBuf>),

@@ -11,7 +11,7 @@ use sandtable_walk::measure::MeasurableGround;
 /// The height of observers and targets over ground, in meters.
 const EYE_M: f64 = 1.7;
 
-/// What is measured.
+/// The kind of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeasureKind {
     /// A line: its length, climbs, profile.

@@ -1,4 +1,4 @@
-//! What was picked as a part of the scene file: moved and turned with the mouse, resized, removed.
+//! Moves, turns, resizes and removes the picked part of the scene file.
 //!
 //! A click picks. Dragging from what is picked moves a model or a label over the ground, with Ctrl it turns a model; until the
 //! button is released, a ghost shows how it will stand, and a line leads there.

@@ -1,4 +1,4 @@
-//! What has a name along a line: labels of the scene along rivers and roads and across areas, and texts of tactical graphics.
+//! Names along lines: labels of the scene along rivers and roads and across areas, and texts of tactical graphics.
 
 use std::sync::Arc;
 
@@ -18,7 +18,8 @@ use sandtable_scene::label_course::LabelCourse;
 /// Lines whose half is shorter than this take no name, in pixels.
 const LEAST_RADIUS_PX: f32 = 12.0;
 
-/// What names a line: the number of the scene's label, or a text of a graphic and which of its places.
+/// The identity of a name along a line: the number of the scene's label, or a text of a graphic and which of its
+/// places.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum NameKey {
     /// A label of the scene.
@@ -27,7 +28,7 @@ pub enum NameKey {
     Graphic(String, u32, usize),
 }
 
-/// How a name lies to its line.
+/// The position of a name relative to its line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NameSide {
     /// Beside it.

@@ -1,4 +1,4 @@
-//! What the window has to say: news that go by themselves, and errors that stay until they are read.
+//! The notices of the window: news that disappear by themselves, and errors that stay until they are dismissed.
 
 use egui::{Align2, Area, Frame, Id, Ui, vec2};
 

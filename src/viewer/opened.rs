@@ -87,7 +87,7 @@ pub struct OpenedScene {
     pub(super) size: (u32, u32),
 }
 
-/// How a scene that is opened will first be seen, so that nothing is left to be made for its first frame.
+/// The first view of a scene that is opened, so that nothing is left to be made for its first frame.
 #[derive(Clone, Debug, Default)]
 pub struct OpeningView {
     /// From where; `None` for its first camera.
@@ -96,7 +96,7 @@ pub struct OpeningView {
     pub hidden: BTreeSet<FeatureId>,
 }
 
-/// From where a scene is seen.
+/// The point of view on a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeenFrom {
     /// The pose, in a scene of a vertical scale.
@@ -118,7 +118,7 @@ impl SeenFrom {
     }
 }
 
-/// What a frame shows.
+/// The content of a frame.
 pub struct SceneFrame {
     /// The list to load before anything else; `None` where the renderer has it.
     pub load: Option<SceneLoad>,

@@ -57,7 +57,7 @@ enum PagingNews {
     Failed(String),
 }
 
-/// What an update brought.
+/// The result of an update.
 pub struct PagedUpdate {
     /// What changed since the update before.
     pub changes: GroundChanges,
@@ -68,7 +68,7 @@ pub struct PagedUpdate {
     meshes: usize,
 }
 
-/// How far the terrain is.
+/// The progress of the terrain.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PagingStage {
     /// It is read once, this share of it so far, 0 to 1; the overview is shown.
@@ -79,7 +79,7 @@ pub enum PagingStage {
     Failed(String),
 }
 
-/// What is kept of the terrain, for the panel.
+/// The pages in memory, for the panel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PagesKept {
     /// Pages in memory.

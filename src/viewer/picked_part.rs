@@ -1,4 +1,4 @@
-//! What was picked as a part of the scene file, and where it is dragged to.
+//! The picked part of the scene file, and the place to which it is dragged.
 
 use glam::DVec2;
 
@@ -10,7 +10,7 @@ use sandtable_editing::edit::EditPlace;
 pub struct PickedPart {
     /// The table.
     pub place: EditPlace,
-    /// What can be dragged; `None` for what lies on the ground.
+    /// The part that can be dragged; `None` for draped features.
     pub grab: Option<GrabTarget>,
     /// The map coordinates of what can be dragged.
     pub at: DVec2,
@@ -20,7 +20,7 @@ pub struct PickedPart {
     pub file: Option<String>,
 }
 
-/// What can be moved by dragging from it.
+/// A thing that can be moved by dragging.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GrabTarget {
     /// A model.
@@ -29,7 +29,7 @@ pub enum GrabTarget {
     Label(usize),
 }
 
-/// Where something is dragged to.
+/// The target of a drag.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DragTarget {
     /// Map coordinates of the ground under the pointer.

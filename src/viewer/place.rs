@@ -5,7 +5,7 @@ use sandtable_query::positions::format_position;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_walk::pick::WalkPick;
 
-/// What is known about a place; a text is empty where there is nothing to say.
+/// The texts about a place; a text is empty where nothing is known.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlaceText {
     /// Map coordinates, with the name of their system.

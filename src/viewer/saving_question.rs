@@ -1,4 +1,4 @@
-//! What the user is asked before edits could be lost.
+//! The questions before edits could be lost.
 
 use std::path::PathBuf;
 
@@ -13,7 +13,7 @@ pub enum Leaving {
     Reload,
 }
 
-/// What the user is asked.
+/// A question before edits are lost.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SavingQuestion {
     /// Whether to save edits before they would be lost.

@@ -1,4 +1,4 @@
-//! What a renderer takes over of a scene, prepared on the threads that open scenes and change them.
+//! Lists that the renderer takes over, prepared on the threads that open and change scenes.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -19,7 +19,7 @@ pub struct SceneLoad {
     pub kept: KeptPatches,
 }
 
-/// What prepares scenes for the window's renderer; empty until there is one.
+/// The loader of the window's renderer; empty until there is one.
 #[derive(Clone, Debug, Default)]
 pub struct LoaderSlot(Arc<Mutex<Option<LiveLoader>>>);
 

@@ -14,7 +14,7 @@ use sandtable_picture::models::PlacementMove;
 use sandtable_terrain::volumes::Volumes;
 use sandtable_walk::edit::WalkEdit;
 
-/// What an edit leaves to be done.
+/// The work that an edit leaves to be done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EditOutcome {
     /// It is shown.

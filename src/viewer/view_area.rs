@@ -71,7 +71,7 @@ struct PartMotion {
     to: Option<DVec2>,
 }
 
-/// What the user did in the view besides moving.
+/// An action of the user in the view besides moving.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ViewEvent {
     /// Clicked at a pixel.

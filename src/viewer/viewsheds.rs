@@ -1,4 +1,4 @@
-//! What is seen from a place, tinted over the ground until it is cleared. It is computed beside the window, and again when
+//! The viewshed from a place, tinted over the ground until it is cleared. It is computed beside the window, and again when
 //! the ground changes.
 
 use glam::DVec2;

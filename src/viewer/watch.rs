@@ -62,7 +62,7 @@ impl FileWatch {
     }
 }
 
-/// What became of watched files since they were last asked about.
+/// The state of watched files since the last poll.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WatchState {
     /// Nothing.

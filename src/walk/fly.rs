@@ -19,7 +19,7 @@ use sandtable_sheet::picture::{PictureError, PictureSize, render_view};
 /// The note beside the frames.
 const NOTE: &str = "frames.json";
 
-/// What is drawn of a flight.
+/// The options for drawing a flight.
 #[derive(Clone, Copy, Debug)]
 pub struct FlyOptions {
     /// The size of a frame.
@@ -46,7 +46,7 @@ pub enum FlyError {
     OtherFrames(PathBuf),
 }
 
-/// How many frames were drawn, and how many were there.
+/// The number of frames that were drawn, and of those that existed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameCount {
     /// Drawn now.

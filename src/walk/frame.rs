@@ -15,11 +15,11 @@ pub struct WalkOptions {
     /// How many patches are kept by the renderer after they have gone out of view, those in view included: 50 KB each in
     /// patches of 64. More than are in view are kept while they are few. Default 2048.
     pub kept_patches: usize,
-    /// When spheres are made anew for another picture or tolerance. Default [`ReachRenewal::InUpdate`].
+    /// The rule for rebuilding the spheres for another picture or tolerance. Default [`ReachRenewal::InUpdate`].
     pub renewal: ReachRenewal,
 }
 
-/// When the spheres of a walk are made anew for another picture.
+/// The rule for rebuilding the spheres of a walk for another picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ReachRenewal {
     /// In the update that needs them, which is so exact, and late on large ground.
@@ -52,7 +52,7 @@ pub struct WalkFrame {
     pub statistics: WalkStatistics,
 }
 
-/// What an update of a walk did.
+/// The statistics of an update of a walk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct WalkStatistics {
     /// Patches in view.
@@ -69,16 +69,16 @@ pub struct WalkStatistics {
     pub meshes: usize,
     /// Patches whose triangles are handed over.
     pub changed_patches: usize,
-    /// Patches on which what lies is handed over.
+    /// Patches whose draped features are handed over.
     pub cut_patches: usize,
-    /// Patches that the updates that follow are to hand over though nothing moves: those on which what lies is to be cut
-    /// anew, and those that are to be read from disk.
+    /// Patches that later updates will hand over although nothing moves: those whose draped features must be cut again,
+    /// and those that must be read from disk.
     pub waiting_patches: usize,
     /// Bytes of vertices of patches that are handed over.
     pub vertex_bytes: usize,
     /// Bytes of triangles of patches that are handed over.
     pub triangle_bytes: usize,
-    /// Bytes of what lies on patches that is handed over.
+    /// Bytes of draped features that are handed over.
     pub drape_bytes: usize,
     /// Bytes of changes of the ground map that are handed over.
     pub map_bytes: usize,

@@ -41,7 +41,7 @@ const BORDER: u32 = 16;
 /// The most windows; each makes the posts twice as fine.
 const MOST_WINDOWS: u32 = 8;
 
-/// From where a terrain is seen.
+/// The point of view on a terrain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundWindowView {
     /// The eye's world X and Y.
@@ -54,7 +54,7 @@ pub struct GroundWindowView {
     pub pixel: f64,
 }
 
-/// What windows are lit by.
+/// The light of windows.
 #[derive(Clone)]
 pub struct GroundWindowLight {
     /// The overview.
@@ -65,7 +65,7 @@ pub struct GroundWindowLight {
     pub to_sun: Vec3,
 }
 
-/// Where a window lies: it has every `every`-th sample of the terrain.
+/// The place of a window: it has every `every`-th sample of the terrain.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GroundWindowPlan {
     every: u32,

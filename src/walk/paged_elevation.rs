@@ -48,9 +48,9 @@ pub type ElevationWindows = WatchedWindows<GeoTiffWindows<File>>;
 pub struct PagedElevation {
     /// The terrain, which is refined.
     pub terrain: ElevationWindows,
-    /// The same for questions about heights.
+    /// The same terrain, for height queries.
     pub questions: ElevationWindows,
-    /// The same for the light on the ground near the eye.
+    /// The same terrain, for the light on the ground near the eye.
     pub near: ElevationWindows,
     /// All of it, its samples further apart: the south-west one lies where it does in the terrain.
     pub overview: Arc<Raster>,

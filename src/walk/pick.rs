@@ -24,7 +24,7 @@ use sandtable_view::camera::Camera;
 /// Digits of each part of a grid reference: meters.
 const MGRS_DIGITS: u8 = 5;
 
-/// What a ray meets first.
+/// The first thing that a ray meets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WalkPick {
     /// Where, in world space.
@@ -204,7 +204,7 @@ pub struct PickedWorld {
     pub at: DVec2,
     /// How far away, meters.
     pub distance_m: f64,
-    /// What is there.
+    /// The feature there.
     pub feature: FeatureId,
 }
 

@@ -22,7 +22,7 @@ pub struct WorkLimit {
     value: OnceLock<u64>,
 }
 
-/// How far a limit may be raised.
+/// The extent to which a limit may be raised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Highest {
     /// Not at all: it protects the stack, or is part of a format.

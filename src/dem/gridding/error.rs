@@ -1,4 +1,4 @@
-//! Why no grid is made of points.
+//! Errors of gridding points.
 
 use glam::DVec3;
 

@@ -2,7 +2,7 @@
 
 use crate::gridding::error::GridError;
 
-/// How the height at a cell's center comes from the points.
+/// A gridding method: how the height at a cell's center follows from the points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum GriddingMethod {
     /// On the plane through the corners of the Delaunay triangle around it, breaklines kept as edges of triangles.

@@ -1,4 +1,4 @@
-//! Why files of points are not read.
+//! Errors of reading files of points.
 
 use sandtable_base::limits::GRID_POINTS;
 use sandtable_raster::error::DemErrorKind;

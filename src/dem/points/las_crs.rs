@@ -17,7 +17,7 @@ const TEXTS: u16 = 34737;
 const WKT: u16 = 2112;
 
 pub(super) struct LasCrs {
-    /// Of x and y.
+    /// The system of x and y.
     pub crs: Option<Crs>,
     /// Meters in one unit of z.
     pub meters_per_z: f64,

@@ -49,7 +49,7 @@ const NATURAL: [u16; 4] = [3081, 3080, 3082, 3083];
 pub(super) struct ProjectionKeys {
     pub method: MapProjection,
     pub code: u16,
-    /// Of latitude, longitude, easting and northing of the origin.
+    /// The keys for latitude, longitude, easting and northing of the origin.
     pub origin: [u16; 4],
 }
 

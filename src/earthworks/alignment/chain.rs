@@ -5,7 +5,7 @@
 
 use crate::alignment::network::{SectionNetwork, StationLevels};
 
-/// Which way a line runs in a chain.
+/// The direction of a line in a chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     /// From its beginning.

@@ -24,7 +24,7 @@ use sandtable_geom::polyline::Polyline;
 use sandtable_geom::profile::Profile;
 use sandtable_geom::rect::Rect;
 
-/// What carries a line.
+/// The support of a line: the ground, a bridge or a tunnel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Support {
     /// The ground.
@@ -57,7 +57,7 @@ pub struct SupportSpan {
     pub to_m: f64,
 }
 
-/// How wide a line is, in meters, above 0.
+/// The width of a line, in meters, above 0.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Width {
     /// One width everywhere.

@@ -1,4 +1,4 @@
-//! Where a road leaves the ground: the stretches that need a bridge or a tunnel.
+//! The stretches on which a road leaves the ground and needs a bridge or a tunnel.
 //!
 //! A stretch begins where the fill exceeds what an embankment may have. Its abutments stand further out, where the fill
 //! has fallen to a share of that: a bridge that ended at the very limit would end on the highest embankment allowed, and
@@ -25,7 +25,7 @@ const SHORTEST_M: f64 = 12.0;
 /// Two of one kind nearer to each other than this are one, in meters.
 const NEAREST_M: f64 = 30.0;
 
-/// How high embankments and how deep cuttings may be, in meters; infinite for any.
+/// The greatest heights of embankments and depths of cuttings, in meters; infinite for any.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EarthworkLimits {
     /// The highest embankment.

@@ -1,4 +1,4 @@
-//! Which way water flows along each line of a network.
+//! The direction in which water flows along each line of a network.
 //!
 //! A line flows from its higher end to its lower, where the straight line nearest to the ground along it falls the same way.
 //! Where they disagree the ground does not say: one end lies in a pit, on a bridge or in a lake, or the line is drawn over
@@ -24,7 +24,7 @@ const AGREEMENT: f64 = 0.5;
 /// The most steps in which a line is walked to find its fall: a step a cell, and wider on lines that would need more.
 const MOST_STEPS: f64 = 100_000.0;
 
-/// Which way water flows along a line.
+/// The direction in which water flows along a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flow {
     /// From its first vertex to its last.

@@ -48,7 +48,7 @@ const BELOW_DECK: f64 = 0.1;
 /// stand in it.
 const MOUTH_M: DVec2 = DVec2::new(0.7, 0.9);
 
-/// What ends a strip.
+/// The end of a strip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StripEnd {
     /// Nothing, or more road: batters go round it.

@@ -65,7 +65,7 @@ use sandtable_draw::patches::{GroundChanges, PatchId};
 use sandtable_render::shadow::Shadows;
 use sandtable_view::camera::Camera;
 
-/// How finely frames are drawn.
+/// The quality at which frames are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LiveQuality {
     /// Samples per pixel: 1, or 4 where the adapter can.
@@ -81,7 +81,7 @@ pub struct LiveOptions {
     pub wireframe: bool,
 }
 
-/// What was sent to the device for a change, in bytes.
+/// The bytes sent to the device for a change.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct UploadedBytes {
     /// Vertices of the ground.
@@ -94,14 +94,14 @@ pub struct UploadedBytes {
     pub map: u64,
 }
 
-/// What a frame drew.
+/// The statistics of a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LiveStatistics {
     /// Patches of ground.
     pub patches: u32,
     /// Calls of the device.
     pub calls: u32,
-    /// Triangles of ground and of what lies on it.
+    /// Triangles of the ground and its draped features.
     pub triangles: u64,
 }
 

@@ -1,4 +1,4 @@
-//! What a pixel shows: the scene drawn to a single pixel, and read back.
+//! Picking: draws the scene to a single pixel, and reads back what it shows.
 
 use glam::Vec2;
 

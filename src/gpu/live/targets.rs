@@ -1,5 +1,5 @@
-//! What frames are drawn to before they are shown: samples, depths, and colors where the window's texture cannot hold
-//! them.
+//! The targets that frames are drawn to before they are shown: samples, depths, and colors where the window's texture
+//! cannot hold them.
 
 use crate::error::GpuError;
 use crate::formats::{COLOR, DEPTH};
@@ -19,10 +19,10 @@ pub struct LiveTargets {
     pub depths_read: Option<wgpu::BindGroup>,
 }
 
-/// What the textures of frames depend on.
+/// The properties that the textures of frames depend on.
 #[derive(Clone, Copy, Debug)]
 pub struct LiveFormat {
-    /// Of the window's texture.
+    /// The format of the window's texture.
     pub window: wgpu::TextureFormat,
     pub samples: u32,
     /// Whether the ground is shaded pixel by pixel.

@@ -1,9 +1,9 @@
-//! What a check of a scene finds.
+//! The findings of the check of a scene.
 
 use pyo3::prelude::*;
 use sandtable::Finding;
 
-/// What is wrong with a scene, or looks wrong.
+/// A fault or a probable mistake in a scene.
 #[pyclass(name = "Finding", module = "sandtable", frozen, get_all)]
 pub struct PyFinding {
     /// Its stable code, such as "river-uphill"; `sandtable explain CODE` explains it.

@@ -1,4 +1,4 @@
-//! Why rasters are not warped.
+//! Errors of warping rasters.
 
 use glam::U64Vec2;
 

@@ -27,7 +27,7 @@ const UTM_LATITUDES_DEG: (f64, f64) = (-80.0, 84.0);
 /// A system in meters whose lengths are not those of the ground, and what is used instead. Its text is a note for the user.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OffScale {
-    /// The system that the raster names or that was asked for.
+    /// The system that the raster names or that the caller wanted.
     pub stated: Crs,
     /// Its scale at the center of the raster.
     pub scale: ScaleFactors,

@@ -1,4 +1,4 @@
-//! What [`to_metric`](crate::warp::to_metric) makes of a raster that stays on disk: computed where it is read.
+//! The result of [`to_metric`](crate::warp::to_metric) for a raster that stays on disk, computed where it is read.
 //!
 //! ```text
 //! window of the result ─► its cells' positions in the source's grid ─► the window of the source around them ─► heights
@@ -23,7 +23,7 @@ use crate::windows::{RasterWindow, Windows};
 use sandtable_geom::crs::Crs;
 use sandtable_geom::rect::Rect;
 
-/// What a raster becomes, but for its samples.
+/// The result of warping a raster, without its samples.
 #[derive(Clone, Debug)]
 pub struct MetricPlan {
     /// The result without its samples.

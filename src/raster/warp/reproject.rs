@@ -25,7 +25,7 @@ use sandtable_geom::rect::Rect;
 /// From this many times the source's cells on, cells hold the average: only that keeps the mean height.
 const COARSER: f64 = 2.0;
 
-/// How samples were made.
+/// The method by which samples were made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Resampling {
     /// They are the source's, in its order or mirrored.

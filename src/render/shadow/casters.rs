@@ -35,7 +35,7 @@ pub struct LightBox {
     pub high: Vec2,
 }
 
-/// What casts in a list, along the world's axes.
+/// The shadow casters of a list, along the world's axes.
 #[derive(Debug)]
 pub struct ListTriangles {
     /// Of solids that cast shadows, in the list's order; never empty.

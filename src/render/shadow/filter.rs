@@ -56,7 +56,7 @@ const WALL_CONTACT: f32 = 0.35;
 const PAGE_BITS: u32 = PAGE.trailing_zeros();
 const PAGE_MASK: i32 = PAGE as i32 - 1;
 
-/// What casts on a point.
+/// The kind of point that receives a shadow, which decides what casts on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShadowReceiver {
     /// The ground and drapes: solids.

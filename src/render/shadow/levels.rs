@@ -33,7 +33,7 @@ pub struct PageRange {
     pub to: [u32; 2],
 }
 
-/// What a map is made of.
+/// The inputs of a map.
 #[derive(Debug)]
 pub struct MapSource<'a> {
     pub list: &'a DrawList,

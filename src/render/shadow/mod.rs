@@ -89,7 +89,7 @@ impl ShadowTexel {
     }
 }
 
-/// Where a page of a level is stored.
+/// The place of a page of a level.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct ShadowPage {
@@ -123,7 +123,7 @@ pub struct LightAxes {
     pub toward: Vec3,
 }
 
-/// How a depth from the eye names a level.
+/// The relation between a depth from the eye and a level.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LevelScale {
     /// Meters of a texel per meter of depth, at the most.
@@ -151,7 +151,7 @@ pub struct ShadowMap {
     pub texels: Vec<ShadowTexel>,
 }
 
-/// What a map is read for.
+/// The purpose of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShadowPurpose {
     /// Everything toward the light casts.

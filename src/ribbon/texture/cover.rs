@@ -1,4 +1,4 @@
-//! What covers areas: quiet patterns in the manner of a topographic atlas, that tile and let the ground through.
+//! Textures of land cover: quiet patterns in the manner of a topographic atlas, that tile and let the ground through.
 //!
 //! Every texture holds a whole number of its figures (crowns, rows, houses) to a side, and looks for figures across its
 //! edges, so no seam shows. Colors stay near their mean: from afar, where a texture is a pixel, an area is an even tint.

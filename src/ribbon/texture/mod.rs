@@ -11,7 +11,7 @@ use sandtable_draw::color::Srgba;
 use sandtable_draw::pixels::Pixels;
 use sandtable_draw::water::WaterColor;
 
-/// What a ribbon is made of.
+/// The surface of a ribbon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum RibbonSurface {
     /// A paved road: dark carriageway, light edge lines and a dashed center line.

@@ -1,4 +1,4 @@
-//! From grid vertices to world space: the positions of a triangle's corners, and whether it is drawn.
+//! Converts grid vertices to world space: the positions of a triangle's corners, and whether it is drawn.
 
 use glam::Vec3;
 

@@ -6,7 +6,7 @@ use crate::layout::PatchLayout;
 /// quarter of a word of bits.
 const BLOCK: usize = 16;
 
-/// Which vertices are active, row by row, and how many are before each word.
+/// The active vertices as bits, row by row, and the number of active vertices before each word.
 #[derive(Clone, Debug, Default)]
 pub struct ActiveBits {
     pub words: Vec<u64>,

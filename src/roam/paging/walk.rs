@@ -1,4 +1,4 @@
-//! From an eye to triangles, patch by patch, without a mesh kept between frames.
+//! Makes triangles for an eye, patch by patch, without a mesh kept between frames.
 //!
 //! A vertex is active exactly while the eye is inside its sphere. Spheres are nested, so the active vertices of a patch are
 //! closed under parents; and a vertex on a border has the same sphere in both patches, so each patch is a function of the

@@ -1,4 +1,4 @@
-//! What an update changed.
+//! The changes of an update.
 
 use crate::graph::Vertex;
 use crate::layout::PatchLayout;

@@ -27,7 +27,7 @@ use crate::layout::PatchLayout;
 use crate::refine::changes::{ChangeTally, RefinementChanges};
 use crate::refine::listed::ListedPatches;
 
-/// What happens to a patch that is no longer listed.
+/// The treatment of a patch that is no longer listed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Hidden {
     /// It is merged as far as its neighbors allow: the mesh is that of a rebuild, and a patch out of view costs nothing.

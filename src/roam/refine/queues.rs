@@ -41,7 +41,7 @@ const MOST_REFUSALS: usize = 32;
 /// the time spent on the edges of holes.
 pub const MOST_LEAVES: usize = 8;
 
-/// What the queues work toward.
+/// The goal of the queues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Goal {
     /// Every vertex that the criterion wants, whatever the number of triangles. Where no vertex's excess is above its

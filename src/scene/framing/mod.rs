@@ -1,4 +1,4 @@
-//! How a camera is fitted to the ground that it shows, before and after its heights are known.
+//! Fits a camera to the ground that it shows, before and after its heights are known.
 
 pub mod fit;
 pub mod fitted_view;

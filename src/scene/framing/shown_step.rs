@@ -1,4 +1,4 @@
-//! How many samples of the elevation planned pictures show, found before any is read.
+//! Finds the number of elevation samples that planned pictures show, before any is read.
 //!
 //! A camera that is far from all of the ground has many samples in a pixel, so that means over squares of them give the same
 //! picture:

@@ -1,4 +1,4 @@
-//! Where centerlines of one level cross, whether or not they have a vertex there.
+//! Crossings of centerlines of one level, whether or not they have a vertex there.
 
 use crate::roads::centerline::Centerline;
 use sandtable_base::limits::ROAD_CROSSINGS;

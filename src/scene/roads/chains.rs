@@ -29,7 +29,7 @@ pub struct SpanChain {
     pub ends: [ChainEnd; 2],
 }
 
-/// What a chain meets at an end.
+/// The end of a chain: what it meets there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChainEnd {
     /// A road on the ground, or something that ends on it.

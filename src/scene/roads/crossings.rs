@@ -1,4 +1,4 @@
-//! Where bridges pass over other lines.
+//! Overpasses: places where bridges pass over other lines.
 
 use glam::DVec2;
 
@@ -10,7 +10,7 @@ use sandtable_ribbon::junction::Street;
 /// A crossing at a smaller angle than this sine counts as this one: its clearance would have no end.
 const LEAST_SINE: f64 = 0.25;
 
-/// Where a line passes over another one.
+/// A place where a line passes over another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Overpass {
     /// The index of the upper line.

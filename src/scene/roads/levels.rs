@@ -1,4 +1,4 @@
-//! How high bridges and tunnels run: the elevations of each chain, from its ends and what it passes over.
+//! The levels of bridges and tunnels: the elevations of each chain, from its ends and the lines that it passes over.
 //!
 //! A chain that ends on the ground has its height there. Where chains meet in the air, the levels of the meetings solve
 //! Laplace's equation on the network, each chain weighing as the inverse of its length: all of them rise evenly there.

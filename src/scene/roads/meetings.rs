@@ -1,4 +1,4 @@
-//! Where roads end and meet, along their centerlines.
+//! The nodes where roads end and meet, along their centerlines.
 //!
 //! Lines meet where they share a vertex. An end meets whatever is there: a bridge meets the road that leads to it though
 //! they have different levels. Lines that both go on meet only where their level is the same, and such lines of one level

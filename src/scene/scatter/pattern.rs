@@ -1,4 +1,5 @@
-//! Where things may stand: a pattern over the whole plane that is as dense as asked and keeps its distance.
+//! A point pattern for scattered models: places over the whole plane, as dense as stated and no nearer to each other
+//! than stated.
 //!
 //! The plane is cut into squares aligned with the map. Each square holds its own few candidates, by the seed and the
 //! square's coordinates alone; each candidate has a rank, and stands where no candidate within the spacing ranks higher

@@ -31,7 +31,7 @@ enum RiverNode {
     Lake(usize),
 }
 
-/// What is around a network of rivers.
+/// The surroundings of a network of rivers.
 pub struct RiverSurroundings<'a> {
     /// The number of the lake that a place lies in.
     pub lake_at: &'a dyn Fn(DVec2) -> Option<usize>,

@@ -33,7 +33,7 @@ pub fn atlas_scene(path: &Path, allowed: &[PathBuf], pixel_m: f64) -> Result<Sce
     open_scene_for(path, allowed, None, ElevationNeed::Pictures(&pictures), &|_| ())
 }
 
-/// What each sheet shows, and on which paper.
+/// The content and the paper of each sheet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AtlasArguments {

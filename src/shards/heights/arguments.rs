@@ -14,11 +14,11 @@ use sandtable_raster::answer::Answer;
 use sandtable_raster::height_datum::HeightDatum;
 use sandtable_terrain::query::{Interpolation, Surface};
 
-/// What is asked about each point.
+/// The query for each point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HeightsArguments {
-    /// Of which elevation or scene.
+    /// The elevation or scene to query.
     pub dataset: PlannedDataset,
     /// The table of points, from the folder of the plan.
     pub points: PathBuf,

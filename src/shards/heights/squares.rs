@@ -27,7 +27,7 @@ struct SquareRoute {
     seen: u64,
 }
 
-/// Where points go, by their squares.
+/// The shards of points, by their squares.
 pub struct PointRoutes {
     size: (u32, u32),
     across: u32,

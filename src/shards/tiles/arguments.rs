@@ -11,10 +11,10 @@ use sandtable_dem::formats::height_encoding::HeightEncoding;
 use sandtable_raster::answer::Answer;
 use sandtable_terrain::query::Interpolation;
 
-/// What tiles are made of.
+/// The arguments of tiles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TilesArguments {
-    /// Of which elevation or scene.
+    /// The elevation or scene to read.
     pub dataset: PlannedDataset,
     /// The finest level, 0 to 22.
     pub max_zoom: u32,
@@ -38,7 +38,7 @@ pub enum TileContent {
     Terrarium(ColorTileArguments),
 }
 
-/// What tiles as meshes need.
+/// The arguments of tiles that are meshes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MeshTileArguments {
@@ -48,7 +48,7 @@ pub struct MeshTileArguments {
     pub from_geoid: bool,
 }
 
-/// What tiles as pictures need.
+/// The arguments of tiles that are pictures.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ColorTileArguments {

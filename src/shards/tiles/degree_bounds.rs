@@ -1,4 +1,4 @@
-//! Where elevation lies on the globe: its bounds in longitude and latitude, also across the meridian of 180 degrees.
+//! The bounds of elevation in longitude and latitude, also across the meridian of 180 degrees.
 
 use glam::DVec2;
 

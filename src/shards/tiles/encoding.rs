@@ -1,9 +1,9 @@
-//! How tiles state heights.
+//! The encodings of heights in tiles.
 
 use sandtable_base::message::choice::{Choice, ChoiceWord, word};
 use sandtable_dem::formats::height_encoding::HeightEncoding;
 
-/// How tiles state heights.
+/// The encoding of heights in tiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TileEncoding {
     /// As the vertices of meshes.

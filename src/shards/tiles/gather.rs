@@ -1,4 +1,4 @@
-//! What belongs to all tiles: the description by which viewers find them, and the coarse levels of pictures.
+//! Files that belong to all tiles: the description by which viewers find them, and the coarse levels of pictures.
 
 use std::path::{Path, PathBuf};
 

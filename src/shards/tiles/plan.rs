@@ -18,7 +18,7 @@ use sandtable_geom::rect::Rect;
 /// Meters of a degree along a meridian, about.
 const DEGREE_M: f64 = 111_320.0;
 
-/// Which tiles are wanted.
+/// The request for a pyramid of tiles.
 #[derive(Clone, Copy, Debug)]
 pub struct TilesRequest {
     /// How they state heights.

@@ -16,7 +16,7 @@ use sandtable_geom::rect::Rect;
 /// The finest level: places a meter apart and less.
 pub const MOST_LEVEL: u32 = 22;
 
-/// How the globe is cut into tiles.
+/// The division of the globe into tiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TileScheme {
     /// By longitude and latitude: two tiles at level 0, counted from the south-west (TMS, global geodetic).

@@ -14,7 +14,7 @@ use sandtable_terrain::sight::Curvature;
 use sandtable_terrain::sight::line::SightEnd;
 use sandtable_terrain::sight::viewshed::{Sector, ViewshedOptions};
 
-/// What is asked about each observer.
+/// The query for each observer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ViewshedsArguments {

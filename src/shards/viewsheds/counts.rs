@@ -9,7 +9,7 @@ use sandtable_terrain::sight::viewshed::{PostVisibility, Viewshed};
 /// The value of posts without a count, in files.
 const NO_DATA: f64 = -1.0;
 
-/// How many observers see each post of a rectangle.
+/// The number of observers that see each post of a rectangle.
 pub struct SightCounts {
     /// The posts, counted in the whole ground.
     posts: PostRect,

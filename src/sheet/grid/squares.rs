@@ -1,4 +1,4 @@
-//! Where a picture shows each 100 km square, for its letters.
+//! The places where a picture shows each 100 km square, for its letters.
 
 use std::collections::BTreeMap;
 

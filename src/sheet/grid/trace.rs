@@ -1,4 +1,4 @@
-//! What a picture shows of a line on the ground.
+//! Traces the visible parts of a line on the ground.
 //!
 //! A line is halved until its pieces are short on the picture, and no longer than some cells of the ground. Each piece
 //! is kept where neither end lies behind what the picture shows there. Toward the horizon, where lines run together,

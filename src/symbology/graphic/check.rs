@@ -13,7 +13,7 @@ pub const SHORTEST_M: f64 = 1.0;
 /// The most distances of a range fan.
 pub const MOST_RANGES: usize = 32;
 
-/// What is to be checked of a graphic.
+/// The parts of a graphic that are checked.
 #[derive(Clone, Copy, Debug)]
 pub struct PlacedGraphic<'a> {
     /// Its points in meters; of an area without repeating the first.

@@ -1,10 +1,10 @@
-//! What a graphic is drawn with.
+//! The input and the drawing of a graphic.
 
 use glam::DVec2;
 
 use crate::graphic::fields::GraphicFields;
 
-/// What a graphic is drawn from.
+/// The input from which a graphic is drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct GraphicInput<'a> {
     /// Its points in meters, in the order of its draw rule, checked by [`crate::graphic::check::check`].
@@ -73,7 +73,7 @@ pub struct GraphicText {
     pub course: TextCourse,
 }
 
-/// Where a text is.
+/// The place of a text.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TextCourse {
     /// At its point, level on the picture.

@@ -32,7 +32,7 @@ pub struct GraphicKind {
     pub(super) rule_fn: DrawRule,
 }
 
-/// What the points of a graphic are.
+/// The meaning of a graphic's points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GraphicShape {
     /// A line.
@@ -55,7 +55,7 @@ pub enum GraphicShape {
     Sector,
 }
 
-/// What colors a graphic.
+/// The source of a graphic's color.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GraphicTint {
     /// The color of its side.

@@ -19,7 +19,7 @@ pub struct CoarseField<'a> {
     pub values: Cow<'a, [f32]>,
 }
 
-/// How the values around a post become one.
+/// The way in which the values around a post are reduced to one.
 pub trait Reduction: Sync {
     /// What is collected of several values.
     type Sum: Copy + Send + Sync;

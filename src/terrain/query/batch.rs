@@ -55,7 +55,7 @@ const LOOKED_AT: usize = 17;
 /// 1.5 · 2⁵²: a number added to it is rounded to a whole one, held in its lowest bits.
 const WHOLE: f64 = 6_755_399_441_055_744.0;
 
-/// Where a batch writes heights in meters, NaN where there is none, and statuses: slices of equal length.
+/// The output of a batch: heights in meters, NaN where there is none, and statuses, in slices of equal length.
 pub struct HeightSlices<'a> {
     /// Heights in meters.
     pub heights_m: &'a mut [f64],

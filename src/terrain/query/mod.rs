@@ -86,7 +86,7 @@ pub enum Surface {
     Scene,
 }
 
-/// How heights between posts are computed; see the module's table.
+/// The interpolation of heights between posts; see the module's table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Interpolation {
     /// On the finest triangles.

@@ -62,7 +62,7 @@ struct CellRange {
     rows: Range<u32>,
 }
 
-/// What a polygon leaves of one of the finest triangles.
+/// The part of one of the finest triangles that lies in a polygon.
 #[derive(Clone, Copy, Debug)]
 pub struct TrianglePiece<'a> {
     /// The cell, by its south-west post.
@@ -76,7 +76,7 @@ pub struct TrianglePiece<'a> {
     pub extent: PieceExtent,
 }
 
-/// How much of a triangle a piece is.
+/// The extent of a piece within its triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PieceExtent {
     /// All of it.

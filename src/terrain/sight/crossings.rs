@@ -1,4 +1,4 @@
-//! Where a straight line over the ground crosses the edges of its finest triangles.
+//! Crossings of a straight line over the ground with the edges of its finest triangles.
 //!
 //! Between two crossings the ground is one plane, so a function of the ground along the line is known exactly when it is
 //! known at the crossings: profiles, lines of sight and viewsheds all use this walk.

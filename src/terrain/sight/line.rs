@@ -19,7 +19,7 @@ pub struct SightEnd {
     pub above_m: f64,
 }
 
-/// Whether a line of sight is clear.
+/// The result of a line of sight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sight {
     /// Nothing blocks it.

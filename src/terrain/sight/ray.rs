@@ -1,4 +1,4 @@
-//! Where a ray meets the ground.
+//! Intersections of rays with the ground.
 //!
 //! A ray is cut to its part over the lattice and between its lowest and highest post. That part runs over the finest
 //! triangles as a line of sight does, and between two neighboring crossings both it and the ground are straight: it meets
@@ -27,7 +27,7 @@ pub struct Ray {
     pub direction: DVec3,
 }
 
-/// Where a ray first meets the ground.
+/// The first intersection of a ray with the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayHit {
     /// Meters along the ray.

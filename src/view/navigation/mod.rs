@@ -47,7 +47,7 @@ const PACES: [f64; 2] = [0.05, 50.0];
 /// The seconds in which a named view is flown to.
 pub const TRANSITION_S: f64 = 1.2;
 
-/// How steps move the eye.
+/// The way in which steps move the eye.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum NavigationMode {
     /// Around and toward what is under the cursor; steps fly.

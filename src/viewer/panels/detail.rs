@@ -4,7 +4,7 @@ use egui::{Slider, Ui};
 
 use crate::commands::{ViewCommand, key_text};
 
-/// What the panel sets.
+/// The settings of the panel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DetailSettings {
     /// The greatest error of the displayed ground, in pixels.

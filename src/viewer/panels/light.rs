@@ -6,7 +6,7 @@ use glam::{DVec2, Vec3};
 use sandtable_geom::crs::Crs;
 use sandtable_geom::sun_position::{SunPosition, sun_position, unix_seconds};
 
-/// What the panel shows.
+/// The content of the panel.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LightPanel {
     /// Clockwise from north, degrees.
@@ -21,7 +21,7 @@ pub struct LightPanel {
     pub exaggeration: f64,
 }
 
-/// What was changed.
+/// A change in the panel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightEvent {
     /// The sun moved; a unit vector toward it.

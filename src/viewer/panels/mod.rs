@@ -1,4 +1,4 @@
-//! What lies over the scene: each panel is a function of its state, so that tests draw it without a window.
+//! The panels over the scene: each is a function of its state, so that tests draw it without a window.
 
 pub mod detail;
 pub mod help;

@@ -13,7 +13,7 @@ use sandtable_editing::viewing::is_scene_file;
 /// The most names of a folder that are listed: a longer list is not read to its end.
 const MOST_NAMES: usize = 2_000;
 
-/// What the list shows.
+/// The content of the list.
 #[derive(Debug, Default)]
 pub struct OpenPanel {
     /// The path in the field.

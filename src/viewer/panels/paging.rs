@@ -1,4 +1,4 @@
-//! What is kept of terrain on disk, and how much of it was read.
+//! The pages of terrain on disk that are in memory, and how much of it was read.
 
 use egui::Ui;
 

@@ -13,7 +13,7 @@ use sandtable_terrain::profile::ProfileStation;
 /// The height of a profile, in points.
 const PROFILE_HEIGHT: f32 = 90.0;
 
-/// What the panel shows of the tools.
+/// The state that the panel shows of the tools.
 pub struct ToolsPanel<'a> {
     /// The tool that draws.
     pub drawing: Option<ToolKind>,
@@ -35,7 +35,7 @@ pub struct ToolsPanel<'a> {
     pub refusal: Option<&'a str>,
 }
 
-/// What was chosen.
+/// A choice in the panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ToolEvent {
     /// Draws with a tool.

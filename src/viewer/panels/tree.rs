@@ -10,7 +10,7 @@ use sandtable_scene::feature::{FeatureKind, SceneFeature};
 /// The most features listed under a kind; further ones are found by their names.
 const MOST_LISTED: usize = 200;
 
-/// What the tree shows.
+/// The state of the tree.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TreePanel {
     /// The text that names must contain.
@@ -21,7 +21,7 @@ pub struct TreePanel {
     pub focuses_find: bool,
 }
 
-/// What happened in the tree.
+/// An event in the tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TreeEvent {
     /// Features were shown or hidden.

@@ -1,4 +1,4 @@
-//! From refined vertices to the index list of a patch, as triangles or as strips.
+//! Writes the index list of a patch from refined vertices, as triangles or as strips.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! What methods share: the measured ground, and the criteria that read it.
+//! The ground that methods share: its measures, and the criteria that read them.
 
 use std::sync::OnceLock;
 

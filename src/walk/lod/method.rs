@@ -18,7 +18,7 @@ pub enum Emit {
     Full,
 }
 
-/// How refined vertices are written as index lists.
+/// The form in which refined vertices are written as index lists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum IndexEmitter {
     /// Triangles in the order of the bintree.
@@ -29,7 +29,7 @@ pub enum IndexEmitter {
     Strips,
 }
 
-/// When an error shows.
+/// The criterion by which an error shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CriterionKind {
     /// By the largest length an error can span on the picture.

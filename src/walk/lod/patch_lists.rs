@@ -4,7 +4,7 @@ use sandtable_roam::graph::Vertex;
 use sandtable_roam::layout::PatchLayout;
 use sandtable_roam::shown::PatchList;
 
-/// Which lists are out of date.
+/// The lists that are out of date.
 #[derive(Clone, Copy, Debug)]
 pub enum Stale<'a> {
     /// All: what changed is not known.

@@ -1,4 +1,5 @@
-//! What a deferred mesh displays, as a surface for features: only the listed patches, as they were updated last.
+//! The displayed triangles of a deferred mesh as a surface for features: only the listed patches, as they were updated
+//! last.
 
 use glam::{DVec2, Vec3};
 

@@ -23,7 +23,7 @@ pub const NONE: u16 = u16::MAX;
 /// The middle of the patch, where refinement starts; before it only the four corners are numbered.
 pub const CENTER: u16 = 4;
 
-/// What activation changes around one vertex of a patch.
+/// The changes around one vertex of a patch when it is activated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TopologyNode {
     /// The corners around it; parents are 1 and 3, [`NONE`] outside the patch.

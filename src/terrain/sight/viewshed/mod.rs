@@ -1,4 +1,4 @@
-//! Which posts can be seen from one point.
+//! Viewsheds: the posts that can be seen from one point.
 //!
 //! The definition is one line of sight for each post (`Observer::sees`). The implementation is a `sweep` outward through
 //! wedges of the circle, which compares each post with the `horizon` of the ground before it and computes the line of

@@ -1,4 +1,4 @@
-//! How a ring stands over the one before: ground that faces the observer rises from each to the next, and then the new ring
+//! Compares a ring with the one before: ground that faces the observer rises from each to the next, and then the new ring
 //! alone is the horizon.
 //!
 //! ```text
