@@ -109,7 +109,7 @@ pub(super) enum RibbonShow {
 pub(super) struct Symbols<'a> {
     /// The lines that have any in view.
     pub draped: Vec<DrapedSymbol<'a>>,
-    /// How the features in view that are roads or rivers show.
+    /// The look of each road or river in view.
     pub shows: BTreeMap<FeatureId, RibbonShow>,
 }
 
