@@ -36,7 +36,7 @@ pub struct Arguments {
     /// Set a limit on input or work, as in raster-samples=1G; src/base/LIMITS.md lists them
     #[arg(long, global = true, value_name = "NAME=VALUE", value_parser = stated_limit)]
     pub limit: Vec<StatedLimit>,
-    /// Let elevation be read by its address from HOST, in a build with the feature `cloud`
+    /// Allow reading files by their addresses from HOST, in a build with the feature `cloud`
     #[arg(long, global = true, value_name = "HOST", value_parser = AllowedHost::parse)]
     pub allow_remote: Vec<AllowedHost>,
     #[command(subcommand)]

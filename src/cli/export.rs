@@ -41,7 +41,7 @@ pub struct ExportArguments {
     /// Write the scene to this file; the extension names the format: .glb, .obj, .html for browsers, .3mf or .stl to print
     #[arg(short, long, value_name = "OUT.glb|.obj|.html|.3mf|.stl")]
     pub output: PathBuf,
-    /// The largest error of the ground at any post, in meters [default: 1, of a page 0.5 or more by its size]
+    /// The largest error of the ground at any post, in meters [default: 1; for a page 0.5 or more, by its size]
     #[arg(long, value_name = "METERS", value_parser = number::<f64>(0.0.., "write meters as a number from 0 on"))]
     pub max_error: Option<f64>,
     /// The longer side of a printed model, in millimeters [default: 180]

@@ -40,7 +40,7 @@ pub struct FlyArguments {
     /// How long the flight takes [default: by its `speed`]
     #[arg(long, value_name = "SECONDS", value_parser = number::<f64>(0.01..=3600.0, "write seconds as a number from 0.01 to 3600"))]
     pub seconds: Option<f64>,
-    /// What draws: the processor, the same on every machine, or a graphics adapter
+    /// The renderer: the processor, the same on every machine, or a graphics adapter
     #[arg(long, default_value = "cpu", value_parser = choice::<BackendName>())]
     pub backend: BackendName,
 }

@@ -31,7 +31,7 @@ pub struct GridArguments {
     /// The side of a cell, in the unit of the points' x and y
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub cell: f64,
-    /// How heights between the points are found
+    /// The gridding method
     #[arg(long, value_enum, default_value_t)]
     pub method: MethodWord,
     /// A file of lines with elevations that the ground breaks along; may be given several times
@@ -46,7 +46,7 @@ pub struct GridArguments {
     /// What to cover [default: the points, out to multiples of the cell]
     #[arg(long, value_name = "W,S,E,N", allow_hyphen_values = true, value_parser = extent)]
     pub extent: Option<Rect>,
-    /// What cells outside the convex hull of the points hold
+    /// The value of cells outside the convex hull of the points
     #[arg(long, default_value = "nodata", value_parser = choice::<BeyondHull>())]
     pub beyond_hull: BeyondHull,
     /// The power of the distance by which weights fall; for idw and quadrant [default: 2 for idw, 1 for quadrant]

@@ -46,10 +46,10 @@ pub struct PointQueryArguments {
     /// The surface to query [default: source of a file, ground of a scene]
     #[arg(long, value_parser = choice::<Surface>())]
     pub surface: Option<Surface>,
-    /// How heights between posts are found
+    /// The interpolation of heights between posts
     #[arg(long, default_value = "bilinear", value_parser = choice::<Interpolation>())]
     pub interpolation: Interpolation,
-    /// Heights above the WGS 84 ellipsoid or the EGM96 geoid [default: what the model counts from]
+    /// Heights above the WGS 84 ellipsoid or the EGM96 geoid [default: the datum of the model]
     #[arg(long, value_parser = choice::<HeightDatum>())]
     pub above: Option<HeightDatum>,
 }

@@ -48,10 +48,10 @@ pub struct HeightArguments {
     /// A value that means no data, besides the one that the file declares
     #[arg(long, value_name = "VALUE", allow_negative_numbers = true)]
     pub nodata: Option<f64>,
-    /// What the colors of a PNG mean: terrain-rgb (Mapbox) or terrarium (Mapzen)
+    /// The encoding of heights in the colors of a PNG: terrain-rgb (Mapbox) or terrarium (Mapzen)
     #[arg(long, value_name = "ENCODING", conflicts_with_all = ["height_scale", "height_offset"])]
     pub height_encoding: Option<HeightEncoding>,
-    /// What heights are counted from: egm96, ellipsoid or a name [default: what the file states]
+    /// The vertical datum of the heights: egm96, ellipsoid or a name [default: the one that the file states]
     #[arg(long, value_name = "DATUM")]
     pub vertical_datum: Option<String>,
     /// The layout of a RAW file: 1201x1201:i16be, then :skip=BYTES and :nodata=VALUE

@@ -38,7 +38,7 @@ pub struct ProfileArguments {
     /// A file with the line: x,y a line of CSV, or the first line of a vector file; - reads CSV from standard input
     #[arg(long, value_name = "FILE", conflicts_with = "line")]
     pub points: Option<PathBuf>,
-    /// How heights between posts are found
+    /// The interpolation of heights between posts
     #[arg(long, default_value = "planar", value_parser = choice::<Interpolation>())]
     pub interpolation: Interpolation,
     /// Also a station every so many meters

@@ -52,7 +52,7 @@ pub struct RenderArguments {
     /// Write a picture for each phase, OUT-PHASE.png
     #[arg(long, conflicts_with = "phase")]
     pub all_phases: bool,
-    /// What draws: the processor, the same on every machine, or a graphics adapter
+    /// The renderer: the processor, the same on every machine, or a graphics adapter
     #[arg(long, default_value = "cpu", value_parser = choice::<BackendName>())]
     pub backend: BackendName,
     /// How many threads to use [default: one per core]; the picture is the same for any number

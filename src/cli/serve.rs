@@ -25,10 +25,10 @@ pub struct ServeArguments {
     /// Where to listen; port 0 takes a free one. Only this machine can reach 127.0.0.1, all can reach 0.0.0.0
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080", value_parser = address)]
     pub listen: SocketAddr,
-    /// A name by which clients reach the service, beside localhost and addresses in numbers; others are refused
+    /// A name by which clients reach the service, besides localhost and IP addresses; requests for other hosts are refused
     #[arg(long, value_name = "NAME")]
     pub host: Vec<String>,
-    /// What all paths begin with, behind a proxy that serves others beside it: /terrain puts /health at /terrain/health
+    /// The prefix of all paths, behind a proxy that serves other programs too: /terrain puts /health at /terrain/health
     #[arg(long, value_name = "PATH", value_parser = PathPrefix::parse)]
     pub prefix: Option<PathPrefix>,
     /// Write a line for each request to standard error: method, path, status, milliseconds

@@ -21,7 +21,7 @@ pub struct ServiceOptions {
     pub dataset: DatasetOptions,
     /// The address to listen at; port 0 takes a free one.
     pub listen: SocketAddr,
-    /// The names by which clients reach the service, beside `localhost` and addresses in numbers; requests for others are
+    /// The names by which clients reach the service, besides `localhost` and IP addresses; requests for others are
     /// refused.
     pub hosts: Vec<String>,
     /// What the paths of all addresses begin with.

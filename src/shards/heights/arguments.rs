@@ -24,7 +24,7 @@ pub struct HeightsArguments {
     pub points: PathBuf,
     /// The surface.
     pub surface: PlannedWord<Surface>,
-    /// How heights between posts are found.
+    /// The interpolation of heights between posts.
     pub interpolation: PlannedWord<Interpolation>,
     /// What heights are brought to count from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
