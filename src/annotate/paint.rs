@@ -30,7 +30,7 @@ pub struct ComposedSheet {
 }
 
 impl ComposedSheet {
-    /// Gives what is drawn, and the paper round the picture, other colors; the picture itself keeps its own.
+    /// Changes the colors of the furniture and of the paper around the picture; the picture itself keeps its own.
     pub fn recolor(&mut self, color: &dyn Fn(Srgba) -> Srgba) {
         for mark in self.drawings.iter_mut().flat_map(|drawing| &mut drawing.marks) {
             mark.color = color(mark.color);

@@ -1,4 +1,4 @@
-//! Elevation as it is read and written.
+//! Elevation models, as files hold them.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -111,7 +111,7 @@ impl Dem {
         &self.raster.samples
     }
 
-    /// The value that stands for no data in the file; `None` where it states none.
+    /// The nodata value of the file; `None` where it states none.
     pub fn nodata(&self) -> Option<f64> {
         self.raster.nodata
     }

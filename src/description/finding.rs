@@ -47,7 +47,7 @@ impl Severity {
 /// One finding.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
-    /// What was found.
+    /// The code.
     pub code: FindingCode,
     /// The bytes of the scene file that it is about; `None` where it is about none in particular.
     pub place: Option<SourcePlace>,

@@ -50,7 +50,7 @@ pub(super) struct Phases<'t> {
 }
 
 impl<'t> Phases<'t> {
-    /// The phases in the root table of a scene file, which is read for the one called `asked`, or for the first.
+    /// The phases in the root table of a scene file, which is read for the phase called `asked`, or for the first.
     pub fn read(root: &'t DeTable<'t>, asked: Option<&str>) -> Self {
         let tables = root.get("phase").and_then(|value| value.get_ref().as_array());
         let name = |table: &'t toml::Spanned<DeValue<'t>>| {
@@ -73,7 +73,7 @@ impl<'t> Phases<'t> {
         unused.map(|(name, span)| Stated::new((*name).to_owned(), span.clone())).collect()
     }
 
-    /// Whether what is there in the phases `stated` is there in the chosen one. Reports names of no phase.
+    /// Whether a feature of the phases `stated` exists in the chosen one. Reports names of no phase.
     pub fn hold(&mut self, stated: &Stated<Vec<String>>, report: &mut DiagnosticSink) -> bool {
         self.used.extend(stated.iter().cloned());
         let span = stated.span().unwrap_or_default();

@@ -197,7 +197,7 @@ pub enum GroundMapError {
 }
 
 impl GroundMap {
-    /// A map of level ground in one color, for lists whose colors nobody sees.
+    /// A map of level ground in one color, for draw lists without visible ground.
     pub fn level() -> Self {
         Self {
             origin: Vec2::ZERO,

@@ -76,7 +76,8 @@ pub fn level(size: PostCount, number: u32, row: impl Fn(usize) -> Vec<GroundPost
     GroundLevel { size, posts }
 }
 
-/// The post `[column, row]` of the level after one of `size` whose posts are those of `post`, as [`coarser_levels`] makes it.
+/// The post `[column, row]` of the next coarser level, as [`coarser_levels`] makes it, from a level of `size` that `post`
+/// returns.
 pub fn coarser_post(
     size: PostCount,
     post: impl Fn([u32; 2]) -> GroundPost,

@@ -41,7 +41,7 @@ pub struct DrapedPiece {
     pub material: MaterialId,
     /// The order among the features draped on the ground.
     pub layer: DepthLayer,
-    /// Whose it is.
+    /// The feature that it belongs to.
     pub feature: FeatureId,
 }
 
@@ -50,7 +50,7 @@ pub struct DrapedPiece {
 pub struct PatchDrapes {
     /// Which patch.
     pub patch: PatchId,
-    /// What lies on it; empty where there is nothing any more.
+    /// The draped parts; empty where none are left.
     pub pieces: Vec<DrapedPiece>,
 }
 

@@ -21,7 +21,7 @@ use sandtable_terrain::post_rect::PostRect;
 /// The most cells that a batter reaches, to bound the cost: a longer one ends in a step.
 const MAX_REACH: u32 = 64;
 
-/// Ground that is to be level.
+/// Ground to be leveled.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LevelGround {
     /// The outline and its holes, world X and Y, meters.

@@ -21,7 +21,7 @@ use toml_edit::{Document, Item, Table, TableLike, Value};
 
 use crate::edit::{EditPlace, EditValue, NewTable};
 
-/// Why a text cannot be changed as wanted.
+/// Why a text cannot be changed in this way.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum SceneTextError {

@@ -24,7 +24,7 @@ const MOST_PICTURES: u32 = 100_000;
 /// Places tried along the viewing direction for one that has ground.
 const TRIED: u16 = 400;
 
-/// A view that is to be drawn.
+/// A view to be drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ViewSnapshot {
     /// The scene as it is edited now, without the camera.

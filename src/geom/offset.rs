@@ -37,7 +37,7 @@ pub struct LineBend {
 }
 
 impl LineBend {
-    /// The bend at a vertex of a line; `None` at an end where nothing goes on.
+    /// The bend at a vertex of a line; `None` at an end that no line continues.
     pub fn at(points: &[DVec2], vertex: usize, beyond: Continuations, half: f64) -> Option<Self> {
         let before = vertex.checked_sub(1).map(|before| points[before]).or(beyond.before)?;
         let after = points.get(vertex + 1).copied().or(beyond.after)?;

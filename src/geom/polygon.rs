@@ -104,7 +104,8 @@ pub fn clip_convex(polygon: &mut Vec<DVec2>, scratch: &mut Vec<DVec2>, window: &
     }
 }
 
-/// Leaves in a convex `polygon` what lies to the left of the line `from`..`to` or on it. `scratch` is working space.
+/// Keeps the part of a convex `polygon` that lies to the left of the line `from`..`to` or on it. `scratch` is working
+/// space.
 pub fn clip_half_plane(polygon: &mut Vec<DVec2>, scratch: &mut Vec<DVec2>, (from, to): (DVec2, DVec2)) {
     scratch.clear();
     let side = |point: DVec2| (to - from).perp_dot(point - from);

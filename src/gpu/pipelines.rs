@@ -83,7 +83,7 @@ pub struct PassTarget {
     pub samples: u32,
 }
 
-/// The pipelines of a pass, each made when it is first asked for.
+/// The pipelines of a pass, each made at first use.
 #[derive(Clone, Debug)]
 pub struct Pipelines {
     target: PassTarget,

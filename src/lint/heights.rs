@@ -1,5 +1,5 @@
-//! Heights that data state, against the ground: offsets that are those of another vertical datum, and ratios that are those
-//! of feet.
+//! Heights in data compared with the ground: offsets like those between vertical datums, and ratios like that of feet to
+//! meters.
 //!
 //! Receivers of satellites give heights above the ellipsoid, maps heights above a geoid, which lies up to 106 m below it and
 //! 85 m above (EGM2008). A constant offset between the heights of a file and the ground, with a small spread, is most often

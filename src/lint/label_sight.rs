@@ -38,7 +38,7 @@ const LOOKED_AT: [[f32; 2]; 5] = [[0.0, 0.0], [-1.0, -2.0], [1.0, -2.0], [-1.0, 
 pub struct LabelSight {
     /// A picture in which they are hidden or not; all else is far away.
     pub picture: Rendering,
-    /// What stands before the place of a label, by its text.
+    /// The feature before the place of a label, by the label's text.
     pub behind: BTreeMap<String, FeatureId>,
 }
 

@@ -1,4 +1,5 @@
-//! Roads and bridges that no vehicle climbs, and embankments and cuttings that nobody builds.
+//! Roads and bridges that are too steep for vehicles, and embankments and cuttings that are too high or deep to be
+//! built.
 //!
 //! A road that lies on the ground is as steep as that; it is measured on the scene's ground, after all earthworks. A road
 //! that the ground follows keeps its grade, and pays for it in earth: its design is compared with the ground before. A bridge

@@ -14,7 +14,8 @@ use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::support_surface::SupportSurface;
 use sandtable_walk::pick::StandingIndex;
 
-/// The solids and the models that `is_wanted` takes by their feature and a rectangle around them, in world coordinates.
+/// The solids and models for which `is_wanted` returns true, given their feature and a rectangle around them in world
+/// coordinates.
 pub fn standing_index(scene: &SceneModel, is_wanted: &dyn Fn(FeatureId, &Rect) -> bool) -> StandingIndex {
     let mut list = DrawList::default();
     for solid in &scene.solids {

@@ -17,7 +17,8 @@ pub const SEEN_LINE: Srgba = Srgba::opaque(0, 130, 40);
 /// See [`SEEN_LINE`].
 pub const HIDDEN_LINE: Srgba = Srgba::opaque(200, 16, 24);
 
-/// The color of a graphic's lines: dark enough to be read on the lightest ground, light enough to be told from black.
+/// The color of a graphic's lines: dark enough to be read on the lightest ground, and light enough to differ from
+/// black.
 pub fn graphic_color(side: GraphicSide, tint: GraphicTint) -> Srgba {
     match tint {
         GraphicTint::Obstacle => OBSTACLE,

@@ -263,7 +263,8 @@ impl<'a> GraphicView<'a> {
         libm::atan2(up.x, up.y).to_degrees()
     }
 
-    /// Upward on the picture at a place, in the plane, as long as an upright figure is to be stretched there.
+    /// The direction upward on the picture at a place, in the plane; its length is the stretch of an upright figure
+    /// there.
     pub fn up(&self, at: DVec2) -> DVec2 {
         let offset = self.on_ground(at).as_dvec3() - self.camera.eye().as_dvec3();
         let [_, up, forward] = self.scale.axes(offset);

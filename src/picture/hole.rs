@@ -1,4 +1,4 @@
-//! Draw lists without what lies in a rectangle, and the skirts along its border.
+//! Cuts a rectangle out of draw lists, and makes the skirts along its border.
 
 use glam::{DVec2, Mat4, Vec3};
 

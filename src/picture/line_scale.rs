@@ -25,7 +25,7 @@ impl<'a> LineScale<'a> {
         Self { camera, px: px_scale(camera.size().1), turns: false }
     }
 
-    /// For an eye that turns around where the camera is: pixels as they are when it looks at the place.
+    /// The scale for an eye that turns around where the camera is: pixels as they are when it looks at the place.
     pub fn around(camera: &'a Camera) -> Self {
         Self { turns: camera.parallel_frame().is_none(), ..Self::new(camera) }
     }

@@ -1,4 +1,4 @@
-//! Draw lists with nested grounds: each ground and what lies and stands on it, without the part that a finer one shows.
+//! Draw lists with nested grounds: each ground with its features, without the part that a finer one shows.
 //!
 //! ```text
 //!  ───────┐   ┌──────────   The border between two grounds runs along posts of the coarser one, whose means differ from

@@ -60,7 +60,7 @@ fn borders(ground: PatchedGround<'_>) -> Borders {
 pub struct SeenTint(TintPlan);
 
 impl SeenTint {
-    /// The tint of the posts of a viewshed over `lattice`; `None` where nobody looked.
+    /// The tint of the posts of a viewshed over `lattice`; `None` where no post was examined.
     pub fn new(seen: &Viewshed, lattice: &Lattice) -> Option<Self> {
         sight::seen_tint(seen, lattice).map(Self)
     }
@@ -174,7 +174,7 @@ impl GroundSheets {
         [ribbons, symbols, tints, seen, graphics]
     }
 
-    /// Adds the texture of a tint to the materials: it is to be laid when a list has them.
+    /// Adds the texture of a tint to the materials, before the tint is draped.
     pub fn add_texture(&mut self, SeenTint(tint): &mut SeenTint) {
         let texture = tint.texture.take();
         let known = self.seen_material.and_then(|id| self.head.materials[id.0 as usize].texture);
@@ -187,8 +187,8 @@ impl GroundSheets {
         }
     }
 
-    /// Lays a tint whose texture was added over the ground, or takes away the one that lies there. It is not cut yet;
-    /// returns the patches in which what lies has changed.
+    /// Drapes a tint whose texture was added over the ground, or removes the current one. It is not cut yet; returns
+    /// the patches in which what lies has changed.
     pub fn lay_tint(&mut self, tint: Option<&SeenTint>) -> Vec<usize> {
         let laid = tint.zip(self.seen_material).map(|(SeenTint(tint), material)| {
             let (layer, feature) = (sight::TINT_LAYER, tint.feature);
@@ -353,7 +353,7 @@ impl GroundSheets {
         uppermost.map(|(_, feature)| feature)
     }
 
-    /// The largest clearance in meters between what was cut in `patches` and what is displayed there now.
+    /// The largest clearance in meters between the cut features of `patches` and the ground displayed there now.
     pub fn check(&self, patches: &[usize], ground: &dyn TriangleSurface) -> f64 {
         let of = |sheet: &DrapeSheet| sheet.drapes.check_in(&self.borders, patches, ground);
         self.sheets().into_iter().map(of).fold(0.0, f64::max)

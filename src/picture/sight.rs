@@ -54,7 +54,7 @@ pub(super) struct TintPlan {
     pub color: Srgba,
     /// What it shows where.
     pub texture: Option<Pixels>,
-    /// Whose it is.
+    /// The feature that it belongs to.
     pub feature: FeatureId,
 }
 

@@ -38,8 +38,8 @@ pub fn map_level(lattice: &Lattice) -> u32 {
     (0..most).find(|level| posts >> (2 * level) <= MOST_MAP_POSTS).unwrap_or(most)
 }
 
-/// `head`, whose materials keep their numbers, with the ground map, the light and all that stands, for an eye that turns
-/// around where `camera` is. `progress` is called with the name of each step as it begins.
+/// `head`, whose materials keep their numbers, with the ground map, the light, and all solids and models, for an eye
+/// that turns around where `camera` is. `progress` is called with the name of each step as it begins.
 pub fn standing(
     scene: &SceneModel,
     walked: WalkedGround<'_>,

@@ -1,4 +1,4 @@
-//! Rasters of what was computed for the posts of a lattice: bytes, with one of them for no data.
+//! Rasters of values computed for the posts of a lattice: bytes, with one of them for no data.
 
 use rayon::prelude::*;
 

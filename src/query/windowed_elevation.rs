@@ -159,8 +159,8 @@ impl WindowedElevation {
         Ok(QueriedGround { lattice: Arc::new(lattice), crs, vertical_datum })
     }
 
-    /// The ground of which these posts are held: what [`MetricGround::from_raster`](crate::ground::MetricGround::from_raster)
-    /// makes of the raster in memory, to the last bit.
+    /// The ground with these posts in memory: that of [`MetricGround::from_raster`](crate::ground::MetricGround::from_raster)
+    /// for the raster in memory, bit for bit.
     ///
     /// # Errors
     /// The raster has no ground, or cannot be read.

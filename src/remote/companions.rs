@@ -30,7 +30,7 @@ impl<E, F: Fn(&str) -> FoundCompanion<E>> CompanionFiles<F, E> {
         })
     }
 
-    /// Whether all that were asked for could be looked for.
+    /// Whether all companions could be looked for.
     ///
     /// # Errors
     /// The first error since the last check.

@@ -21,8 +21,8 @@ impl CutPart {
         Self::default().renewed(plan, ground, |_| true)
     }
 
-    /// This cut of `plan`, cut again where the displayed triangles have changed, which is within `areas`; `None` where nothing
-    /// of it lies there. The same as [`CutPart::of`], bit for bit.
+    /// This cut of `plan`, cut again where the displayed triangles have changed, which is within `areas`; `None` where no
+    /// part of it lies there. The same as [`CutPart::of`], bit for bit.
     pub fn recut(&self, plan: &PlanMesh, ground: &dyn TriangleSurface, areas: &[Rect]) -> Option<Self> {
         let is_stale = |corners: [PlanVertex; 3]| {
             let bounds = bounds(corners);

@@ -20,8 +20,7 @@ use sandtable_terrain::triangle_surface::{SurfaceTriangle, TriangleSurface, plan
 /// Pieces smaller than this are rounding left over where edges coincide.
 const SLIVER_M2: f64 = 1e-7;
 
-/// Writes `plan` cut to the displayed triangles of `ground` to `sink`; what lies off the displayed ground is
-/// left out.
+/// Writes `plan` cut to the displayed triangles of `ground` to `sink`; parts off the displayed ground are left out.
 pub fn drape(plan: &PlanMesh, ground: &dyn TriangleSurface, sink: &mut impl MeshSink<DrawVertex>) {
     let mut draper = Draper::default();
     plan.corners().for_each(|corners| draper.lay(corners, ground, sink));

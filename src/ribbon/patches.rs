@@ -146,13 +146,13 @@ impl Drapes {
         Self { cut: vec![Vec::new(); patches.len()], parts: DrapeParts(Arc::new(patches)) }
     }
 
-    /// The parts, as they are before they are cut.
+    /// The draped features before they are cut.
     pub fn parts(&self) -> &DrapeParts {
         &self.parts
     }
 
-    /// Exchanges what was cut of patches with what was cut of them on another thread. Does nothing where that was cut of
-    /// other parts; returns whether it was of these.
+    /// Exchanges the cut features of patches with those that were cut on another thread. Does nothing where that was cut
+    /// of other parts; returns whether it was of these.
     pub fn exchange(&mut self, other: &mut CutDrapes) -> bool {
         let is_own = Arc::ptr_eq(&self.parts.0, &other.of.0);
         if is_own {
@@ -191,7 +191,7 @@ impl Drapes {
         self.parts.in_patch(of.patch).iter().enumerate().map(cut).collect()
     }
 
-    /// The ribbons in a patch, as places among the plans given, and what was cut of each; none where it was never cut.
+    /// The ribbons in a patch, as places among the plans given, and the cut of each; none if it was never cut.
     pub fn in_patch(&self, patch: usize) -> impl Iterator<Item = (usize, &DrawMesh)> {
         let cut = self.cut.get(patch).into_iter().flatten();
         self.parts.in_patch(patch).iter().zip(cut).map(|((ribbon, _), cut)| (*ribbon, cut.mesh()))
@@ -212,7 +212,7 @@ impl Drapes {
         self.parts.0.iter().filter(|parts| !parts.is_empty()).count()
     }
 
-    /// The largest clearance in meters between what was cut and what is displayed now: 0 but for rounding where every
+    /// The largest clearance in meters between the cut features and the displayed ground: 0 but for rounding if every
     /// patch that changed was cut again. See [`check_clearance`].
     pub fn check(&self, ground: &dyn TriangleSurface) -> f64 {
         let cut: Vec<&DrawMesh> = self.cut.iter().flatten().map(CutPart::mesh).collect();

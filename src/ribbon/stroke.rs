@@ -56,7 +56,7 @@ pub struct StrokePath<'a> {
     pub alignment: &'a Alignment,
     /// What continues it at its ends.
     pub beyond: Continuations,
-    /// The stations of its texture, so that this goes on from one ribbon to the next.
+    /// The stations of its texture, so that the texture continues from one ribbon to the next.
     pub link: ChainLink,
 }
 

@@ -172,7 +172,7 @@ impl DynamicTerrain {
         self.options.reach
     }
 
-    /// The task of making the spheres anew for another reach.
+    /// The task of recomputing the spheres for another reach.
     pub fn sphere_task(&self, reach: f32) -> SphereTask {
         SphereTask {
             options: DynamicOptions { reach, ..self.options },

@@ -17,7 +17,7 @@ use crate::roughness::Roughness;
 use crate::spheres::SphereMap;
 use sandtable_terrain::lattice::Lattice;
 
-/// Spheres that are to be made. While it is kept, the next edit copies heights and errors.
+/// A task that makes spheres. While it is kept, the next edit copies heights and errors.
 #[derive(Clone, Debug)]
 pub struct SphereTask {
     pub(super) options: DynamicOptions,

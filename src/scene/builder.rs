@@ -35,7 +35,7 @@ pub struct SceneBuilder {
     pub decks: Vec<SurfaceTriangle>,
     /// Lakes with their levels.
     pub lakes: Vec<LakeSurface>,
-    /// What was found, for the user.
+    /// The findings so far, for the user.
     pub findings: SceneFindings,
     /// The number of expressions without a value, by key and default.
     pub default_counts: DefaultCounts,
@@ -48,7 +48,7 @@ pub struct SceneBuilder {
 }
 
 impl SceneBuilder {
-    /// Nothing but what was found so far.
+    /// An empty scene with the findings so far.
     pub fn new(findings: SceneFindings) -> Self {
         Self {
             ribbons: Vec::new(),

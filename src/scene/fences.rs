@@ -232,7 +232,7 @@ fn dig(line: &FenceLine, name: &str, lattice: &mut Lattice, collected: &mut Scen
     true
 }
 
-/// Sets the lines on the ground as it is now: boundaries and the floors of trenches as ribbons, the rest upright.
+/// Builds the lines on the ground as it is now: boundaries and the floors of trenches as ribbons, the rest upright.
 pub fn set(lines: &[FenceLine], ground: DrawnGround<'_>, collected: &mut SceneBuilder) {
     let mut added = 0;
     let extent = ground.lattice.extent();

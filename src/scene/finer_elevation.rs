@@ -37,8 +37,8 @@ pub fn level_samples() -> u64 {
     (PICTURED_SAMPLES.get() / LEVEL_SHARE).max(1)
 }
 
-/// The document of the part of a scene in a rectangle of world space: without what the outer scene draws, and what stands
-/// elsewhere.
+/// The document of the part of a scene in a rectangle of world space, without things that the outer scene draws or that
+/// stand elsewhere.
 ///
 /// # Errors
 /// The rectangle has no place in the system of inline points.

@@ -136,7 +136,7 @@ impl SceneFlight {
         self.path.length()
     }
 
-    /// Fixes the direction of the light as it is in a picture of `camera`, where the scene states none: light that follows
+    /// Fixes the direction of the light to that of a picture of `camera`, where the scene states none: light that follows
     /// the eye would turn the shadows.
     pub fn hold_light(scene: &mut SceneModel, camera: &Camera) {
         let to_sun = scene.sunlight.to_sun(Some(camera));

@@ -36,7 +36,7 @@ pub struct LoadedGround {
     pub stated_crs: Crs,
     /// A note where the two differ; it is among `findings`.
     pub scale_note: Option<String>,
-    /// What was found, for the user.
+    /// The findings, for the user.
     pub findings: SceneFindings,
     /// The side of the squares of samples that its heights are means of, where pictures show nested grounds of more samples.
     pub nests_step: Option<u32>,

@@ -46,7 +46,7 @@ pub fn widths_m(stated: Option<&Vec<f64>>, shape: &[DVec2]) -> Option<Vec<f64>> 
 
 /// A plan mesh that leaves out triangles that cannot meet the ground.
 pub struct Clipped<'a> {
-    /// What was not left out.
+    /// The triangles that are kept.
     pub plan: PlanMesh,
     /// Where the ground is.
     pub extent: &'a Rect,

@@ -18,7 +18,7 @@ pub struct SceneFindings {
     list: Vec<Finding>,
 }
 
-/// A table of features, for messages about what was left out of it.
+/// A table of features, for messages about features that were left out.
 #[derive(Clone, Copy, Debug)]
 pub struct FeatureTable<'a> {
     /// What its features are.

@@ -18,7 +18,7 @@ pub struct SceneGraphic {
     pub width_m: Option<f64>,
     /// Its texts and numbers.
     pub fields: GraphicFields,
-    /// Whose it is.
+    /// The side that it belongs to.
     pub side: GraphicSide,
     /// Whether it is there.
     pub status: GraphicStatus,

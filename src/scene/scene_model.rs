@@ -1,4 +1,4 @@
-//! The scene as it was built: the ground, the features on it, labels and views, with what pictures compute of them on first use.
+//! The built scene: the ground, the features on it, labels and views, with data that pictures compute on first use.
 
 use std::sync::{Arc, OnceLock};
 
@@ -154,7 +154,7 @@ pub struct SceneModel {
 }
 
 impl SceneModel {
-    /// The ground as it is drawn, made on first use; what is measured of it is measured when it is first asked for.
+    /// The ground as it is drawn, made on first use; its measures are computed at first use, too.
     pub fn ground(&self) -> &MeasuredGround {
         self.ground.get_or_init(|| MeasuredGround::with_layout(self.scale.drawn(&self.lattice), self.layout))
     }

@@ -1,4 +1,4 @@
-//! A view of the scene: from where it looks, and whereto.
+//! A view of the scene: its eye and its target.
 
 use glam::{DVec2, Vec3};
 
@@ -10,7 +10,7 @@ use sandtable_geom::rect::Rect;
 pub struct SceneView {
     /// Its name on the command line.
     pub name: String,
-    /// From where it looks, and whereto.
+    /// The eye and the target.
     pub aim: ViewAim,
     /// Vertical field of view in radians; without effect on parallel rays.
     pub fov_y_rad: f32,

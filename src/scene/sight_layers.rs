@@ -33,7 +33,7 @@ pub struct SceneRange {
     pub distances_m: Vec<f64>,
     /// The sector.
     pub sector: Sector,
-    /// Whose it is.
+    /// The side that it belongs to.
     pub side: GraphicSide,
     /// Whether the ground within it is filled.
     pub fill: RangeExtent,

@@ -319,8 +319,8 @@ impl<'a> Sources<'a> {
         Ok(placed)
     }
 
-    /// Measures where the features of a file lie of which none found its place: those that are not placed as lines, polygons
-    /// or points are not measured otherwise. What cannot be transformed is left out.
+    /// Measures the places of those features of a file that were not placed as lines, polygons or points, which are not
+    /// measured otherwise. What cannot be transformed is left out.
     ///
     /// # Errors
     /// The file cannot be read or holds no feature that matches.

@@ -1,4 +1,4 @@
-//! Spot heights: elevations at summits, saddles and lakes that nobody has named.
+//! Spot heights: elevations at unnamed summits, saddles and lakes.
 
 use glam::Vec2;
 

@@ -1,4 +1,4 @@
-//! `/v1/los`: whether one point can be seen from another, and what stands between.
+//! `/v1/los`: whether one point can be seen from another, and the first obstacle between them.
 //!
 //! ```text
 //! {"dataset":"a","sight":"Blocked","visible":false,"distance_m":4201.5,

@@ -1,4 +1,4 @@
-//! The inputs of a plan: which files they are, and whether they still are what was planned with.
+//! The inputs of a plan: their files, and whether they have changed since.
 //!
 //! Files that are not large together are compared by their content. Of others, which every worker would have to read for that,
 //! the size, the time of the last change and both ends are compared: what a program writes anew differs in one of them, and
@@ -39,7 +39,7 @@ const COMPANIONS: [&str; 4] = ["prj", "hdr", "msk", "wld"];
 /// Those of world files, of which a server is asked by name.
 const WORLD_FILES: [&str; 3] = ["tfw", "blw", "pgw"];
 
-/// An input of a plan, as it was then.
+/// An input of a plan, as it was when the plan was made.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlanInput {

@@ -5,8 +5,8 @@ use std::path::{Component, Path, PathBuf};
 
 use sandtable_remote::address::is_address_path;
 
-/// The path to a file as it is written into a plan in `folder`, which is there. A relative one is so to `folder` then, with
-/// `/` between its parts.
+/// The path to a file as it is written into a plan in `folder`, which must exist. A relative one is so to `folder` then,
+/// with `/` between its parts.
 pub fn written(path: &Path, folder: &Path) -> PathBuf {
     if path.is_absolute() { path.to_owned() } else { relative(path, folder) }
 }
@@ -16,7 +16,8 @@ pub fn place(written: &Path, folder: &Path) -> PathBuf {
     if is_address_path(written) { written.to_owned() } else { folder.join(written) }
 }
 
-/// The way from `folder`, which is there, to a file; the file's own path where there is none, and an address.
+/// The relative path from `folder`, which must exist, to a file; the file's own path where there is none, and an
+/// address.
 pub fn relative(path: &Path, folder: &Path) -> PathBuf {
     if is_address_path(path) {
         return path.to_owned();

@@ -32,7 +32,7 @@ pub fn is_done(plan: &ShardPlan, id: usize) -> bool {
 }
 
 impl ShardWorker {
-    /// Checks that the inputs of a plan are those that were planned with, and opens them.
+    /// Checks that the inputs of a plan have not changed, and opens them.
     ///
     /// # Errors
     /// An input has changed or cannot be opened, or an argument is wrong.

@@ -42,7 +42,7 @@ pub fn apply_look(scene: &SceneModel, camera: &Camera, picture: &mut Rendering) 
     }
 }
 
-/// A color of what is drawn on the scene in the night look: dark letters are bright, and their paper is dark.
+/// A color of the annotations in the night look: dark letters are bright, and their paper is dark.
 pub fn night_ink(color: Srgba) -> Srgba {
     let dark = 1.0 - luminance(color.linear());
     Srgba([srgb_from_linear(dark * dark * BRIGHTEST_INK), 0, 0, color.0[3]])

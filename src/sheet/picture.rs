@@ -45,7 +45,7 @@ pub struct DrawnView {
     pub camera: Camera,
     /// The picture, opaque, with depths and features.
     pub picture: Rendering,
-    /// What was drawn.
+    /// The draw list.
     pub drawn: ViewDraw,
     /// The page that it is part of; `None` where it is the page.
     pub frame: Option<SheetFrame>,

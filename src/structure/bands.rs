@@ -67,7 +67,7 @@ pub fn bare_m(width_m: f64) -> f64 {
     width_m * (1.0 + 2.0 * PARAPET_WIDTH)
 }
 
-/// The banks of earth on either side of a trench as wide as an alignment, thrown up from what was dug out.
+/// The banks of excavated earth on either side of a trench as wide as an alignment.
 pub fn parapets(alignment: &Alignment, size: BandSize) -> [FenceBand; 2] {
     let width_m = 2.0 * (alignment.width.widest_m() * (0.5 + PARAPET_WIDTH));
     let track = Alignment::on_ground(alignment.line.clone(), width_m);

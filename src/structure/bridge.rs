@@ -69,7 +69,8 @@ pub struct BridgeOptions {
     pub depth_m: f64,
     /// Stations of the piers, in meters.
     pub piers_m: Vec<f64>,
-    /// How far the abutments at its start and end reach below it, in meters; `None` where it goes on in another bridge.
+    /// The depth to which the abutments at its start and end reach below it, in meters; `None` where another bridge
+    /// continues it.
     pub abutments_m: [Option<f64>; 2],
     /// How its start and end lie across.
     pub across: [Across; 2],
@@ -107,7 +108,7 @@ pub fn deck(sections: &[DeckSection]) -> Vec<SurfaceTriangle> {
     carriageway(sections).map(|corners| corners.map(|(section, side)| section.edges()[side])).collect()
 }
 
-/// Ends the parapets where one of the other carriageways of `decks` goes on beside their own, `width_m` wide.
+/// Ends the parapets where one of the other carriageways of `decks` continues beside their own, `width_m` wide.
 pub fn end_parapets(sections: &mut [DeckSection], width_m: f64, decks: &Deck) {
     let middle = 1.0 + PARAPET_THICK_M * magnified(width_m) / width_m;
     for section in sections {

@@ -167,7 +167,7 @@ impl SymbolCode {
         )
     }
 
-    /// The code of the kind alone, without what tells one of them from another.
+    /// The code of the kind alone, without the fields that distinguish single symbols of it.
     pub fn kind(&self) -> Self {
         Self {
             context: SymbolContext::Reality,

@@ -1,4 +1,4 @@
-//! A whole symbol: frame, icon, modifiers and what is drawn at the frame, from its code.
+//! A whole symbol: frame, icon, modifiers and amplifiers, from its code.
 //!
 //! ```text
 //!         ┌──┐            task force, echelon, feint or dummy
@@ -28,7 +28,7 @@ const WHITE: [u8; 3] = [255, 255, 255];
 /// In the frame of a thing of an unknown set.
 const UNKNOWN_SET: &str = "text 80 ?";
 
-/// A symbol in its box of 200 × 200 units, Y down; what is drawn at the frame may leave the box.
+/// A symbol in its box of 200 × 200 units, Y down; amplifiers may leave the box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MilitarySymbol {
     /// In drawing order.

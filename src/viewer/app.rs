@@ -1,4 +1,4 @@
-//! All of the window but its surface: what is open, what is shown, what the user asked for.
+//! The state of the window without its surface: what is open, what is shown, what the user requested.
 
 use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
@@ -209,7 +209,7 @@ impl ViewerApp {
         self.detail.wireframe
     }
 
-    /// The renderer lost the scene: it takes over all of it again.
+    /// Loads the whole scene again, because the renderer has lost it.
     pub fn reload_scene(&mut self) {
         if let Some(opened) = &mut self.opened {
             opened.reload();

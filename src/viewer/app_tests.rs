@@ -1,4 +1,4 @@
-//! The window without a window: panels, keys and clicks act on a scene, and nothing is lost unasked.
+//! The window without a surface: panels, keys and clicks act on a scene, and no edit is lost without a question.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};

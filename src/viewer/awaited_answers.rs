@@ -1,4 +1,4 @@
-//! Answers to what the user asked that take reading a file, while they are awaited.
+//! Awaited answers to requests of the user that need reading a file.
 
 use crate::measuring::Measuring;
 use crate::worker::WorkerJob;
@@ -11,9 +11,9 @@ pub type PickJob = WorkerJob<Result<Option<WalkPick>, DiskGroundError>>;
 /// Answers that are awaited; a newer question takes the place of the one before.
 #[derive(Default)]
 pub struct DiskAnswers {
-    /// What was clicked at.
+    /// The last click.
     pub pick: Option<PickJob>,
-    /// What was measured last.
+    /// The last measurement.
     pub measuring: Option<WorkerJob<Measuring>>,
 }
 

@@ -1,4 +1,4 @@
-//! Answers that take reading a file: what was clicked at and what is measured on terrain that is not in memory.
+//! Answers that need reading a file: picks and measurements on terrain that is not in memory.
 
 use std::sync::Arc;
 

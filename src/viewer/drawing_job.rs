@@ -8,7 +8,7 @@ use sandtable_editing::view_snapshot::ViewSnapshot;
 
 /// A picture that is being drawn.
 pub struct DrawingJob {
-    /// What is drawn.
+    /// The view that is drawn.
     pub snapshot: ViewSnapshot,
     job: WorkerJob<Result<PathBuf, String>>,
 }

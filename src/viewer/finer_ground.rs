@@ -71,7 +71,7 @@ impl FinerGround {
         self.job.is_some()
     }
 
-    /// The renderer starts anew.
+    /// Hands all windows over again, to a renderer that starts again.
     pub fn forget_handed(&mut self) {
         self.is_lost = self.ready.is_none();
     }
@@ -139,7 +139,7 @@ impl Drop for FinerGround {
 }
 
 impl OpenedScene {
-    /// Takes over the window that was made meanwhile, and begins to make the next one that the camera lacks.
+    /// Takes over a window that has become ready, and begins to make the next one that the camera lacks.
     ///
     /// # Errors
     /// Why there are no windows from now on; those before stay.

@@ -56,7 +56,7 @@ pub struct LineNames {
 }
 
 impl LineNames {
-    /// Whether a label of the scene is to be placed at its place: it has no line, or found no room along it.
+    /// Whether a label of the scene must be drawn at its place, because it has no line, or found no room along it.
     pub fn is_at_place(&self, label: usize) -> bool {
         self.courses.get(label).is_none_or(Option::is_none) || self.failed.contains(&label)
     }

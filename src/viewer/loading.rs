@@ -1,4 +1,4 @@
-//! Opening a file on a thread, so that the window goes on answering.
+//! Opens a file on a thread, so that the window stays responsive.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -157,7 +157,7 @@ pub(super) fn load_paged(
     Ok(LoadedFile { opened: Box::new(opened), editor: None, source, fingerprint: None })
 }
 
-/// The text of an error, beginning with the place in the scene file where there is one.
+/// The text of an error, beginning with the place in the scene file, if it has one.
 pub fn opening_error(error: &(dyn std::error::Error + 'static)) -> String {
     let mut causes = std::iter::successors(Some(error), |&error| error.source());
     match causes.find(|cause| cause.is::<Diagnostic>() || cause.is::<Diagnostics>()) {

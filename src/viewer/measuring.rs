@@ -66,7 +66,7 @@ impl Measuring {
         Self { kind, points: Vec::new(), facts: Vec::new(), profile: Vec::new(), is_done: false }
     }
 
-    /// Adds a place; begins anew after a measurement that was finished. What it comes to is still to be measured.
+    /// Adds a place; starts again after a finished measurement. What it comes to is still to be measured.
     pub fn click(&mut self, at: DVec2) {
         if self.is_done || self.points.len() >= self.kind.most_points() {
             *self = Self::new(self.kind);

@@ -1,4 +1,4 @@
-//! An open scene: its walk, its camera, what of it is shown, and what the renderer has to take over.
+//! An open scene: its walk, its camera, the features shown, and the changes for the renderer.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -375,20 +375,20 @@ impl OpenedScene {
         Ok((self.without_hidden(frame.changes), frame.statistics))
     }
 
-    /// Hands everything over again: to a renderer that starts anew.
+    /// Hands everything over again, to a renderer that starts again.
     pub fn reload(&mut self) {
         self.load = Some(SceneLoad::unprepared(&self.list));
         self.shadows.forget();
     }
 
-    /// Hides these features and shows all others, as soon as they are there.
+    /// Hides these features and shows all others, as soon as the new lists are ready.
     pub fn hide(&mut self, hidden: &BTreeSet<FeatureId>) {
         self.hidden.clone_from(hidden);
         self.walk.renew_laid();
         self.relist();
     }
 
-    /// Moves the sun; the ground is lit anew as soon as that is computed.
+    /// Moves the sun; the new light is shown as soon as it is computed.
     pub fn set_sun(&mut self, to_sun: Vec3) {
         self.wanted_sun = to_sun;
         self.relist();

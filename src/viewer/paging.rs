@@ -96,7 +96,7 @@ pub struct PagesKept {
 pub struct PagedTerrain {
     /// Samples per row, and rows.
     pub size: (u32, u32),
-    /// What is kept.
+    /// The pages in memory.
     pub kept: PagesKept,
     stage: PagingStage,
     requests: Sender<PagingRequest>,
@@ -115,7 +115,8 @@ pub struct PagedTerrain {
 }
 
 impl PagedTerrain {
-    /// Begins to read the terrain, of which `questions` are asked by jobs; `wake` is called when [`PagedTerrain::follow`] has news.
+    /// Begins to read the terrain; jobs query it through `questions`. `wake` is called when [`PagedTerrain::follow`] has
+    /// news.
     ///
     /// # Errors
     /// The file is no lattice.
@@ -178,7 +179,7 @@ impl PagedTerrain {
         self.is_busy || self.kept.waiting > 0
     }
 
-    /// Takes over what the thread has sent.
+    /// Takes over the results of the thread.
     pub fn follow(&mut self) {
         loop {
             match self.news.try_recv() {
@@ -204,7 +205,7 @@ impl PagedTerrain {
         }
     }
 
-    /// Hands everything over again: to a renderer that starts anew.
+    /// Hands everything over again, to a renderer that starts again.
     pub fn forget_handed(&mut self) {
         (self.is_anew, self.asked, self.arrived) = (true, None, None);
         self.heights.iter_mut().for_each(PageHeights::clear);
@@ -279,7 +280,7 @@ impl Drop for PagedTerrain {
     }
 }
 
-/// The file of a terrain, to be asked on any thread but the window's.
+/// The file of a terrain, for queries on any thread but the window's.
 #[derive(Clone)]
 pub struct DiskQuestions(Arc<Mutex<DiskGround<ElevationWindows>>>);
 

@@ -1,4 +1,4 @@
-//! The window over a file that is larger than it holds: an overview at once, pages as they are read, exact answers.
+//! The window over a file that is larger than memory: an overview at once, pages as they are read, exact answers.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -5,7 +5,7 @@ use glam::DVec2;
 use sandtable_draw::list::FeatureId;
 use sandtable_editing::edit::EditPlace;
 
-/// The table that states what was picked.
+/// The table that states the picked thing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PickedPart {
     /// The table.

@@ -16,7 +16,7 @@ pub struct PlaceText {
     pub grid: String,
     /// The ground's height, with its surface.
     pub height: String,
-    /// The height of what stands there, where it is another.
+    /// The height of the object there, where it differs from the ground.
     pub top: String,
     /// The ground's slope, with the direction that it faces.
     pub slope: String,

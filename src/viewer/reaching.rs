@@ -11,7 +11,7 @@ impl OpenedScene {
         self.reaching.is_some()
     }
 
-    /// Takes over the ground that was made meanwhile, and begins to make another where the picture needs it.
+    /// Takes over a ground that has become ready, and begins to make another where the picture needs it.
     ///
     /// # Errors
     /// A fault of the program; the ground before stays.

@@ -37,7 +37,7 @@ impl OpenedScene {
         self.wants_list || self.relisting.is_some()
     }
 
-    /// Takes over the list that was made meanwhile, and begins the next one that was asked for.
+    /// Takes over a list that has become ready, and begins the next one that was requested.
     ///
     /// # Errors
     /// See [`RelistingError`].

@@ -46,7 +46,7 @@ impl ShadowState {
         (self.made_for, self.job, self.ready) = (Some(camera), None, None);
     }
 
-    /// Marks the shadows as outdated: the ground, or what stands on it, has changed.
+    /// Marks the shadows as outdated: the ground, or an object on it, has changed.
     pub fn forget(&mut self) {
         self.made_for = None;
     }

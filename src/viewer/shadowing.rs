@@ -25,7 +25,7 @@ const STALE_COSINE: f32 = 0.9976;
 const LEAST_HEIGHT_M: f32 = 20.0;
 
 impl OpenedScene {
-    /// Takes over the shadows that were made meanwhile, and begins to make others where the camera rests elsewhere.
+    /// Takes over shadows that have become ready, and begins to make others where the camera rests elsewhere.
     ///
     /// # Errors
     /// See [`RelistingError`]; the shadows before stay.

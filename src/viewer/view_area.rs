@@ -100,7 +100,7 @@ impl ViewArea {
         Id::unique("view of the scene")
     }
 
-    /// Forgets what was drawn over a scene before.
+    /// Forgets the drawings over the last scene.
     pub fn forget(&mut self) {
         self.labels = LabelLayer::default();
         self.symbols.clear();

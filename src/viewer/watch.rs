@@ -46,7 +46,7 @@ impl FileWatch {
         (count > 0).then_some(Self { changed, last: None, _watcher: watcher })
     }
 
-    /// Whether files changed and rest now, at `now`; else how long until it should be asked again.
+    /// Whether files changed and have settled, at `now`; else how long until the next poll.
     pub fn poll(&mut self, now: Instant) -> WatchState {
         if self.changed.try_iter().count() > 0 {
             self.last = Some(now);

@@ -67,7 +67,7 @@ pub(super) struct NearestSites {
 }
 
 impl NearestSites {
-    /// For searches of the `wanted` nearest, at least 1.
+    /// Memory for searches of the `wanted` nearest, at least 1.
     pub fn new(wanted: usize) -> Self {
         Self { q: DVec2::ZERO, near: Vec::new(), wanted, limit2: 0.0 }
     }

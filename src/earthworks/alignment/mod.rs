@@ -111,7 +111,7 @@ impl Width {
     }
 }
 
-/// A line in world coordinates with what is known along it.
+/// A line in world coordinates with its levels, width and support.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Alignment {
     /// The centerline.

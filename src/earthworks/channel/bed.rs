@@ -109,7 +109,7 @@ impl ChannelBed {
         self.posts.binary_search(&post).expect("the bed holds every post that is touched or wished for")
     }
 
-    /// Gives the lattice the bed's heights, and adds what was moved to the channels it counts for.
+    /// Sets the lattice to the bed's heights, and adds the earth moved to the channels it counts for.
     pub fn dig(&self, lattice: &mut Lattice, cuts: &mut [Cut]) {
         let cell_m2 = lattice.cell_m2();
         for (place, &index) in self.posts.iter().enumerate() {

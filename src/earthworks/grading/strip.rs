@@ -71,7 +71,7 @@ pub struct GradingStrip {
     pub alignment: Alignment,
     /// Across.
     pub section: CrossSection,
-    /// What stands at its ends.
+    /// The ends of the strip.
     pub ends: [StripEnd; 2],
 }
 

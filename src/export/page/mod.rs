@@ -43,7 +43,7 @@ const LEAST_VERTEX_BYTES: usize = 2;
 /// A scene for a page.
 #[derive(Clone, Copy)]
 pub struct PageScene<'a> {
-    /// What is drawn, with its ground map.
+    /// The draw list, with its ground map.
     pub list: &'a DrawList,
     /// When the item of an index is shown.
     pub range_of: &'a dyn Fn(usize) -> ShowRange,

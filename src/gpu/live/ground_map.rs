@@ -14,7 +14,7 @@ use sandtable_draw::ground_levels::{GroundLevel, PostCount, coarser_levels, coar
 use sandtable_draw::list::DrawListError;
 use sandtable_draw::patches::GroundMapPatch;
 
-/// A map and what was changed of it.
+/// A map and its changes.
 ///
 /// Changes are kept by rows: a copy of a large map would take longer than a frame, and so would its coarser levels, which
 /// are therefore made with it, but for the first: its posts follow from few others.
@@ -69,7 +69,7 @@ impl EditedMap {
         self.map.as_deref()
     }
 
-    /// Takes over a change and sends it; returns the bytes sent.
+    /// Applies a change and sends it; returns the bytes sent.
     ///
     /// # Errors
     /// [`GpuError::List`] where it does not lie on the map.

@@ -88,7 +88,7 @@ pub struct UploadedBytes {
     pub vertices: u64,
     /// Triangles of the ground.
     pub triangles: u64,
-    /// What lies on the ground.
+    /// Draped features.
     pub drapes: u64,
     /// Posts of the ground map.
     pub map: u64,
@@ -234,8 +234,8 @@ impl LiveRenderer {
         &self.gpu
     }
 
-    /// Takes over a scene: its materials, ground map and light, and all items that neither are ground nor lie on it. The
-    /// ground and what lies on it are those of the updates that follow.
+    /// Loads a scene: its materials, ground map and light, and all items except the ground and draped ones. The ground
+    /// and what lies on it are those of the updates that follow.
     ///
     /// # Errors
     /// See [`GpuError`]; the scene loaded before stays.
@@ -432,8 +432,8 @@ impl LiveRenderer {
         drawn
     }
 
-    /// What the picture of `camera` shows at the position `pixel`, in pixels from its upper left corner; `None` for the
-    /// sky, for what lies outside, and before a scene is loaded. Waits for the device.
+    /// The feature and the depth at the position `pixel` of the picture of `camera`, in pixels from its upper left
+    /// corner; `None` for the sky, outside the picture, and before a scene is loaded. Waits for the device.
     ///
     /// # Errors
     /// See [`GpuError`].

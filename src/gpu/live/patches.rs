@@ -1,4 +1,4 @@
-//! The ground and what lies on it on the device, patch by patch.
+//! The ground and its draped features on the device, patch by patch.
 //!
 //! A patch's vertices are stored once; its index list of 16 bits an index and what lies on it are stored anew when they
 //! change, and nothing else is ever sent.
@@ -139,7 +139,7 @@ impl PatchStore {
         }
     }
 
-    /// Takes over the materials of the store of another list, in which those of what is stored have the same numbers.
+    /// Takes over the materials of another list, in which the stored features have the same material numbers.
     pub fn adopt_materials(&mut self, other: Self) {
         self.materials = other.materials;
     }
@@ -239,7 +239,7 @@ impl PatchStore {
         drawn
     }
 
-    /// Draws what lies on patches.
+    /// Draws the draped features of patches.
     pub fn draw_drapes(
         &self,
         pass: &mut ScenePass<'_, '_>,

@@ -46,7 +46,7 @@ impl PickTarget {
         pass
     }
 
-    /// Waits for what was drawn; `None` for the sky.
+    /// Waits for the result; `None` for the sky.
     pub fn read(
         &self,
         gpu: &Gpu,

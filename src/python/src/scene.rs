@@ -14,7 +14,7 @@ use crate::findings::PyFinding;
 /// Pixels on a side of a picture, least and most.
 const SIDES: std::ops::RangeInclusive<u32> = 16..=16384;
 
-/// A scene: the ground, what lies and stands on it, and its cameras. Made by `Scene.open`.
+/// A scene: the ground, the features on it, and its cameras. Made by `Scene.open`.
 #[pyclass(name = "Scene", module = "sandtable", frozen)]
 pub struct PyScene {
     scene: Scene,

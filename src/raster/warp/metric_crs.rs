@@ -1,4 +1,4 @@
-//! The system in which a raster's ground is in true meters: its own, the one that is asked for, or a UTM zone.
+//! The system in which a raster's ground is in true meters: its own, a stated one, or a UTM zone.
 //!
 //! A system in meters may stretch lengths: Web Mercator by 1/cos φ, to twice their length at 60° north. Where lengths at the
 //! center of the raster are off by more than [`MOST_SCALE_ERROR`], the ground is made in the UTM zone there instead.

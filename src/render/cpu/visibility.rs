@@ -68,10 +68,9 @@ impl<const N: usize> Visibility<N> {
         true
     }
 
-    /// Draws a piece where it is seen: of a draped face where it is behind what is there by no more than the face's
-    /// reach, of another face where it is nearer. `solid` returns those of a pixel's seen samples that are not in a
-    /// hole of the face. The nearer of both depths is kept, so that drapes laid over each other do not sink step by
-    /// step.
+    /// Draws a piece where it is visible: a draped face where it is behind the surface there by no more than its reach,
+    /// any other face where it is nearer. `solid` returns those of a pixel's seen samples that are not in a hole of the
+    /// face. The nearer of both depths is kept, so that drapes laid over each other do not sink step by step.
     pub fn draw(
         &mut self,
         piece: &FacePiece,

@@ -40,8 +40,8 @@ pub fn border_color(cover: Cover) -> Srgba {
     Srgba([red, green, blue, 235])
 }
 
-/// The greatest width of the strip along an outline in which a cover fades, meters: about what lies between the first
-/// trees and a closed wood.
+/// The greatest width of the strip along an outline in which a cover fades, meters: about the distance from the first
+/// trees to a closed wood.
 pub const EDGE_M: f64 = 12.0;
 
 /// Whether a cover grows or lies by nature; what is built or forbidden ends at a line.

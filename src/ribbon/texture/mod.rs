@@ -1,4 +1,4 @@
-//! Procedural textures for what lies on the ground; the same pixels on every machine.
+//! Procedural textures for draped features; the same pixels on every machine.
 
 mod boundary;
 pub mod cover;

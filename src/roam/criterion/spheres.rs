@@ -7,7 +7,7 @@ use crate::graph::Vertex;
 use crate::patched_ground::PatchedGround;
 use crate::spheres::SphereMap;
 
-/// A vertex is wanted while the eye is inside its sphere.
+/// The criterion that a vertex is needed while the eye is inside its sphere.
 #[derive(Clone, Copy, Debug)]
 pub struct Spheres<'a> {
     ground: PatchedGround<'a>,

@@ -94,7 +94,7 @@ pub struct Queues<'a> {
 }
 
 impl<'a> Queues<'a> {
-    /// The roots of all patches of a ground, whose heights decide what is drawn.
+    /// The queues at the roots of all patches of a ground, whose heights decide which triangles are drawn.
     pub fn new(ground: PatchedGround<'a>, goal: Goal) -> Self {
         let layout = *ground.layout;
         Self {

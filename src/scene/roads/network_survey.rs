@@ -60,7 +60,7 @@ pub fn conforms(table: &RoadTable) -> bool {
     table.profile == ProfileMode::Conform
 }
 
-/// A network of roads with what is known of it.
+/// A network of roads to be designed, with the ground where single roads end.
 pub struct NetworkSurvey {
     /// The sections between nodes.
     pub network: SectionNetwork,

@@ -1,5 +1,4 @@
-//! Numbers that look random and are a place's own: the same place and seed give the same numbers, whatever was asked
-//! before.
+//! Pseudorandom numbers by place: the same place and seed give the same numbers, whatever was drawn before.
 //!
 //! SplitMix64 (Steele, Lea and Flood 2014), started from a mix of the seed and the square's coordinates.
 

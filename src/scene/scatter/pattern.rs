@@ -59,7 +59,7 @@ impl PointPattern {
         self.density
     }
 
-    /// Whether the spacing leaves no room for the density asked for.
+    /// Whether the spacing leaves no room for the stated density.
     pub fn is_crowded(&self) -> bool {
         self.is_crowded
     }

@@ -1,4 +1,4 @@
-//! Ground that is taken: roads, water, buildings and what stands already, as triangles in plan.
+//! Occupied ground: roads, water, buildings and models, as triangles in plan.
 //!
 //! Triangles of a meter and of a lake's length lie in one scene. Each is kept in squares about its own size, a grid for
 //! each power of two, so that it lies in few of them and a place looks at few triangles, however they are mixed.

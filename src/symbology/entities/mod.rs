@@ -18,7 +18,7 @@ pub struct SymbolEntity {
     pub code: u32,
     /// The standard's name, in lower case.
     pub name: &'static str,
-    /// What is drawn in the frame.
+    /// The drawing in the frame.
     pub drawing: &'static str,
 }
 

@@ -7,7 +7,7 @@ use crate::graphic::fields::GraphicFields;
 use crate::graphic::kind::{GraphicKind, GraphicShape, MOST_POINTS};
 use sandtable_geom::segment::crossing;
 
-/// A graphic shorter than this cannot be told from a point, in meters.
+/// The length in meters below which a graphic cannot be distinguished from a point.
 pub const SHORTEST_M: f64 = 1.0;
 
 /// The most distances of a range fan.

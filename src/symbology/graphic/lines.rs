@@ -66,7 +66,7 @@ pub fn route(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graphic
     }
 }
 
-/// A boundary (LINE7): the echelon in a gap of the line, and what lies on either side.
+/// A boundary (LINE7): the echelon in a gap of the line, and the texts on either side.
 pub fn boundary(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     let Some(line) = Polyline::new(input.points.iter().copied(), 0.0) else { return };
     let (fields, em_m, middle) = (input.fields, input.em_m, line.length() / 2.0);

@@ -59,7 +59,7 @@ pub enum NavigationMode {
     Flight,
 }
 
-/// Steps asked for at once, each -1 to 1.
+/// Steps in one frame, each -1 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct NavigationSteps {
     /// Forward; negative for backward.

@@ -1,4 +1,4 @@
-//! The way from one pose to another: it begins and ends at rest, and turns the shorter way round.
+//! A transition from one pose to another: it begins and ends at rest, and turns the shorter way round.
 
 use crate::navigation::pose::{ViewPose, wrapped};
 

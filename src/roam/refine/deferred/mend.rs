@@ -8,8 +8,8 @@ use crate::refine::deferred::Deferred;
 use crate::refine::deferred::patch::RenewedVertex;
 
 impl Deferred<DynamicTerrain> {
-    /// Takes over an edit of the source. The next update applies it; [`Deferred::edit`] with the edit's patches does the same
-    /// in more time.
+    /// Applies an edit of the source. The next update applies it; [`Deferred::edit`] with the edit's patches does the same in
+    /// more time.
     ///
     /// # Errors
     /// A patch cannot be read.

@@ -257,7 +257,7 @@ impl PatchMesh {
         self.decide_all(with);
     }
 
-    /// Takes over a block, edited; false where data was added or removed, so that the patch must be reset.
+    /// Applies an edited block; false where data was added or removed, so that the patch must be reset.
     pub fn edit(&mut self, topology: &Topology, block: &Arc<PatchBlock>) -> bool {
         let old = std::mem::replace(&mut self.block, Arc::clone(block));
         for (row, (z, radii)) in block.z.chunks(ROW).zip(block.radii.chunks(ROW)).enumerate() {

@@ -6,11 +6,11 @@ use crate::tiles::colors::pixels::{PixelHeights, TILE_PIXELS};
 use crate::tiles::colors::pyramid::{ColorPyramid, PIXELS};
 use crate::tiles::tiling::TileAddress;
 
-/// A tile and what was made of it and of those below it, from the coarsest.
+/// A tile and the results for it and for those below it, from the coarsest.
 pub struct TileMeans<T> {
     /// The tile's heights; `None` without elevation.
     pub heights: Option<PixelHeights>,
-    /// What was made.
+    /// The results.
     pub made: Vec<T>,
 }
 

@@ -68,7 +68,7 @@ pub(super) struct SweepScene<'a> {
     pub drop_per_square_m: f64,
     pub range_m: f64,
     pub margins: Margins,
-    /// Set where nobody waits for the answer any more.
+    /// Set when the answer is no longer needed.
     pub stop: &'a StopFlag,
 }
 
