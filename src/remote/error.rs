@@ -18,9 +18,7 @@ pub enum RemoteError {
          Python with allow_remote=[\"{0}\"]"
     )]
     HostNotAllowed(String),
-    #[error(
-        "the server redirects to {0}, which is not encrypted; name that address if you trust it"
-    )]
+    #[error("the server redirects to {0}, which is not encrypted; name that address if you trust it")]
     Unencrypted(String),
     #[error("there is no such file")]
     Missing,

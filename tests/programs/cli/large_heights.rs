@@ -37,9 +37,7 @@ impl LabeledPicture {
     }
 
     fn is_of_means(&self) -> bool {
-        self.said["notes"]
-            .to_string()
-            .contains("printed heights and visibility use all samples")
+        self.said["notes"].to_string().contains("printed heights and visibility use all samples")
     }
 
     /// The share of bytes that differ from those of another by no more than `levels`.
