@@ -1,15 +1,5 @@
 //! Elevation values: rasters in memory and in windows, mosaics, statistics, voids, other systems and cells. No file format is
 //! known here.
-//!
-//! ```
-//! use glam::DVec2;
-//! use sandtable_raster::raster::{Raster, Samples, north_up_nodes};
-//! use sandtable_raster::sample::bilinear;
-//!
-//! let place = north_up_nodes(DVec2::new(500_000.0, 4_000_030.0), DVec2::splat(30.0));
-//! let raster = Raster::new(2, Samples::F32(vec![1.0, 2.0, 3.0, 4.0])).placed(place);
-//! assert_eq!(bilinear(&raster, DVec2::new(500_015.0, 4_000_015.0)).height_m(), Some(2.5));
-//! ```
 
 pub mod answer;
 pub mod cache;
@@ -40,3 +30,8 @@ pub mod void_counts;
 pub mod voids;
 pub mod warp;
 pub mod windows;
+
+/// The program of the README runs as a test.
+#[cfg(doctest)]
+#[doc = include_str!("README.md")]
+pub struct RasterReadme;
