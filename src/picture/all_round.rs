@@ -66,7 +66,7 @@ pub struct AllRoundScene {
 }
 
 /// When an item is shown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ItemShown {
     /// Always.
     Always,
