@@ -5,6 +5,7 @@
 //! Afterward the untouched ones get their old bytes back, and only painted ones are divided: annotating never changes a
 //! pixel that it does not paint.
 
+use glam::Vec2;
 use tiny_skia::{ColorU8, FillRule, Paint, PixmapMut, PremultipliedColorU8, Transform};
 
 use crate::drawing::{Drawing, PaintedPath};
@@ -34,6 +35,17 @@ pub fn paint<'a>(pixels: &mut Pixels, drawings: impl IntoIterator<Item = &'a Dra
     for pixel in translucent {
         let painted = &mut pixels.data_mut()[pixel.index];
         *painted = if *painted == pixel.multiplied { pixel.straight } else { divide(*painted) };
+    }
+}
+
+/// Copies a picture onto a page, as far as it lies on it.
+pub fn paste(page: &mut Pixels, picture: &Pixels, corner: Vec2) {
+    let (corner, stride) = (corner.as_uvec2(), page.width() as usize);
+    let width = picture.width().min(page.width().saturating_sub(corner.x)) as usize;
+    let rows = picture.height().min(page.height().saturating_sub(corner.y)) as usize;
+    for (row, from) in picture.data().chunks_exact(picture.width().max(1) as usize).take(rows).enumerate() {
+        let start = (corner.y as usize + row) * stride + corner.x as usize;
+        page.data_mut()[start..start + width].copy_from_slice(&from[..width]);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use crate::canvas::paint;
+use crate::canvas::{paint, paste};
 use crate::composer::Composer;
 use crate::drawing::Drawing;
 use crate::pixel_box::PixelBox;
@@ -83,7 +83,7 @@ impl ContactSheet {
         for (number, picture) in (0..).zip(pictures) {
             let cell = Vec2::new((number % self.columns) as f32, (number / self.columns) as f32);
             let at = Vec2::new(left, top) + cell * Vec2::new(size.x + gap, size.y + below + gap);
-            copy(picture.pixels, &mut pixels, at.as_uvec2().to_array());
+            paste(&mut pixels, picture.pixels, at);
             drawing.frame(PixelBox { min: at, max: at + size }, sheet.px(1.0).max(1.0), FRAME);
             let style = composer.style(17.0, TextStyle::REGULAR);
             if let Some(line) = composer.fitted(&picture.caption, style, size.x) {
@@ -93,16 +93,6 @@ impl ContactSheet {
         }
         paint(&mut pixels, [&drawing]);
         pixels
-    }
-}
-
-fn copy(from: &Pixels, to: &mut Pixels, [left, top]: [u32; 2]) {
-    let (width, rows) = (to.width() as usize, from.data().chunks_exact(from.width() as usize));
-    for (row, line) in rows.enumerate() {
-        let start = (top as usize + row) * width + left as usize;
-        if let Some(target) = to.data_mut().get_mut(start..start + line.len()) {
-            target.copy_from_slice(line);
-        }
     }
 }
 

@@ -14,7 +14,7 @@
 
 use glam::Vec2;
 
-use crate::canvas::paint;
+use crate::canvas::{paint, paste};
 use crate::composer::Composer;
 use crate::drawing::{Drawing, polyline};
 use crate::legend::{self, Legend};
@@ -122,7 +122,7 @@ pub fn compose(map: &Pixels, furniture: &MapFurniture) -> (Pixels, AnnotationRep
     let corner = Vec2::new(margin, (margin * 1.5 + head_px(&composer.sheet)).round());
     let frame = PixelBox::at(corner, Vec2::new(map.width() as f32, map.height() as f32));
     let mut pixels = Pixels::filled(width, height, PAPER);
-    paste(&mut pixels, map, (corner.x as usize, corner.y as usize));
+    paste(&mut pixels, map, corner);
     let mut drawing = Drawing::default();
     drawing.frame(frame.grown(1.0), 1.0, INK);
     let head = PixelBox {
@@ -139,14 +139,6 @@ pub fn compose(map: &Pixels, furniture: &MapFurniture) -> (Pixels, AnnotationRep
     let mut report = AnnotationReport::default();
     report.add_texts(&drawing.texts);
     (pixels, report)
-}
-
-fn paste(pixels: &mut Pixels, map: &Pixels, (x, y): (usize, usize)) {
-    let (stride, width) = (pixels.width() as usize, map.width() as usize);
-    for (row, from) in map.data().chunks_exact(width.max(1)).enumerate() {
-        let start = (y + row) * stride + x;
-        pixels.data_mut()[start..start + width].copy_from_slice(from);
-    }
 }
 
 fn draw_head(drawing: &mut Drawing, furniture: &MapFurniture, area: PixelBox, composer: &mut Composer) {

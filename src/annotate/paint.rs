@@ -3,7 +3,7 @@
 use glam::Vec2;
 
 use crate::annotation::Annotations;
-use crate::canvas::paint;
+use crate::canvas::{paint, paste};
 use crate::composer::Composer;
 use crate::cover::SceneCover;
 use crate::drawing::Drawing;
@@ -122,17 +122,6 @@ fn on_picture(
         .chain(figures)
         .chain([fixed, symbols.drawing, labels])
         .collect()
-}
-
-/// Copies a picture onto a page, as far as it lies on it.
-fn paste(page: &mut Pixels, picture: &Pixels, corner: Vec2) {
-    let (corner, stride) = (corner.as_uvec2(), page.width() as usize);
-    let width = picture.width().min(page.width().saturating_sub(corner.x)) as usize;
-    let rows = picture.height().min(page.height().saturating_sub(corner.y)) as usize;
-    for (row, from) in picture.data().chunks_exact(picture.width().max(1) as usize).take(rows).enumerate() {
-        let start = (corner.y as usize + row) * stride + corner.x as usize;
-        page.data_mut()[start..start + width].copy_from_slice(&from[..width]);
-    }
 }
 
 /// The space between pieces of furniture that stand under each other, design pixels.

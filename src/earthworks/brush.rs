@@ -31,13 +31,13 @@ impl Change {
     /// The former height of a post of the rectangle.
     #[inline]
     pub fn height_before(&self, post: Post) -> f32 {
-        self.before[self.index(post)]
+        self.before[self.posts.index(post)]
     }
 
     /// The former and the current heights of one row of the rectangle from column `first` to column `last`.
     pub fn row<'a>(&'a self, lattice: &'a Lattice, row: u32, (first, last): (u32, u32)) -> [&'a [f32]; 2] {
         let (count, post) = ((last - first + 1) as usize, Post { column: first, row });
-        [&self.before[self.index(post)..][..count], &lattice.heights()[lattice.index(post)..][..count]]
+        [&self.before[self.posts.index(post)..][..count], &lattice.heights()[lattice.index(post)..][..count]]
     }
 
     /// The posts that changed, with their former heights.
@@ -53,12 +53,6 @@ impl Change {
         }
         let before = bounds.posts().map(|post| self.height_before(post)).collect();
         Self { posts: bounds, before }
-    }
-
-    #[inline]
-    fn index(&self, post: Post) -> usize {
-        let first = self.posts.first;
-        (post.row - first.row) as usize * self.posts.width() + (post.column - first.column) as usize
     }
 }
 
@@ -143,10 +137,7 @@ impl BrushChanges {
 pub fn set_heights(lattice: &mut Lattice, posts: PostRect, heights: &[f32]) -> BrushChanges {
     let mut changes = BrushChanges::default();
     if let Some(inside) = posts.clipped(lattice) {
-        let new = |post: Post, _: f32| {
-            let (row, column) = (post.row - posts.first.row, post.column - posts.first.column);
-            heights.get(row as usize * posts.width() + column as usize).copied().unwrap_or(f32::NAN)
-        };
+        let new = |post: Post, _: f32| heights.get(posts.index(post)).copied().unwrap_or(f32::NAN);
         changes.write(lattice, inside, new);
     }
     changes

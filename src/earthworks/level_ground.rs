@@ -38,7 +38,7 @@ impl LevelGround {
     pub fn apply(&self, lattice: &mut Lattice) -> BrushChanges {
         let mut changes = BrushChanges::default();
         if let Some(plan) = LevelPlan::new(self, lattice) {
-            changes.write(lattice, plan.window, |post, before| match plan.heights[plan.index(post)] {
+            changes.write(lattice, plan.window, |post, before| match plan.heights[plan.window.index(post)] {
                 height if height.is_nan() => before,
                 height => height,
             });
@@ -69,7 +69,7 @@ impl LevelPlan {
         let heights = vec![f32::NAN; window.posts().count()];
         let mut plan = Self { window, heights };
         for &post in &inside {
-            let index = plan.index(post);
+            let index = plan.window.index(post);
             plan.heights[index] = level_m as f32;
         }
         plan.follow_batters(ground, lattice, level_m, inside.into());
@@ -95,7 +95,7 @@ impl LevelPlan {
         let mut is_seen: Vec<bool> = self.heights.iter().map(|height| !height.is_nan()).collect();
         while let Some(post) = front.pop_front() {
             for beside in neighbors(post).filter(|&beside| self.window.contains(beside)) {
-                let index = self.index(beside);
+                let index = self.window.index(beside);
                 if std::mem::replace(&mut is_seen[index], true) {
                     continue;
                 }
@@ -115,11 +115,6 @@ impl LevelPlan {
                 }
             }
         }
-    }
-
-    fn index(&self, post: Post) -> usize {
-        let first = self.window.first;
-        (post.row - first.row) as usize * self.window.width() + (post.column - first.column) as usize
     }
 }
 

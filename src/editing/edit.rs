@@ -193,11 +193,6 @@ impl SceneEdit {
         Self::Add(table.with_text("kind", kind))
     }
 
-    /// Moves the label with a number.
-    pub fn move_label(number: usize, at: [f64; 2]) -> Self {
-        Self::set(EditPlace::table("label", number), "at", EditValue::Point(at))
-    }
-
     /// Adds a road along a line of at least two points.
     pub fn add_road(points: Vec<[f64; 2]>, width_m: f64) -> Self {
         let table = NewTable::new("road").with("points", EditValue::Points(points));

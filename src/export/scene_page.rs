@@ -4,8 +4,7 @@ use std::path::Path;
 
 use glam::{DVec2, Vec3};
 
-use crate::page::batches::ShowRange;
-use crate::page::{PageCamera, PageFacts, PageForm, PageLabel, PageScene, PageTooLarge, page};
+use crate::page::{PageCamera, PageFacts, PageLabel, PageScene, PageTooLarge, page};
 use crate::page_symbols::symbol_pictures;
 use sandtable_base::message::choice::Choice;
 use sandtable_draw::list::FeatureId;
@@ -13,9 +12,8 @@ use sandtable_files::disk::{self, WriteFileError};
 use sandtable_geom::chebyshev::ChebyshevTable;
 use sandtable_geom::crs::Crs;
 use sandtable_mesh::sink::{MeshSink, VertexId};
-use sandtable_picture::all_round::{AllRoundScene, ItemShown, all_round};
+use sandtable_picture::all_round::{AllRoundScene, all_round};
 use sandtable_picture::camera;
-use sandtable_picture::detail::ListedForm;
 use sandtable_picture::placed_text::PlacedText;
 use sandtable_roam::displayed::DisplayedTerrain;
 use sandtable_scene::flights::SceneFlight;
@@ -85,9 +83,7 @@ pub fn export_page(
     let all = all_round(scene, &displayed, progress)?;
     progress("writing");
     let facts = facts(scene, &all, max_error_m)?;
-    let range_of = |item: usize| range_of(all.shown[item]);
-    let lattice = &scene.lattice;
-    let bytes = page(&PageScene { list: &all.list, range_of: &range_of, lattice, facts: &facts })?;
+    let bytes = page(&PageScene { drawn: &all, lattice: &scene.lattice, facts: &facts })?;
     disk::write(path, &bytes)?;
     let ground_triangles = all.list.items.first().map_or(0, |ground| ground.triangles.len());
     Ok(ExportedPage { bytes: bytes.len(), ground_triangles, max_error_m })
@@ -128,15 +124,6 @@ fn triangle_count(displayed: &DisplayedTerrain) -> usize {
     count.triangles
 }
 
-fn range_of(shown: ItemShown) -> ShowRange {
-    match shown {
-        ItemShown::Always => ShowRange::Always,
-        ItemShown::Band(band) => ShowRange::Band(band),
-        ItemShown::Table => ShowRange::Table,
-        ItemShown::Form(form) => ShowRange::Form(form),
-    }
-}
-
 fn facts(scene: &SceneModel, all: &AllRoundScene, max_error_m: f64) -> Result<PageFacts, CameraError> {
     let cameras: Result<_, CameraError> = scene.cameras.iter().map(|view| page_camera(scene, view)).collect();
     let furniture = &scene.furniture;
@@ -154,11 +141,9 @@ fn facts(scene: &SceneModel, all: &AllRoundScene, max_error_m: f64) -> Result<Pa
         bounds: [scene.bounds.0, scene.bounds.1],
         base_z: base_z(scene.bounds),
         haze_m: scene.haze_m,
-        bands_m: all.bands_m.clone(),
         features: features.map(|id| scene.feature_name(FeatureId(id))).collect(),
         labels: scene.labels.iter().map(label).chain(all.graphic_texts.iter().map(graphic_text)).collect(),
         symbols: symbol_pictures(scene),
-        forms: all.forms.iter().map(form).collect(),
         cameras: cameras?,
     })
 }
@@ -200,11 +185,6 @@ fn graphic_text(text: &PlacedText) -> PageLabel {
         rank: -1.0,
         color: Some(*color),
     }
-}
-
-fn form(form: &ListedForm) -> PageForm {
-    let &ListedForm { group, error, center, radius, is_plant, .. } = form;
-    PageForm { group, error, sphere: (center, radius), is_plant }
 }
 
 fn page_camera(scene: &SceneModel, view: &SceneView) -> Result<PageCamera, CameraError> {

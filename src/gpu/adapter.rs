@@ -65,17 +65,6 @@ impl Gpu {
         Err(GpuError::NoAdapter(tried))
     }
 
-    /// A device of an adapter that was chosen for a window's surface.
-    ///
-    /// # Errors
-    /// [`GpuError::NoAdapter`] where the adapter gives no device.
-    pub fn of_adapter(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
-        let api = api_of(adapter);
-        let opened = catch_unwind(AssertUnwindSafe(|| pollster::block_on(open_device(adapter))));
-        let opened = opened.unwrap_or(Err(DriverError::Crash));
-        opened.map_err(|error| GpuError::NoAdapter(vec![(api, error)]))
-    }
-
     /// A device that a window has opened; its errors outside of error scopes are recorded here from now on.
     pub fn from_parts(adapter: &wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let flags = adapter.get_downlevel_capabilities().flags;

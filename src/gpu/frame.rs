@@ -52,14 +52,6 @@ impl FrameTextures {
         &self.ground
     }
 
-    /// Replaces the checked map and what else is read by it.
-    pub fn replace_ground(&mut self, loader: &Loader<'_>, map: Option<&GroundMap>) -> Result<(), GpuError> {
-        self.ground = GroundTextures::upload(loader, map)?;
-        self.ramp = ramp_stops(loader, map)?;
-        self.imagery = imagery_texture(loader, map)?;
-        Ok(())
-    }
-
     /// Windows of finer posts.
     pub fn windows(&self) -> &WindowTexture {
         &self.windows

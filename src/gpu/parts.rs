@@ -90,11 +90,6 @@ impl ShaderParts {
             .with(Self::MAP_WATER.when(has_water()))
     }
 
-    /// Whether there are shadow maps of the sun and of the sky.
-    pub fn shadows(self) -> [bool; 2] {
-        [self.has(Self::SUN_SHADOWS), self.has(Self::SKY_SHADOWS)]
-    }
-
     /// The parts for what shows these of materials, in a picture that has the parts `picture`.
     pub fn in_picture(self, picture: Self) -> Self {
         let map = [Self::IMAGERY, Self::COVER, Self::CONTOURS, Self::MAP_WATER];

@@ -66,7 +66,7 @@ pub struct AllRoundScene {
 }
 
 /// The condition under which an item is shown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ItemShown {
     /// Always.
     Always,

@@ -10,6 +10,7 @@ use glam::{DVec2, DVec3, Vec3};
 
 use crate::add_mesh;
 use crate::line_scale::LineScale;
+use crate::line_view::{self, LineView};
 use crate::symbols::cap;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh, FeatureId, MaterialId};
@@ -17,17 +18,14 @@ use sandtable_draw::material::{AlphaMode, Material, NormalSource};
 use sandtable_earthworks::alignment::{Alignment, Support, Width};
 use sandtable_geom::polyline::Polyline;
 use sandtable_geom::profile::Profile;
-use sandtable_geom::rect::Rect;
 use sandtable_geom::segment;
 use sandtable_geom::simplify::simplified;
 use sandtable_ribbon::drape::drape;
 use sandtable_ribbon::plan::PlanMesh;
 use sandtable_ribbon::stroke::{StrokeOptions, StrokePath, stroke};
 use sandtable_scene::scene_model::SceneModel;
-use sandtable_terrain::full_resolution::FullResolution;
 use sandtable_terrain::triangle_surface::TriangleSurface;
 use sandtable_view::camera::Camera;
-use sandtable_view::frustum::Frustum;
 
 /// Over all ribbons, whose layers are below 16.
 pub const LAYER: u8 = 200;
@@ -173,46 +171,19 @@ pub struct LineVertex {
 
 /// The view of a picture with graphics.
 pub struct GraphicView<'a> {
-    /// The camera.
-    pub camera: &'a Camera,
     /// The displayed ground.
     pub displayed: &'a dyn TriangleSurface,
-    ground: FullResolution<'a>,
-    /// `None` where the eye turns around.
-    frustum: Option<Frustum>,
-    extent: Rect,
-    z: [f32; 2],
-    /// The pixels of the picture.
-    pub scale: LineScale<'a>,
+    lines: LineView<'a>,
 }
 
 impl<'a> GraphicView<'a> {
     pub fn new(scene: &'a SceneModel, camera: &'a Camera, displayed: &'a dyn TriangleSurface) -> Self {
-        Self::by(scene, camera, displayed, LineScale::new(camera))
+        Self { displayed, lines: LineView::new(scene, camera, LineScale::new(camera)) }
     }
 
     /// For an eye that turns around where `camera` is: each place as if it were in the picture's middle.
     pub fn around(scene: &'a SceneModel, camera: &'a Camera, displayed: &'a dyn TriangleSurface) -> Self {
-        Self::by(scene, camera, displayed, LineScale::around(camera))
-    }
-
-    fn by(
-        scene: &'a SceneModel,
-        camera: &'a Camera,
-        displayed: &'a dyn TriangleSurface,
-        scale: LineScale<'a>,
-    ) -> Self {
-        let lattice = scene.ground().lattice();
-        let (min, max) = scene.bounds;
-        Self {
-            camera,
-            displayed,
-            ground: FullResolution { lattice },
-            frustum: scale.frustum(),
-            extent: lattice.extent(),
-            z: [min.z, max.z],
-            scale,
-        }
+        Self { displayed, lines: LineView::new(scene, camera, LineScale::around(camera)) }
     }
 
     /// Draws a line with its casing.
@@ -226,16 +197,16 @@ impl<'a> GraphicView<'a> {
 
     /// The height of a text at places, in meters: that of their mean distance. `None` where all are behind the eye.
     pub fn em_m(&self, places: &[DVec2]) -> Option<f64> {
-        let near = f64::from(self.camera.planes().0);
-        if self.camera.parallel_frame().is_some() {
-            return Some(EM_PX * self.scale.px * self.scale.meters_per_px_at(1.0));
+        let near = f64::from(self.lines.camera.planes().0);
+        if self.lines.camera.parallel_frame().is_some() {
+            return Some(EM_PX * self.lines.scale.px * self.lines.scale.meters_per_px_at(1.0));
         }
         let places: Vec<Vec3> = places.iter().map(|&at| self.on_ground(at)).collect();
-        let (width, height) = self.camera.size();
+        let (width, height) = self.lines.camera.size();
         let is_shown = |place: &&Vec3| {
-            let turns = self.frustum.is_none();
+            let turns = self.lines.frustum.is_none();
             !turns
-                && self.camera.project(**place).is_some_and(|seen| {
+                && self.lines.camera.project(**place).is_some_and(|seen| {
                     let shares = [seen.pixel.x / width as f32, seen.pixel.y / height as f32];
                     shares.iter().all(|share| (0.0..=1.0).contains(share))
                 })
@@ -246,10 +217,10 @@ impl<'a> GraphicView<'a> {
         let depths = counted.into_iter().map(|place| self.depth_m(place.as_dvec3()));
         let logs: Vec<f64> = depths
             .filter(|&depth_m| depth_m > near)
-            .map(|depth_m| libm::log(self.scale.meters_per_px_at(depth_m)))
+            .map(|depth_m| libm::log(self.lines.scale.meters_per_px_at(depth_m)))
             .collect();
         let mean = logs.iter().sum::<f64>() / logs.len() as f64;
-        (!logs.is_empty()).then(|| EM_PX * self.scale.px * libm::exp(mean))
+        (!logs.is_empty()).then(|| EM_PX * self.lines.scale.px * libm::exp(mean))
     }
 
     /// The height of a text at a place in meters; 1 behind the eye, where nothing shows.
@@ -266,11 +237,12 @@ impl<'a> GraphicView<'a> {
     /// The direction upward on the picture at a place, in the plane; its length is the stretch of an upright figure
     /// there.
     pub fn up(&self, at: DVec2) -> DVec2 {
-        let offset = self.on_ground(at).as_dvec3() - self.camera.eye().as_dvec3();
-        let [_, up, forward] = self.scale.axes(offset);
+        let offset = self.on_ground(at).as_dvec3() - self.lines.camera.eye().as_dvec3();
+        let [_, up, forward] = self.lines.scale.axes(offset);
         let way = (forward.truncate() + up.truncate()).try_normalize().unwrap_or(DVec2::Y);
-        let ray = if self.camera.parallel_frame().is_some() { forward } else { offset.normalize_or(forward) };
-        let seen = -ray.z * f64::from(self.camera.stretch());
+        let ray =
+            if self.lines.camera.parallel_frame().is_some() { forward } else { offset.normalize_or(forward) };
+        let seen = -ray.z * f64::from(self.lines.camera.stretch());
         way * (1.0 / seen.max(1.0 / MOST_STRETCH)).clamp(1.0, MOST_STRETCH)
     }
 
@@ -280,7 +252,7 @@ impl<'a> GraphicView<'a> {
     }
 
     fn z_at(&self, at: DVec2) -> f64 {
-        self.ground.displayed_z(at).unwrap_or(f64::from(self.z[0]))
+        self.lines.ground.displayed_z(at).unwrap_or(f64::from(self.lines.z[0]))
     }
 
     /// The parts of a line in view, in world space.
@@ -292,8 +264,8 @@ impl<'a> GraphicView<'a> {
     /// The parts of a line in view, its vertices close together on the picture; its dashes where it is dashed.
     pub fn runs(&self, points: &[DVec2], is_dashed: bool) -> Vec<Vec<LineVertex>> {
         let places: Vec<DVec3> = points.iter().map(|&at| at.extend(self.z_at(at))).collect();
-        let eye = self.camera.eye().as_dvec3();
-        let slack = |at: &DVec3| SLACK_PX * self.scale.meters_per_px_at(at.distance(eye));
+        let eye = self.lines.camera.eye().as_dvec3();
+        let slack = |at: &DVec3| SLACK_PX * self.lines.scale.meters_per_px_at(at.distance(eye));
         let slacks_m: Vec<f64> = places.iter().map(slack).collect();
         let off = |from: usize, to: usize, index: usize| {
             let distance = segment::distance_squared((points[from], points[to]), points[index]).sqrt();
@@ -322,42 +294,41 @@ impl<'a> GraphicView<'a> {
     /// Meters of the ground as it is, across a line through `at` along `along`, in a pixel of a picture 1080 lines high
     /// across the line. On a slope that faces the eye that is less than on level ground.
     fn px_m(&self, at: DVec3, along: DVec2) -> f64 {
-        let square_m = self.scale.px * self.scale.meters_per_px_at(self.depth_m(at));
-        if self.frustum.is_none() {
-            return self.scale.px * self.scale.meters_per_px(at, along);
+        let square_m = self.lines.scale.px * self.lines.scale.meters_per_px_at(self.depth_m(at));
+        if self.lines.frustum.is_none() {
+            return self.lines.scale.px * self.lines.scale.meters_per_px(at, along);
         }
         let reach_m = PROBE_PX * square_m;
         let pixel = |way: DVec2| {
             let place = at.truncate() + way * reach_m;
-            self.camera.project(self.on_ground(place)).map(|seen| seen.pixel.as_dvec2())
+            self.lines.camera.project(self.on_ground(place)).map(|seen| seen.pixel.as_dvec2())
         };
         let across = along.perp();
         let [Some(left), Some(right), Some(ahead), Some(behind)] =
             [across, -across, along, -along].map(pixel)
         else {
-            return self.scale.px * self.scale.meters_per_px(at, along);
+            return self.lines.scale.px * self.lines.scale.meters_per_px(at, along);
         };
         let wide_px = (left - right).perp_dot((ahead - behind).normalize_or_zero()).abs();
-        let px_m = 2.0 * reach_m * self.scale.px / wide_px.max(f64::MIN_POSITIVE);
+        let px_m = 2.0 * reach_m * self.lines.scale.px / wide_px.max(f64::MIN_POSITIVE);
         px_m.clamp(square_m, square_m * MOST_GROWTH)
     }
 
     /// How far a place is from the eye along the view.
     fn depth_m(&self, at: DVec3) -> f64 {
-        let offset = at - self.camera.eye().as_dvec3();
-        if self.frustum.is_none() { offset.length() } else { offset.dot(self.camera.forward().as_dvec3()) }
+        let offset = at - self.lines.camera.eye().as_dvec3();
+        if self.lines.frustum.is_none() {
+            offset.length()
+        } else {
+            offset.dot(self.lines.camera.forward().as_dvec3())
+        }
     }
 
     /// Calls `visit` with the parts of a leg that may be in view, in order, each short on the picture.
     fn divide(&self, leg: [DVec3; 2], halves: u32, visit: &mut impl FnMut([DVec3; 2])) {
         let [from, to] = leg;
-        let nearest_m = self.nearest_m(leg);
-        let px_m = self.scale.px * self.scale.meters_per_px_at(nearest_m);
-        let reach = Rect::around([from.truncate(), to.truncate()]).grown(MARGIN_PX * px_m);
-        let [low, high] = self.z;
-        let [min, max] = [(reach.min, low), (reach.max, high)].map(|(at, z)| at.as_vec2().extend(z));
-        let is_out = self.frustum.is_some_and(|frustum| !frustum.may_see(min, max));
-        if is_out || !reach.meets(&self.extent) {
+        let px_m = self.lines.scale.px * self.lines.scale.meters_per_px_at(self.lines.nearest_m(leg));
+        if !self.lines.may_see(leg, MARGIN_PX * px_m) {
             return;
         }
         if from.distance(to) > LONGEST_PX * px_m && halves < MOST_HALVES {
@@ -369,50 +340,17 @@ impl<'a> GraphicView<'a> {
             visit(leg);
         }
     }
-
-    /// How near a leg comes to the eye; infinite for parallel rays.
-    fn nearest_m(&self, [from, to]: [DVec3; 2]) -> f64 {
-        if self.camera.parallel_frame().is_some() {
-            return f64::INFINITY;
-        }
-        let (eye, leg) = (self.camera.eye().as_dvec3(), to - from);
-        let part = ((eye - from).dot(leg) / leg.length_squared()).clamp(0.0, 1.0);
-        eye.distance(from + leg * part)
-    }
 }
 
 /// The dashes of a run of vertices.
 fn dashes(run: &[LineVertex]) -> Vec<Vec<LineVertex>> {
-    let period_px = DASH_PX[0] + DASH_PX[1];
-    let mut dashes: Vec<Vec<LineVertex>> = vec![Vec::from_iter(run.first().copied())];
-    let mut along_px = 0.0;
-    for leg in run.windows(2) {
-        let length_px = leg[0].at.distance(leg[1].at) / (0.5 * (leg[0].px_m + leg[1].px_m));
-        let mut from_px = 0.0;
-        while from_px < length_px {
-            let is_dash = along_px < DASH_PX[0];
-            let end_px = if is_dash { DASH_PX[0] } else { period_px };
-            let to_px = (from_px + end_px - along_px).min(length_px);
-            let part = to_px / length_px;
-            let vertex = LineVertex {
-                at: leg[0].at.lerp(leg[1].at, part),
-                px_m: leg[0].px_m + (leg[1].px_m - leg[0].px_m) * part,
-            };
-            along_px += to_px - from_px;
-            from_px = to_px;
-            if is_dash {
-                dashes.last_mut().expect("there is always one").push(vertex);
-                if along_px >= DASH_PX[0] - 1e-9 {
-                    along_px = DASH_PX[0];
-                }
-            } else if along_px >= period_px - 1e-9 {
-                dashes.push(vec![vertex]);
-                along_px = 0.0;
-            }
-        }
-    }
-    dashes.retain(|dash| dash.len() > 1);
-    dashes
+    let length_px =
+        |from: &LineVertex, to: &LineVertex| from.at.distance(to.at) / (0.5 * (from.px_m + to.px_m));
+    let toward = |from: &LineVertex, to: &LineVertex, part: f64| LineVertex {
+        at: from.at.lerp(to.at, part),
+        px_m: from.px_m + (to.px_m - from.px_m) * part,
+    };
+    line_view::dashes(run, DASH_PX, length_px, toward)
 }
 
 /// Strokes a run of vertices with a width in pixels, its ends round.

@@ -13,6 +13,7 @@ mod haze;
 mod hole;
 mod lake_tint;
 mod line_scale;
+mod line_view;
 mod markings;
 pub mod models;
 pub mod nested;

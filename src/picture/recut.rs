@@ -67,6 +67,7 @@ impl SeenTint {
 }
 
 /// The draped features of a walk by patch, and their materials.
+#[derive(Default)]
 pub struct GroundSheets {
     head: DrawList,
     looks: BTreeMap<RibbonLook, MaterialId>,
@@ -108,20 +109,7 @@ impl GroundSheets {
     pub fn new(scene: &SceneModel, ground: PatchedGround<'_>) -> Self {
         let mut head = DrawList::default();
         ground::add_material(&mut head);
-        let mut sheets = Self {
-            head,
-            looks: BTreeMap::new(),
-            borders: borders(ground),
-            ribbons: DrapeSheet::default(),
-            symbols: DrapeSheet::default(),
-            tints: DrapeSheet::default(),
-            seen: DrapeSheet::default(),
-            seen_material: None,
-            graphics: DrapeSheet::default(),
-            graphic_colors: BTreeMap::new(),
-            texts: Vec::new(),
-            replaced: BTreeSet::new(),
-        };
+        let mut sheets = Self { head, borders: borders(ground), ..Self::default() };
         let sources = sources(scene);
         let mut lakes: BTreeMap<FeatureId, LakeTint> =
             longest_lakes(scene, |bounds| Some(bounds.size().max_element()))

@@ -15,11 +15,11 @@ use glam::{DVec2, DVec3, Vec2};
 use rayon::prelude::*;
 
 use crate::line_scale::LineScale;
+use crate::line_view::{self, LineView};
 use sandtable_draw::list::{DrawMesh, FeatureId};
 use sandtable_earthworks::alignment::{Alignment, Support, Width};
 use sandtable_geom::polyline::Polyline;
 use sandtable_geom::profile::Profile;
-use sandtable_geom::rect::Rect;
 use sandtable_geom::segment;
 use sandtable_geom::simplify::simplified;
 use sandtable_geom::spline;
@@ -30,11 +30,9 @@ use sandtable_ribbon::stroke::{StrokeOptions, StrokePath, stroke};
 use sandtable_ribbon::texture::RibbonSurface;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::symbols::{LineSymbol, drawn_width_m};
-use sandtable_terrain::full_resolution::FullResolution;
 use sandtable_terrain::triangle_surface::TriangleSurface;
 use sandtable_terrain::water_cover::WaterCover;
 use sandtable_view::camera::Camera;
-use sandtable_view::frustum::Frustum;
 
 /// How much wider than its fill a casing is on either side, in pixels of a picture 1080 lines high.
 const CASING_PX: f64 = 0.75;
@@ -170,7 +168,7 @@ pub(super) fn planned_with<'a, T: Send>(
     uv: SymbolUv,
     finish: impl Fn(PlannedSymbol<'a>) -> T + Sync,
 ) -> (Vec<T>, BTreeMap<FeatureId, RibbonShow>) {
-    let view = SymbolView::new(scene, camera, scale);
+    let view = SymbolView { lines: LineView::new(scene, camera, scale), water: scene.water() };
     let seen = |symbol: &'a LineSymbol| {
         let seen = view.seen(symbol, LineSmoothing::None);
         // Beside a ribbon in its true width a line keeps to the centerline that both have.
@@ -280,33 +278,12 @@ impl LinePoint {
 }
 
 struct SymbolView<'a> {
-    camera: &'a Camera,
-    /// `None` where the eye turns around.
-    frustum: Option<Frustum>,
-    ground: FullResolution<'a>,
-    extent: Rect,
-    /// The lowest and the highest ground.
-    z: [f32; 2],
-    scale: LineScale<'a>,
+    lines: LineView<'a>,
     /// The water that the elevations show, on the lattice.
     water: &'a WaterCover,
 }
 
-impl<'a> SymbolView<'a> {
-    fn new(scene: &'a SceneModel, camera: &'a Camera, scale: LineScale<'a>) -> Self {
-        let (min, max) = scene.bounds;
-        let lattice = scene.ground().lattice();
-        Self {
-            camera,
-            frustum: scale.frustum(),
-            ground: FullResolution { lattice },
-            extent: lattice.extent(),
-            z: [min.z, max.z],
-            scale,
-            water: scene.water(),
-        }
-    }
-
+impl SymbolView<'_> {
     fn seen(&self, symbol: &LineSymbol, smoothing: LineSmoothing) -> SeenLine {
         let mut seen = SeenLine::default();
         let mut end = None;
@@ -331,13 +308,10 @@ impl<'a> SymbolView<'a> {
     /// Calls `visit` with the parts of a leg that may be in view, in order, each short against its distance.
     fn divide(&self, leg: [LinePoint; 2], symbol: &LineSymbol, visit: &mut impl FnMut([LinePoint; 2])) {
         let [from, to] = leg;
-        let nearest_m = self.nearest_m(leg);
-        let margin_m = MARGIN_PX * self.scale.px * self.scale.meters_per_px_at(nearest_m);
-        let reach = Rect::around([from.at.truncate(), to.at.truncate()]).grown(margin_m);
-        let [low, high] = self.z;
-        let [min, max] = [(reach.min, low), (reach.max, high)].map(|(at, z)| at.as_vec2().extend(z));
-        let is_out = self.frustum.is_some_and(|frustum| !frustum.may_see(min, max));
-        if is_out || !reach.meets(&self.extent) {
+        let places = leg.map(|point| point.at);
+        let nearest_m = self.lines.nearest_m(places);
+        let margin_m = MARGIN_PX * self.lines.scale.px * self.lines.scale.meters_per_px_at(nearest_m);
+        if !self.lines.may_see(places, margin_m) {
             return;
         }
         let length_m = from.at.distance(to.at);
@@ -358,7 +332,8 @@ impl<'a> SymbolView<'a> {
         if symbol.surface != RibbonSurface::River || self.water.is_water.is_empty() {
             return Some((leg, [false; 2]));
         }
-        let is_under = |point: &LinePoint| self.water.is_under(self.ground.lattice, point.at.truncate());
+        let is_under =
+            |point: &LinePoint| self.water.is_under(self.lines.ground.lattice, point.at.truncate());
         let are_under = [is_under(&leg[0]), is_under(&leg[1])];
         if are_under[0] == are_under[1] {
             return (!are_under[0]).then_some((leg, [false; 2]));
@@ -371,18 +346,8 @@ impl<'a> SymbolView<'a> {
         Some(if are_under[0] { ([dry, leg[1]], [true, false]) } else { ([leg[0], dry], [false, true]) })
     }
 
-    /// How near a leg comes to the eye; infinite for parallel rays, which show it as wide at any distance.
-    fn nearest_m(&self, [from, to]: [LinePoint; 2]) -> f64 {
-        if self.camera.parallel_frame().is_some() {
-            return f64::INFINITY;
-        }
-        let (eye, leg) = (self.camera.eye().as_dvec3(), to.at - from.at);
-        let part = ((eye - from.at).dot(leg) / leg.length_squared()).clamp(0.0, 1.0);
-        eye.distance(from.at + leg * part)
-    }
-
     fn vertex(&self, symbol: &LineSymbol, point: &LinePoint) -> SymbolVertex {
-        let meters_per_px = self.scale.px * self.scale.meters_per_px(point.at, point.along);
+        let meters_per_px = self.lines.scale.px * self.lines.scale.meters_per_px(point.at, point.along);
         let true_m = symbol.alignment.width.at(point.station_m);
         let growth = symbol.growth_at(point.station_m);
         let whole_m = drawn_width_m(true_m, symbol.least_px * growth.max(1.0), meters_per_px);
@@ -396,20 +361,20 @@ impl<'a> SymbolView<'a> {
     }
 
     fn z_at(&self, at: DVec3) -> f64 {
-        self.ground.displayed_z(at.truncate()).unwrap_or(at.z)
+        self.lines.ground.displayed_z(at.truncate()).unwrap_or(at.z)
     }
 
     /// The vertices of a line without those that cannot be told from a straight line.
     fn points(&self, line: &Polyline, smoothing: LineSmoothing) -> Vec<LinePoint> {
-        let z = f64::from(self.z[0]);
+        let z = f64::from(self.lines.z[0]);
         let on_ground = |&at: &DVec2| at.extend(self.z_at(at.extend(z)));
         let (flat, stations) = match smoothing {
             LineSmoothing::None => (line.points().to_vec(), line.stations().to_vec()),
             LineSmoothing::Curves => self.curve(line),
         };
         let points: Vec<DVec3> = flat.iter().map(on_ground).collect();
-        let eye = self.camera.eye().as_dvec3();
-        let slack_m = |at: &DVec3| SLACK_PX * self.scale.meters_per_px_at(at.distance(eye));
+        let eye = self.lines.camera.eye().as_dvec3();
+        let slack_m = |at: &DVec3| SLACK_PX * self.lines.scale.meters_per_px_at(at.distance(eye));
         let slacks_m: Vec<f64> = points.iter().map(slack_m).collect();
         let off = |from: usize, to: usize, index: usize| {
             segment::distance_squared((flat[from], flat[to]), flat[index]).sqrt() / slacks_m[index]
@@ -436,15 +401,15 @@ impl<'a> SymbolView<'a> {
     /// A line with curves for the legs that are coarse on the picture, and the stations of its vertices on the line itself.
     fn curve(&self, line: &Polyline) -> (Vec<DVec2>, Vec<f64>) {
         let (points, stations) = (line.points(), line.stations());
-        let eye = self.camera.eye().as_dvec3();
+        let eye = self.lines.camera.eye().as_dvec3();
         let (mut flat, mut along) = (vec![points[0]], vec![stations[0]]);
         for leg in 0..points.len() - 1 {
             let (from_m, length_m) = (stations[leg], stations[leg + 1] - stations[leg]);
             // No place of the leg is nearer than its middle less half of it.
             let middle = points[leg].midpoint(points[leg + 1]);
-            let middle = middle.extend(self.z_at(middle.extend(f64::from(self.z[0]))));
+            let middle = middle.extend(self.z_at(middle.extend(f64::from(self.lines.z[0]))));
             let depth_m = (middle.distance(eye) - length_m / 2.0).max(length_m);
-            let length_px = length_m / self.scale.meters_per_px_at(depth_m);
+            let length_px = length_m / self.lines.scale.meters_per_px_at(depth_m);
             if length_px > COARSE_PX {
                 let count = (length_px / SMOOTH_PX).ceil().min(MOST_PIECES);
                 flat.extend(spline::along_leg(points, leg, count as u32));
@@ -468,35 +433,11 @@ fn cased_share(symbol: &LineSymbol, growth: f64) -> f64 {
 
 /// The dashes of a line whose width is `least_px` on the picture.
 fn dashes(run: &[SymbolVertex], least_px: f64) -> Vec<Vec<SymbolVertex>> {
-    let mut dashes = vec![Vec::from_iter(run.first().copied())];
-    // Pixels since the dash began.
-    let mut along_px = 0.0;
-    for leg in run.windows(2) {
-        let mean_m_per_px = 0.5 * (leg[0].drawn_m + leg[1].drawn_m) / least_px;
-        let length_px = leg[0].at.distance(leg[1].at) / mean_m_per_px;
-        let mut from_px = 0.0;
-        while from_px < length_px {
-            let is_dash = along_px < DASH_PX[0];
-            let end_px = if is_dash { DASH_PX[0] } else { DASH_PX[0] + DASH_PX[1] };
-            let to_px = (from_px + end_px - along_px).min(length_px);
-            let vertex = leg[0].toward(&leg[1], to_px / length_px);
-            if is_dash {
-                dashes.last_mut().expect("there is always one").push(vertex);
-            }
-            along_px += to_px - from_px;
-            from_px = to_px;
-            if along_px >= end_px - 1e-9 {
-                if !is_dash {
-                    dashes.push(vec![vertex]);
-                    along_px = 0.0;
-                } else {
-                    along_px = end_px;
-                }
-            }
-        }
-    }
-    dashes.retain(|dash| dash.len() > 1);
-    dashes
+    let length_px = |from: &SymbolVertex, to: &SymbolVertex| {
+        let mean_m_per_px = 0.5 * (from.drawn_m + to.drawn_m) / least_px;
+        from.at.distance(to.at) / mean_m_per_px
+    };
+    line_view::dashes(run, DASH_PX, length_px, SymbolVertex::toward)
 }
 
 /// Strokes a part of a symbol along a run of vertices, its ends round; the casing of a mouth is open toward the water.

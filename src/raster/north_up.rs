@@ -13,25 +13,44 @@ impl Raster {
         if self.is_north_up() {
             return Cow::Borrowed(self);
         }
+        let samples = self.samples.clone().mirrored(self.width as usize, self.mirrors());
+        Cow::Owned(Self { samples, ..self.placed_north_up() })
+    }
+
+    /// An axis-aligned raster without samples as [`Self::turned_north_up`] places it.
+    pub(crate) fn placed_north_up(&self) -> Self {
+        if self.is_north_up() {
+            return self.without_samples();
+        }
         let Rect { min, max } = self.extent();
-        let samples = match &self.samples {
-            Samples::F32(values) => Samples::F32(mirrored(values, self)),
-            Samples::F64(values) => Samples::F64(mirrored(values, self)),
-        };
         let map_from_grid = north_up(DVec2::new(min.x, max.y), self.spacing());
-        Cow::Owned(Self { samples, map_from_grid, ..self.without_samples() })
+        Self { map_from_grid, ..self.without_samples() }
+    }
+
+    /// Whether the columns, and whether the rows, of an axis-aligned raster run the other way.
+    pub(crate) fn mirrors(&self) -> (bool, bool) {
+        let axes = self.map_from_grid.matrix2;
+        (axes.x_axis.x < 0.0, axes.y_axis.y > 0.0)
     }
 }
 
-fn mirrored<T: Copy>(values: &[T], raster: &Raster) -> Vec<T> {
-    let axes = raster.map_from_grid.matrix2;
-    let (mirrors_x, mirrors_y) = (axes.x_axis.x < 0.0, axes.y_axis.y > 0.0);
-    let (width, height) = (raster.width as usize, raster.height as usize);
-    let at = |index: usize| {
-        let (row, column) = (index / width, index % width);
-        let row = if mirrors_y { height - 1 - row } else { row };
-        let column = if mirrors_x { width - 1 - column } else { column };
-        values[row * width + column]
-    };
-    (0..values.len()).map(at).collect()
+impl Samples {
+    /// Rows of `width` samples with their columns, and rows, in the other order.
+    pub(crate) fn mirrored(self, width: usize, mirrors: (bool, bool)) -> Self {
+        match self {
+            Self::F32(values) => Self::F32(mirrored(values, width, mirrors)),
+            Self::F64(values) => Self::F64(mirrored(values, width, mirrors)),
+        }
+    }
+}
+
+fn mirrored<T: Copy>(mut values: Vec<T>, width: usize, (mirrors_x, mirrors_y): (bool, bool)) -> Vec<T> {
+    if mirrors_x && mirrors_y {
+        values.reverse();
+    } else if mirrors_x {
+        values.chunks_mut(width).for_each(<[T]>::reverse);
+    } else if mirrors_y {
+        values = values.chunks(width).rev().flatten().copied().collect();
+    }
+    values
 }

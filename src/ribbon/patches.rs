@@ -33,7 +33,7 @@ const SLIVER_M2: f64 = 1e-7;
 
 /// The borders of patches: rising world X of the borders that run north, and Y of those that run east, the outermost
 /// among them.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Borders {
     /// One more than there are columns of patches.
     pub east: Vec<f64>,

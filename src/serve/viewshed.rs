@@ -120,9 +120,9 @@ impl Query for ViewshedQuery {
         Ok(Json(ViewshedAnswer {
             dataset: &served.name,
             crs: ground.crs.name(),
-            columns: window.columns(),
-            rows: window.rows(),
-            south_west: xy(lattice.map_position(window.first)),
+            columns: window.0.width() as u32,
+            rows: window.0.height() as u32,
+            south_west: xy(lattice.map_position(window.0.first)),
             cell: xy(lattice.cell()),
             visible_area_m2: counts.visible as f64 * lattice.cell().element_product(),
             counts,
@@ -154,23 +154,17 @@ fn sector(text: Option<&str>) -> Result<Sector, HttpError> {
 }
 
 /// The posts of an answer.
-struct PostWindow {
-    first: Post,
-    last: Post,
-}
+struct PostWindow(PostRect);
 
 impl PostWindow {
     /// The posts within `range_m` of `at` eastward and northward; those of the border where there are none.
     fn around(lattice: &Lattice, at: DVec2, range_m: f64) -> Self {
         let grid = lattice.grid_at(at - lattice.origin());
         let reach = DVec2::splat(range_m) / lattice.cell();
-        let most = DVec2::new(f64::from(lattice.columns() - 1), f64::from(lattice.rows() - 1));
-        let post = |grid: DVec2| {
-            let inside = grid.clamp(DVec2::ZERO, most);
-            Post { column: inside.x as u32, row: inside.y as u32 }
-        };
+        let most = lattice.last_grid();
+        let post = |grid: DVec2| Post::at_grid(grid.clamp(DVec2::ZERO, most));
         // Rounded outward, so that rounding leaves out no post right at the range.
-        Self { first: post((grid - reach).floor()), last: post((grid + reach).ceil()) }
+        Self(PostRect { first: post((grid - reach).floor()), last: post((grid + reach).ceil()) })
     }
 
     /// The ground around these posts alone, where it is less than half of what is held: a viewshed sets up a state for each post
@@ -178,26 +172,18 @@ impl PostWindow {
     fn part(&self, lattice: &Lattice) -> Option<Lattice> {
         /// Posts beside the range that its lines may meet.
         const BESIDE: u32 = 4;
-        let around = PostRect { first: self.first, last: self.last }.grown((BESIDE, BESIDE), lattice);
+        let around = self.0.grown((BESIDE, BESIDE), lattice);
         let is_little = 2 * around.width() * around.height() < lattice.held_heights().len();
         (lattice.holds_all() && is_little).then(|| lattice.holding_only(around))
     }
 
-    fn columns(&self) -> u32 {
-        self.last.column.saturating_sub(self.first.column) + 1
-    }
-
-    fn rows(&self) -> u32 {
-        self.last.row.saturating_sub(self.first.row) + 1
-    }
-
-    fn posts(&self) -> u64 {
-        u64::from(self.columns()) * u64::from(self.rows())
+    fn posts(&self) -> usize {
+        self.0.width() * self.0.height()
     }
 
     fn check(&self, lattice: &Lattice, most: u32) -> Result<(), HttpError> {
         let posts = self.posts();
-        if posts <= u64::from(most) {
+        if posts as u64 <= u64::from(most) {
             return Ok(());
         }
         // A square has two cells for each of the range, and up to three posts more.
@@ -212,21 +198,21 @@ impl PostWindow {
     fn counts(&self, viewshed: &Viewshed) -> ViewshedCounts {
         let all = viewshed.counts();
         let looked_at = all.visible + all.hidden + all.no_data;
-        ViewshedCounts { beyond: (self.posts() as usize).saturating_sub(looked_at), ..all }
+        ViewshedCounts { beyond: self.posts().saturating_sub(looked_at), ..all }
     }
 
     /// The runs of a viewshed whose first post is `first`.
     fn runs(&self, viewshed: &Viewshed, first: Post) -> Vec<String> {
         let row = |row: u32| {
-            let (column, row) = (self.first.column - first.column, row - first.row);
+            let (column, row) = (self.0.first.column - first.column, row - first.row);
             let from = row as usize * viewshed.columns as usize + column as usize;
-            let posts = &viewshed.posts[from..from + self.columns() as usize];
+            let posts = &viewshed.posts[from..from + self.0.width()];
             posts.chunk_by(|a, b| a == b).fold(String::new(), |mut runs, run| {
                 let _ = write!(runs, "{}{}", run.len(), letter(run[0]));
                 runs
             })
         };
-        (self.first.row..=self.last.row).map(row).collect()
+        (self.0.first.row..=self.0.last.row).map(row).collect()
     }
 }
 

@@ -27,18 +27,16 @@ pub struct GraphicTexts {
 pub fn graphic_texts(texts: &[PlacedText], camera: &Camera, picture: &Rendering) -> GraphicTexts {
     let mut found = GraphicTexts { fixed: Vec::new(), along: Vec::new() };
     for text in texts {
-        match &text.course {
-            PlacedCourse::Level => found.fixed.extend(fixed(text, camera, picture)),
-            PlacedCourse::Ends(line) => {
-                found.along.push(along(text, line, LinePlacement::Ends, camera, picture));
+        let (line, placement) = match &text.course {
+            PlacedCourse::Level => {
+                found.fixed.extend(fixed(text, camera, picture));
+                continue;
             }
-            PlacedCourse::Once(line) => {
-                found.along.push(along(text, line, LinePlacement::Once, camera, picture));
-            }
-            PlacedCourse::Repeated(line) => {
-                found.along.push(along(text, line, LinePlacement::Repeated, camera, picture));
-            }
-        }
+            PlacedCourse::Ends(line) => (line, LinePlacement::Ends),
+            PlacedCourse::Once(line) => (line, LinePlacement::Once),
+            PlacedCourse::Repeated(line) => (line, LinePlacement::Repeated),
+        };
+        found.along.push(along(text, line, placement, camera, picture));
     }
     found
 }

@@ -198,15 +198,3 @@ impl SymbolRole {
         self.number() & 1 != 0
     }
 }
-
-impl SymbolAmplifier {
-    /// Whether it is the size of a unit.
-    pub fn is_echelon(self) -> bool {
-        (11..=26).contains(&self.number())
-    }
-
-    /// Whether it says how equipment moves, or what a ship tows.
-    pub fn is_mobility(self) -> bool {
-        (31..=62).contains(&self.number())
-    }
-}

@@ -72,6 +72,12 @@ impl PostRect {
         (self.last.row - self.first.row + 1) as usize
     }
 
+    /// The index of a post of the rectangle, counted from the south-west, row by row.
+    #[inline]
+    pub fn index(&self, post: Post) -> usize {
+        (post.row - self.first.row) as usize * self.width() + (post.column - self.first.column) as usize
+    }
+
     /// Whether the post lies inside.
     #[inline]
     pub fn contains(&self, post: Post) -> bool {

@@ -39,7 +39,7 @@ impl OpenedScene {
         context: &Context,
     ) -> Option<PickJob> {
         let paged = self.paged.as_ref().filter(|_| pick.ground_m.is_none())?;
-        let (questions, scene, context) = (paged.questions(), Arc::clone(&self.scene), context.clone());
+        let (questions, scene) = (paged.questions(), Arc::clone(&self.scene));
         let (ray, expected, feature) = (pixel_ray(camera, pixel), pick.world, pick.place.feature);
         let work = move || {
             let found = questions.answer(|disk| disk.pick(ray, expected))?;
@@ -48,7 +48,7 @@ impl OpenedScene {
                 described(&scene, Some(&ground), PickedWorld { world, at, distance_m, feature })
             }))
         };
-        Some(WorkerJob::start(work, move || context.request_repaint()))
+        Some(WorkerJob::start(context, work))
     }
 }
 
@@ -66,16 +66,15 @@ impl ViewerApp {
         measuring.profile.clear();
         if measuring.has_enough() {
             measuring.facts = vec!["reading the ground …".to_owned()];
-            let (questions, asked, context) = (paged.questions(), measuring.clone(), self.context.clone());
+            let (questions, asked) = (paged.questions(), measuring.clone());
             let work = move || measured(asked, &questions);
-            self.answers.measuring = Some(WorkerJob::start(work, move || context.request_repaint()));
+            self.answers.measuring = Some(WorkerJob::start(&self.context, work));
         }
     }
 
     /// Shows the answers that have come.
     pub(super) fn follow_answers(&mut self) {
-        if let Some(done) = self.answers.measuring.as_ref().and_then(WorkerJob::poll) {
-            self.answers.measuring = None;
+        if let Some(done) = WorkerJob::take(&mut self.answers.measuring) {
             match (done, &mut self.tool) {
                 (Ok(done), Some(ActiveTool::Measure(asked))) if asked.points == done.points => {
                     (asked.facts, asked.profile) = (done.facts, done.profile);
@@ -84,8 +83,7 @@ impl ViewerApp {
                 _ => {}
             }
         }
-        let Some(done) = self.answers.pick.as_ref().and_then(WorkerJob::poll) else { return };
-        self.answers.pick = None;
+        let Some(done) = WorkerJob::take(&mut self.answers.pick) else { return };
         match (done, &self.opened, &mut self.picked) {
             (Ok(Ok(Some(pick))), Some(opened), Some(picked)) => {
                 picked.place = Some(PlaceText::of(&opened.scene, &pick));

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use egui::Context;
+
 use crate::worker::WorkerJob;
 use sandtable_base::message::chain::error_text;
 use sandtable_editing::view_snapshot::ViewSnapshot;
@@ -14,11 +16,11 @@ pub struct DrawingJob {
 }
 
 impl DrawingJob {
-    /// Begins to draw; `wake` is called when [`DrawingJob::poll`] has the picture.
-    pub fn start(snapshot: ViewSnapshot, wake: impl FnOnce() + Send + 'static) -> Self {
+    /// Begins to draw; the window shows a frame when [`DrawingJob::poll`] has the picture.
+    pub fn start(context: &Context, snapshot: ViewSnapshot) -> Self {
         let drawn = snapshot.clone();
         let draw = move || drawn.write(&|_| ()).map_err(|error| error_text(&error));
-        Self { snapshot, job: WorkerJob::start(draw, wake) }
+        Self { snapshot, job: WorkerJob::start(context, draw) }
     }
 
     /// The picture's file, or why there is none; `None` while it is being drawn.

@@ -83,8 +83,7 @@ impl FinerGround {
 
     /// Takes over what was made.
     fn follow(&mut self) -> Result<(), String> {
-        let Some(done) = self.job.as_ref().and_then(WorkerJob::poll) else { return Ok(()) };
-        self.job = None;
+        let Some(done) = WorkerJob::take(&mut self.job) else { return Ok(()) };
         let sent = done.map_err(|failure| error_text(&failure)).and_then(|sent| sent);
         let SentWindows { made, prepared } = sent.inspect_err(|_| self.has_failed = true)?;
         drop_apart(std::mem::replace(&mut self.made, made));
@@ -113,7 +112,7 @@ impl FinerGround {
         }
         self.is_lost = false;
         let plan = missing.map(|at| plans[at].clone());
-        let (held, maker, context) = (self.made.clone(), Arc::clone(&self.maker), context.clone());
+        let (held, maker) = (self.made.clone(), Arc::clone(&self.maker));
         let work = move || {
             let mut made: BTreeMap<_, MadeWindow> =
                 held.into_iter().map(|made| (std::cmp::Reverse(made.plan.every()), made)).collect();
@@ -128,7 +127,7 @@ impl FinerGround {
             let prepared = loader.prepare_windows(&windows).map_err(|error| error_text(&error))?;
             Ok(SentWindows { made, prepared })
         };
-        self.job = Some(WorkerJob::start(work, move || context.request_repaint()));
+        self.job = Some(WorkerJob::start(context, work));
     }
 }
 

@@ -202,9 +202,7 @@ impl ViewerApp {
             return self.reload();
         };
         let (path, files) = (session.editor.source().path.clone(), opened.scene.files.clone());
-        let context = self.context.clone();
-        let wake = move || context.request_repaint();
-        let job = WorkerJob::start(move || fingerprint(&path, &files).ok(), wake);
+        let job = WorkerJob::start(&self.context, move || fingerprint(&path, &files).ok());
         self.files.check = Some(FileCheck { purpose, job });
     }
 

@@ -1,11 +1,12 @@
 //! The ghost of what is being dragged: the edges of a model's box, the frame of a label, where it will stand.
 
-use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, vec2};
+use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke};
 use glam::Vec3;
 
 use crate::opened::OpenedScene;
 use crate::picked_part::{DragTarget, GrabTarget, PickedPart, heading_deg};
 use crate::view_area::ViewArea;
+use crate::window_point::window_point;
 use sandtable_picture::models::PlacementMove;
 use sandtable_view::camera::Camera;
 
@@ -43,11 +44,7 @@ pub fn show_ghost(
     view: &ViewArea,
     (part, target): (&PickedPart, DragTarget),
 ) {
-    let (width, height) = camera.size();
-    let on_screen = |at: Vec3| -> Option<Pos2> {
-        let pixel = camera.project(at)?.pixel;
-        Some(rect.min + vec2(pixel.x / width as f32, pixel.y / height as f32) * rect.size())
-    };
+    let on_screen = |at: Vec3| window_point(camera, rect, at).map(|(at, _)| at);
     let edges = opened.ghost_edges(part, target);
     let edges: Vec<[Pos2; 2]> =
         edges.into_iter().filter_map(|[from, to]| Some([on_screen(from)?, on_screen(to)?])).collect();

@@ -12,6 +12,7 @@ use egui::{Align, Align2, Color32, Painter, Pos2, Rect, Stroke, pos2, vec2};
 use glam::Vec3;
 
 use crate::lettering::font;
+use crate::window_point::window_point;
 use sandtable_description::words::LabelKind;
 use sandtable_scene::scene_label::SceneLabel;
 use sandtable_view::camera::Camera;
@@ -126,11 +127,7 @@ impl LabelLayer {
 
 /// Where a place is on the window, and how far away; `None` outside the picture.
 fn on_screen(at: Vec3, picture: &LabelPicture<'_>) -> Option<(Pos2, f32)> {
-    let projected = picture.camera.project(at)?;
-    let (width, height) = picture.camera.size();
-    let share = vec2(projected.pixel.x / width as f32, projected.pixel.y / height as f32);
-    let at = picture.rect.min + share * picture.rect.size();
-    picture.rect.contains(at).then_some((at, projected.depth_m))
+    window_point(picture.camera, picture.rect, at).filter(|(at, _)| picture.rect.contains(*at))
 }
 
 fn leader(kind: LabelKind) -> f32 {

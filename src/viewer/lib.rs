@@ -65,6 +65,7 @@ mod view_area;
 mod viewsheds;
 mod watch;
 mod window;
+mod window_point;
 mod worker;
 
 use crate::error::ViewerError;

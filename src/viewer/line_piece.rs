@@ -3,6 +3,7 @@
 use egui::{FontId, Pos2, Rect};
 use glam::{Vec2, Vec3};
 
+use crate::window_point::window_point;
 use sandtable_view::camera::Camera;
 
 /// Measures letters in points: the width of each, and the height of all.
@@ -39,11 +40,9 @@ pub struct NamePoint {
 /// set along them does not leap when a vertex leaves the picture.
 pub fn pieces(line: &[Vec3], picture: &LinePicture<'_>) -> Vec<Vec<NamePoint>> {
     let (camera, rect) = (picture.camera, picture.rect);
-    let (width, height) = camera.size();
     let on_window = |world: Vec3| {
-        let seen = camera.project(world)?;
-        let share = Vec2::new(seen.pixel.x / width as f32, seen.pixel.y / height as f32);
-        Some(Vec2::new(rect.min.x + share.x * rect.width(), rect.min.y + share.y * rect.height()))
+        let (at, _) = window_point(camera, rect, world)?;
+        Some(Vec2::new(at.x, at.y))
     };
     let is_inside = |at: Vec2| rect.contains(Pos2::new(at.x, at.y));
     let (mut found, mut open): (Vec<Vec<NamePoint>>, Vec<NamePoint>) = (Vec::new(), Vec::new());

@@ -16,8 +16,7 @@ impl OpenedScene {
     /// # Errors
     /// A fault of the program; the ground before stays.
     pub fn follow_reach(&mut self, context: &Context) -> Result<(), WorkerFailure> {
-        if let Some(done) = self.reaching.as_ref().and_then(WorkerJob::poll) {
-            self.reaching = None;
+        if let Some(done) = WorkerJob::take(&mut self.reaching) {
             drop_apart(self.walk.take_reach(done?));
         }
         let Ok(camera) = self.camera(self.size) else { return Ok(()) };
@@ -25,8 +24,7 @@ impl OpenedScene {
         let is_shown = self.paged.as_ref().is_none_or(|paged| !paged.is_shown());
         let task = if self.reaching.is_none() && is_shown { self.walk.reach_task(&camera) } else { None };
         if let Some(task) = task {
-            let context = context.clone();
-            self.reaching = Some(WorkerJob::start(move || task.ground(), move || context.request_repaint()));
+            self.reaching = Some(WorkerJob::start(context, move || task.ground()));
         }
         Ok(())
     }

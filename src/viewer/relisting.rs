@@ -81,8 +81,7 @@ impl OpenedScene {
         let (Ok(camera), Ok(seen)) = (self.camera(FIRST_SIZE), self.camera(self.size)) else { return };
         let shadowed = ShadowedView { camera: seen, ground: self.walk.shown_ground() };
         let task = self.walk.standing_task(self.wanted_sun);
-        let (made, hidden, slot, context) =
-            (task.clone(), self.hidden.clone(), slot.clone(), context.clone());
+        let (made, hidden, slot) = (task.clone(), self.hidden.clone(), slot.clone());
         let has_windows = self.finer.is_some();
         let work = move || {
             let mut list = made.list(&camera, &|_| ());
@@ -95,7 +94,7 @@ impl OpenedScene {
             let standing = StandingIndex::new(Arc::clone(&list));
             Ok(RelistedScene { list, standing, prepared, eye: camera.eye(), seen })
         };
-        let job = WorkerJob::start(work, move || context.request_repaint());
+        let job = WorkerJob::start(context, work);
         self.relisting = Some(Relisting { task, job });
     }
 }

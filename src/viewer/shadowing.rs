@@ -30,8 +30,7 @@ impl OpenedScene {
     /// # Errors
     /// See [`RelistingError`]; the shadows before stay.
     pub fn follow_shadows(&mut self, context: &Context, slot: &LoaderSlot) -> Result<(), RelistingError> {
-        if let Some(done) = self.shadows.job.as_ref().and_then(WorkerJob::poll) {
-            self.shadows.job = None;
+        if let Some(done) = WorkerJob::take(&mut self.shadows.job) {
             self.shadows.ready = done??;
         }
         let Ok(camera) = self.camera(self.size) else { return Ok(()) };
@@ -44,13 +43,13 @@ impl OpenedScene {
             return Ok(());
         }
         let view = ShadowedView { camera, ground: self.walk.shown_ground() };
-        let (list, slot, context) = (std::sync::Arc::clone(&self.list), slot.clone(), context.clone());
+        let (list, slot) = (std::sync::Arc::clone(&self.list), slot.clone());
         let work = move || {
             let Some(loader) = slot.loader() else { return Ok(None) };
             loader.prepare_shadows(&view.shadows(&list)?).map(Some)
         };
         self.shadows.made_for = Some(camera);
-        self.shadows.job = Some(WorkerJob::start(work, move || context.request_repaint()));
+        self.shadows.job = Some(WorkerJob::start(context, work));
         Ok(())
     }
 

@@ -72,8 +72,7 @@ impl ViewerApp {
         match snapshot() {
             Ok(snapshot) => {
                 self.context.copy_text(snapshot.camera.clone());
-                let context = self.context.clone();
-                self.drawing = Some(DrawingJob::start(snapshot, move || context.request_repaint()));
+                self.drawing = Some(DrawingJob::start(&self.context, snapshot));
             }
             Err(error) => self.notices.warn(error),
         }

@@ -2,10 +2,11 @@
 //!
 //! A symbol's picture is painted on white and on black: what differs between the two is what shows through it.
 
-use egui::{Color32, ColorImage, Context, Painter, Pos2, Rect, TextureHandle, TextureOptions, pos2, vec2};
+use egui::{Color32, ColorImage, Context, Painter, Rect, TextureHandle, TextureOptions, pos2, vec2};
 use glam::{UVec2, Vec2};
 
 use crate::opened::OpenedScene;
+use crate::window_point::window_point;
 use sandtable_annotate::annotation::{Annotations, PictureSymbol, SymbolHeight};
 use sandtable_annotate::paint::annotate;
 use sandtable_draw::color::Srgba;
@@ -116,7 +117,10 @@ impl SymbolLayer {
         let mut taken: Vec<Rect> = Vec::new();
         for index in order {
             let place = self.pictures[index].as_ref().and_then(|picture| {
-                let at = on_screen(&symbols[index], rect, camera)?;
+                let (at, _) = window_point(camera, rect, symbols[index].ground)?;
+                if !rect.contains(at) {
+                    return None;
+                }
                 let place = Rect::from_min_size(at - picture.anchor, picture.size);
                 let has_room = !taken.iter().any(|other| other.intersects(place));
                 (has_room && opened.is_seen(camera, symbols[index].ground)).then_some((place, picture))
@@ -152,14 +156,6 @@ impl SymbolLayer {
             context.request_repaint();
         }
     }
-}
-
-fn on_screen(symbol: &SceneSymbol, rect: Rect, camera: &Camera) -> Option<Pos2> {
-    let projected = camera.project(symbol.ground)?;
-    let (width, height) = camera.size();
-    let share = vec2(projected.pixel.x / width as f32, projected.pixel.y / height as f32);
-    let at = rect.min + share * rect.size();
-    rect.contains(at).then_some(at)
 }
 
 #[cfg(test)]

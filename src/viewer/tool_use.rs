@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use egui::{CollapsingHeader, Color32, Painter, Pos2, Rect, RichText, Stroke, Ui, vec2};
+use egui::{CollapsingHeader, Color32, Painter, Pos2, Rect, RichText, Stroke, Ui};
 use glam::{DVec2, Vec2};
 
 use crate::active_tool::{ActiveTool, ToolPreview};
@@ -14,6 +14,7 @@ use crate::paging::PagedTerrain;
 use crate::panels::tools::{ToolEvent, ToolsPanel, tools_panel};
 use crate::session::EditOutcome;
 use crate::view_area::ViewEvent;
+use crate::window_point::window_point;
 use sandtable_editing::edit::SceneEdit;
 use sandtable_editing::tool::{DrawingTool, ToolKind, ToolSettings, ToolShape};
 use sandtable_view::camera::Camera;
@@ -273,10 +274,7 @@ fn draw_line(
     let origin = opened.scene.lattice.origin();
     let on_screen = |at: DVec2| -> Option<Pos2> {
         let z = opened.ground_z(at - origin)?;
-        let projected = camera.project((at - origin).extend(z).as_vec3())?;
-        let (width, height) = camera.size();
-        let share = vec2(projected.pixel.x / width as f32, projected.pixel.y / height as f32);
-        Some(rect.min + share * rect.size())
+        window_point(camera, rect, (at - origin).extend(z).as_vec3()).map(|(at, _)| at)
     };
     let closing =
         (shape == ToolLine::Outline).then(|| points.last().copied().zip(points.first().copied())).flatten();

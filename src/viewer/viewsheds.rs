@@ -45,8 +45,7 @@ impl ViewerApp {
             let tint = seen.as_ref().and_then(|seen| task.tint(seen));
             SeenFromPlace { summary: seen.map(|seen| seen.summary), tint }
         };
-        let context = self.context.clone();
-        let job = WorkerJob::start(work, move || context.request_repaint());
+        let job = WorkerJob::start(&self.context, work);
         self.viewshed = Some(ViewshedOverlay { at, job: Some(job), is_outdated: false });
     }
 
@@ -72,8 +71,7 @@ impl ViewerApp {
     /// Shows what was computed meanwhile.
     pub(super) fn follow_viewshed(&mut self) {
         let Some(overlay) = &mut self.viewshed else { return };
-        let Some(done) = overlay.job.as_ref().and_then(WorkerJob::poll) else { return };
-        overlay.job = None;
+        let Some(done) = WorkerJob::take(&mut overlay.job) else { return };
         let (at, is_outdated) = (overlay.at, overlay.is_outdated);
         match done {
             _ if is_outdated => self.look_around(at),

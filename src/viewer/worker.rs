@@ -6,6 +6,7 @@
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
 
+use egui::Context;
 use rayon::ThreadPoolBuilder;
 
 /// Work that is being done.
@@ -19,13 +20,13 @@ pub struct WorkerJob<T> {
 pub struct WorkerFailure;
 
 impl<T: Send + 'static> WorkerJob<T> {
-    /// Begins to work; `wake` is called when [`WorkerJob::poll`] has the result.
-    pub fn start(work: impl FnOnce() -> T + Send + 'static, wake: impl FnOnce() + Send + 'static) -> Self {
-        let (sender, done) = channel();
+    /// Begins to work; the window shows a frame when [`WorkerJob::poll`] has the result.
+    pub fn start(context: &Context, work: impl FnOnce() -> T + Send + 'static) -> Self {
+        let ((sender, done), context) = (channel(), context.clone());
         thread::spawn(move || {
             // Nobody waits for the result where the window was closed.
             let _ = sender.send(run_apart(work));
-            wake();
+            context.request_repaint();
         });
         Self { done }
     }
@@ -37,6 +38,13 @@ impl<T: Send + 'static> WorkerJob<T> {
             Err(TryRecvError::Empty) => None,
             Err(TryRecvError::Disconnected) => Some(Err(WorkerFailure)),
         }
+    }
+
+    /// The result of the job in `slot`, which has none then; `None` where there is no job, or while it works.
+    pub fn take(slot: &mut Option<Self>) -> Option<Result<T, WorkerFailure>> {
+        let done = slot.as_ref()?.poll()?;
+        *slot = None;
+        Some(done)
     }
 }
 
@@ -75,14 +83,16 @@ mod tests {
     #[test]
     fn a_result_arrives_and_one_who_waits_is_woken() {
         let (sender, woken) = channel();
-        let job = WorkerJob::start(|| 6 * 7, move || sender.send(()).expect("awaited"));
+        let context = Context::default();
+        context.set_request_repaint_callback(move |_| sender.send(()).expect("awaited"));
+        let job = WorkerJob::start(&context, || 6 * 7);
         assert_eq!(result_of(&job), Ok(42));
         assert!(woken.recv_timeout(Duration::from_secs(60)).is_ok());
     }
 
     #[test]
     fn work_that_fails_is_reported() {
-        let job: WorkerJob<u32> = WorkerJob::start(|| panic!("a fault of the program"), || ());
+        let job: WorkerJob<u32> = WorkerJob::start(&Context::default(), || panic!("a fault of the program"));
         assert_eq!(result_of(&job), Err(WorkerFailure));
     }
 
@@ -104,7 +114,7 @@ mod tests {
                 });
             }
             thread::sleep(Duration::from_millis(50));
-            let job = WorkerJob::start(|| (0..10_000u64).into_par_iter().sum::<u64>(), || ());
+            let job = WorkerJob::start(&Context::default(), || (0..10_000u64).into_par_iter().sum::<u64>());
             while Instant::now() < end && !is_done.load(std::sync::atomic::Ordering::Relaxed) {
                 if let Some(result) = job.poll() {
                     is_done.store(true, std::sync::atomic::Ordering::Relaxed);

@@ -17,13 +17,13 @@ use glam::{DVec2, Vec3};
 
 use sandtable_draw::ground::GroundMap;
 use sandtable_draw::ground_window::GroundWindow;
-use sandtable_raster::error::DemErrorKind;
 use sandtable_raster::reduced::{reduced_part, reduced_size};
 use sandtable_raster::windows::Windows;
 use sandtable_scene::ground_window::{WindowGround, ground_window};
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::lattice::{Lattice, LatticeError, Post};
 use sandtable_terrain::post_rect::PostRect;
+use sandtable_terrain::query::windowed::LatticePartError;
 
 /// Posts along the sides of a window: 16 MB on the device. Of a picture a thousand pixels high, its border is where a pixel
 /// is a quarter of a post wide.
@@ -80,17 +80,6 @@ impl GroundWindowPlan {
     }
 }
 
-/// Why a window cannot be made.
-#[derive(Debug, thiserror::Error)]
-pub enum GroundWindowError {
-    /// Its samples cannot be read.
-    #[error(transparent)]
-    Samples(#[from] DemErrorKind),
-    /// They are no lattice.
-    #[error(transparent)]
-    Lattice(#[from] LatticeError),
-}
-
 /// Makes the windows of a terrain.
 pub struct GroundWindowMaker<W> {
     samples: W,
@@ -137,12 +126,12 @@ impl<W: Windows> GroundWindowMaker<W> {
     /// Makes a window.
     ///
     /// # Errors
-    /// See [`GroundWindowError`].
+    /// See [`LatticePartError`].
     pub fn window(
         &mut self,
         plan: &GroundWindowPlan,
         light: &GroundWindowLight,
-    ) -> Result<GroundWindow, GroundWindowError> {
+    ) -> Result<GroundWindow, LatticePartError> {
         let GroundWindowPlan { every, columns, rows } = plan;
         let size = reduced_size(self.samples.size(), *every);
         let around = |range: &Range<u32>, count: u32| {

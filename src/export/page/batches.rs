@@ -13,19 +13,7 @@ use crate::page::container::PageSections;
 use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId, MaterialId};
 use sandtable_draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use sandtable_mesh::sink::VertexId;
-
-/// The condition under which an item is shown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum ShowRange {
-    /// Always.
-    Always,
-    /// A line symbol, in its band of distances; V says how far across the line a place is.
-    Band(u8),
-    /// Where the scene is seen as a block on a table.
-    Table,
-    /// A form of a model, by its number.
-    Form(u32),
-}
+use sandtable_picture::all_round::ItemShown;
 
 /// Parts of a meter in positions of line symbols, and of a texture in texture coordinates: finer ones are not seen, and
 /// take most of a page.
@@ -33,14 +21,10 @@ const SYMBOL_PARTS: f32 = 16.0;
 const TEXTURE_PARTS: f32 = 2048.0;
 
 /// The key under which items become one batch; layers, then the order in which a draped material first comes.
-type BatchKey = (DepthLayer, ShowRange, MaterialId);
+type BatchKey = (DepthLayer, ItemShown, MaterialId);
 
-/// Items as batches, in drawing order. `range` says of each item, by its index, from how far it is shown.
-pub fn batches(
-    sections: &mut PageSections,
-    list: &DrawList,
-    range: impl Fn(usize) -> ShowRange,
-) -> Vec<Value> {
+/// Items as batches, in drawing order. `shown` says of each item when it is shown.
+pub fn batches(sections: &mut PageSections, list: &DrawList, shown: &[ItemShown]) -> Vec<Value> {
     let mut merged: Vec<(BatchKey, MergedMesh)> = Vec::new();
     let mut solids: BTreeMap<BatchKey, usize> = BTreeMap::new();
     let mut repeated = Vec::new();
@@ -50,8 +34,8 @@ pub fn batches(
         if first.triangles.is_empty() {
             continue;
         }
-        let range_of_run = range(run.start);
-        let is_form = matches!(range_of_run, ShowRange::Form(_));
+        let range_of_run = shown[run.start];
+        let is_form = matches!(range_of_run, ItemShown::Form(_));
         if items.len() > 1 || is_form || first.world_from_mesh != Mat4::IDENTITY {
             repeated.push((items, range_of_run));
             continue;
@@ -84,12 +68,12 @@ pub fn batches(
     batches
 }
 
-fn note_range(batch: &mut Value, range: ShowRange) {
+fn note_range(batch: &mut Value, range: ItemShown) {
     match range {
-        ShowRange::Always => {}
-        ShowRange::Band(band) => batch["band"] = json!(band),
-        ShowRange::Table => batch["table"] = json!(true),
-        ShowRange::Form(form) => batch["form"] = json!(form),
+        ItemShown::Always => {}
+        ItemShown::Band(band) => batch["band"] = json!(band),
+        ItemShown::Table => batch["table"] = json!(true),
+        ItemShown::Form(form) => batch["form"] = json!(form),
     }
 }
 
@@ -132,10 +116,10 @@ impl MergedMesh {
         sections: &mut PageSections,
         material: &Material,
         layer: DepthLayer,
-        range: ShowRange,
+        range: ItemShown,
     ) -> Value {
         let rounded = |value: f32, parts: f32| (value * parts).round() / parts;
-        let is_symbol = matches!(range, ShowRange::Band(_));
+        let is_symbol = matches!(range, ItemShown::Band(_));
         let place = |value: f32| if is_symbol { rounded(value, SYMBOL_PARTS) } else { value };
         let positions: Vec<f32> =
             self.vertices.iter().flat_map(|vertex| vertex.position.map(place)).collect();
@@ -183,7 +167,7 @@ fn repeated_batch(sections: &mut PageSections, list: &DrawList, items: &[DrawIte
     let mut mesh = MergedMesh::default();
     mesh.add(&list.meshes[first.mesh.0 as usize], &DrawItem { feature: FeatureId::NONE, ..first.clone() });
     let mut batch =
-        mesh.write(sections, &list.materials[first.material.0 as usize], first.layer, ShowRange::Always);
+        mesh.write(sections, &list.materials[first.material.0 as usize], first.layer, ItemShown::Always);
     // Three rows of four: rotation, scale and translation.
     let rows = |item: &DrawItem| {
         let rows = item.world_from_mesh.transpose();
@@ -253,7 +237,7 @@ mod tests {
         let tree = list.items[3].clone();
         list.items.push(DrawItem { feature: FeatureId(9), ..tree });
         let mut sections = PageSections::default();
-        let batches = batches(&mut sections, &list, |_| ShowRange::Always);
+        let batches = batches(&mut sections, &list, &vec![ItemShown::Always; list.items.len()]);
         let counts: Vec<_> = batches.iter().map(|batch| (&batch["vertices"], &batch["count"])).collect();
         let null = Value::Null;
         assert_eq!(counts, [(&json!(6), &null), (&json!(3), &null), (&json!(3), &json!(2))]);

@@ -20,18 +20,18 @@ use base64::engine::general_purpose::STANDARD;
 use glam::{DVec2, Vec2, Vec3};
 use serde_json::{Value, json};
 
-use crate::page::batches::ShowRange;
 use crate::page::container::PageSections;
 use sandtable_draw::backdrop::Backdrop;
 use sandtable_draw::bathymetry::bathymetry;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::ground::GroundMap;
 use sandtable_draw::lighting::{Lighting, ReliefShading};
-use sandtable_draw::list::DrawList;
 use sandtable_draw::pixels::Pixels;
 use sandtable_draw::undergrowth::Undergrowth;
 use sandtable_draw::water::WaterColor;
 use sandtable_geom::chebyshev::ChebyshevTable;
+use sandtable_picture::all_round::AllRoundScene;
+use sandtable_picture::detail::ListedForm;
 use sandtable_terrain::lattice::Lattice;
 
 /// The largest page that is written: browsers take more, but mail and phones do not.
@@ -43,10 +43,8 @@ const LEAST_VERTEX_BYTES: usize = 2;
 /// A scene for a page.
 #[derive(Clone, Copy)]
 pub struct PageScene<'a> {
-    /// The draw list, with its ground map.
-    pub list: &'a DrawList,
-    /// When the item of an index is shown.
-    pub range_of: &'a dyn Fn(usize) -> ShowRange,
+    /// The draw list with its ground map, and when each item is shown.
+    pub drawn: &'a AllRoundScene,
     /// The heights, true to scale.
     pub lattice: &'a Lattice,
     /// The rest.
@@ -79,16 +77,12 @@ pub struct PageFacts {
     pub base_z: f32,
     /// The distance at which 63 % is haze, 0 for clear air; `None` fits it to the view.
     pub haze_m: Option<f32>,
-    /// Meters in a pixel, of a picture 1080 lines high, for which the line symbols of each band are made; falling.
-    pub bands_m: Vec<f64>,
     /// Names by feature id from 2 on.
     pub features: Vec<String>,
     /// Names and heights on the picture.
     pub labels: Vec<PageLabel>,
     /// Symbols on the picture.
     pub symbols: Vec<PageSymbol>,
-    /// The forms of models, by the number in [`ShowRange::Form`].
-    pub forms: Vec<PageForm>,
     /// Views, the first shown first; at least one.
     pub cameras: Vec<PageCamera>,
 }
@@ -125,19 +119,6 @@ pub struct PageSymbol {
     pub rank: f64,
 }
 
-/// A form of equal models.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PageForm {
-    /// Which models; the forms of the same models follow one another, the finest first.
-    pub group: usize,
-    /// How far its surface is off, in units of the model.
-    pub error: f32,
-    /// The center of the sphere around the model, in its own space, and its radius.
-    pub sphere: (Vec3, f32),
-    /// Whether it is a plant, whose tone the ground under it has.
-    pub is_plant: bool,
-}
-
 /// A view of a page.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PageCamera {
@@ -172,7 +153,8 @@ pub struct PageTooLarge(pub usize);
 /// # Errors
 /// [`PageTooLarge`].
 pub fn page(scene: &PageScene<'_>) -> Result<Vec<u8>, PageTooLarge> {
-    let least = LEAST_VERTEX_BYTES * scene.list.meshes.iter().map(|mesh| mesh.vertices.len()).sum::<usize>();
+    let least =
+        LEAST_VERTEX_BYTES * scene.drawn.list.meshes.iter().map(|mesh| mesh.vertices.len()).sum::<usize>();
     if least > MOST_BYTES {
         return Err(PageTooLarge(least));
     }
@@ -231,7 +213,7 @@ fn as_script_data(json: &str) -> String {
 }
 
 fn description(scene: &PageScene<'_>, sections: &mut PageSections) -> Value {
-    let PageScene { list, range_of, lattice, facts } = *scene;
+    let PageScene { drawn: AllRoundScene { list, shown, bands_m, forms, .. }, lattice, facts } = *scene;
     let level = GroundMap::level();
     let map = list.ground.as_deref().unwrap_or(&level);
     let imagery = map.imagery.as_deref().map(|imagery| {
@@ -256,11 +238,11 @@ fn description(scene: &PageScene<'_>, sections: &mut PageSections) -> Value {
         "bounds": facts.bounds.map(|corner| corner.to_array()),
         "baseZ": facts.base_z,
         "haze": facts.haze_m,
-        "bands": facts.bands_m,
+        "bands": bands_m,
         "features": facts.features,
         "labels": facts.labels.iter().map(label).collect::<Vec<_>>(),
         "symbols": facts.symbols.iter().map(|it| symbol(it, sections)).collect::<Vec<_>>(),
-        "forms": facts.forms.iter().map(form).collect::<Vec<_>>(),
+        "forms": forms.iter().map(form).collect::<Vec<_>>(),
         "cameras": facts.cameras.iter().map(camera).collect::<Vec<_>>(),
         "light": light(&list.lighting),
         "ground": ground::heights(sections, lattice),
@@ -268,7 +250,7 @@ fn description(scene: &PageScene<'_>, sections: &mut PageSections) -> Value {
         "imagery": imagery,
         "materials": list.materials.iter().map(batches::material).collect::<Vec<_>>(),
         "textures": textures,
-        "batches": batches::batches(sections, list, range_of),
+        "batches": batches::batches(sections, list, shown),
     })
 }
 
@@ -304,13 +286,12 @@ fn symbol(symbol: &PageSymbol, sections: &mut PageSections) -> Value {
     })
 }
 
-fn form(form: &PageForm) -> Value {
-    let (center, radius) = form.sphere;
+fn form(form: &ListedForm) -> Value {
     json!({
         "group": form.group,
         "error": form.error,
-        "center": center.to_array(),
-        "radius": radius,
+        "center": form.center.to_array(),
+        "radius": form.radius,
         "isPlant": form.is_plant,
     })
 }
@@ -353,12 +334,19 @@ fn light(light: &Lighting) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use sandtable_draw::list::DrawList;
 
     fn page_of(facts: &PageFacts) -> String {
         let heights = (0..12u8).map(f32::from).collect();
         let lattice = Lattice::new(DVec2::new(500.0, 900.0), DVec2::splat(10.0), 4, heights).expect("sound");
-        let list = DrawList::default();
-        let scene = PageScene { list: &list, range_of: &|_| ShowRange::Always, lattice: &lattice, facts };
+        let drawn = AllRoundScene {
+            list: DrawList::default(),
+            shown: Vec::new(),
+            bands_m: Vec::new(),
+            forms: Vec::new(),
+            graphic_texts: Vec::new(),
+        };
+        let scene = PageScene { drawn: &drawn, lattice: &lattice, facts };
         String::from_utf8(page(&scene).expect("small")).expect("text")
     }
 

@@ -58,9 +58,8 @@ use crate::plan::{DrawCall, Plan};
 use crate::shadow::ShadowView;
 use crate::uniforms::{FrameScene, FrameUniforms};
 use crate::windows::WindowTexture;
-use sandtable_draw::ground::GroundMap;
 use sandtable_draw::lighting::Lighting;
-use sandtable_draw::list::{DrawList, DrawListError};
+use sandtable_draw::list::DrawList;
 use sandtable_draw::patches::{GroundChanges, PatchId};
 use sandtable_render::shadow::Shadows;
 use sandtable_view::camera::Camera;
@@ -290,27 +289,6 @@ impl LiveRenderer {
                 scene.make(&self.gpu, &mut self.colors, &mut self.features);
             }
         }
-    }
-
-    /// Replaces the map that the ground's color and light are read from.
-    ///
-    /// # Errors
-    /// See [`GpuError`]; the map before stays.
-    pub fn set_ground(&mut self, map: Option<Arc<GroundMap>>) -> Result<(), GpuError> {
-        if let Some(map) = &map {
-            map.check().map_err(DrawListError::from)?;
-        }
-        let Some(scene) = &mut self.scene else { return Ok(()) };
-        self.gpu.guarded("sending the ground map", || {
-            let loader = Loader::new(&self.gpu);
-            scene.textures.replace_ground(&loader, map.as_deref())?;
-            scene.frame = FrameGroup::new(&loader, &self.layouts, &scene.textures)?;
-            let shadows = scene.parts.shadows();
-            scene.parts = ShaderParts::of_picture(map.as_deref(), &scene.lighting, shadows);
-            scene.map = EditedMap::new(map);
-            scene.make(&self.gpu, &mut self.colors, &mut self.features);
-            Ok(())
-        })
     }
 
     /// Replaces the windows of finer ground by those that a loader of this renderer has prepared. Does nothing before a scene

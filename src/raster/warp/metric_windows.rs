@@ -7,11 +7,9 @@
 //! The cells of a resampled raster lie around its valid samples, so that these must be found first. Where each side of the
 //! raster holds data, a few samples tell; else all of it is read once, some rows at a time.
 
-use glam::DVec2;
-
 use crate::cell_grid::CellGrid;
 use crate::error::DemErrorKind;
-use crate::raster::{Raster, Samples, north_up};
+use crate::raster::{Raster, Samples};
 use crate::warp::crs_transform::CrsTransform;
 use crate::warp::error::WarpError;
 use crate::warp::metric_crs::{OffScale, metric_crs_around, off_scale_around};
@@ -21,7 +19,6 @@ use crate::warp::windowed_resample::bilinear_window;
 use crate::warp::with_crs;
 use crate::windows::{RasterWindow, Windows};
 use sandtable_geom::crs::Crs;
-use sandtable_geom::rect::Rect;
 
 /// The result of warping a raster, without its samples.
 #[derive(Clone, Debug)]
@@ -109,11 +106,7 @@ impl<'a, W: Windows + ?Sized> MetricWindows<'a, W> {
         let column = if mirrors.0 { width - column - window.width } else { column };
         let row = if mirrors.1 { height - row - window.height } else { row };
         let samples = self.source.samples(RasterWindow { column, row, ..window })?;
-        let width = window.width as usize;
-        Ok(match samples {
-            Samples::F32(values) => Samples::F32(mirrored(values, width, mirrors)),
-            Samples::F64(values) => Samples::F64(mirrored(values, width, mirrors)),
-        })
+        Ok(samples.mirrored(window.width as usize, mirrors))
     }
 
     /// The samples of cells, in the source's vertical unit.
@@ -149,17 +142,6 @@ impl<W: Windows + ?Sized> Windows for MetricWindows<'_, W> {
     }
 }
 
-fn mirrored<T: Copy>(mut values: Vec<T>, width: usize, (mirrors_x, mirrors_y): (bool, bool)) -> Vec<T> {
-    if mirrors_x && mirrors_y {
-        values.reverse();
-    } else if mirrors_x {
-        values.chunks_mut(width).for_each(<[T]>::reverse);
-    } else if mirrors_y {
-        values = values.chunks(width).rev().flatten().copied().collect();
-    }
-    values
-}
-
 /// The steps of [`to_metric`](crate::warp::to_metric) but for the samples.
 fn plan<W: Windows + ?Sized>(
     raster: &Raster,
@@ -169,9 +151,8 @@ fn plan<W: Windows + ?Sized>(
     let MetricSystem { crs: system, off_scale } = MetricSystem::found(raster, target, search)?;
     let own = raster.crs.as_ref().or(target).or(system.as_ref());
     let (north_up, making) = if own == system.as_ref() && raster.is_axis_aligned() {
-        let axes = raster.map_from_grid.matrix2;
-        let (mirrors_x, mirrors_y) = (axes.x_axis.x < 0.0, axes.y_axis.y > 0.0);
-        (turned(raster), MetricMaking::Kept { mirrors_x, mirrors_y })
+        let (mirrors_x, mirrors_y) = raster.mirrors();
+        (raster.placed_north_up(), MetricMaking::Kept { mirrors_x, mirrors_y })
     } else {
         let transform = CrsTransform::new(raster, own, system.as_ref());
         let valid = search.valid().ok_or(WarpError::Empty)?;
@@ -183,14 +164,4 @@ fn plan<W: Windows + ?Sized>(
     let metric = Raster { meters_per_z: 1.0, samples: Samples::absent(0, is_wide), ..north_up };
     let header = with_crs(std::borrow::Cow::Owned(metric), system.as_ref()).into_owned();
     Ok(MetricPlan { header, making, off_scale })
-}
-
-/// An axis-aligned raster without samples as [`Raster::turned_north_up`] places it.
-fn turned(raster: &Raster) -> Raster {
-    if raster.is_north_up() {
-        return raster.without_samples();
-    }
-    let Rect { min, max } = raster.extent();
-    let map_from_grid = north_up(DVec2::new(min.x, max.y), raster.spacing());
-    Raster { map_from_grid, ..raster.without_samples() }
 }

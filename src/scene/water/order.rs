@@ -73,6 +73,7 @@ impl Reach {
     }
 }
 
+#[derive(Default)]
 struct ReachNetwork {
     reaches: Vec<Reach>,
     /// The reaches that end and that begin at each node.
@@ -91,13 +92,7 @@ impl ReachNetwork {
             .map(|(key, at)| (key, (around.lake_at)(at).map_or(RiverNode::At(key), RiverNode::Lake)))
             .collect();
         let mut numbers: BTreeMap<RiverNode, usize> = BTreeMap::new();
-        let mut network = Self {
-            reaches: Vec::new(),
-            inflows: Vec::new(),
-            outflows: Vec::new(),
-            is_source: Vec::new(),
-            downstream: Vec::new(),
-        };
+        let mut network = Self::default();
         for (line, polyline) in lines.iter().enumerate() {
             let mut start: Option<(usize, f64)> = None;
             for (&at, &station_m) in polyline.points().iter().zip(polyline.stations()) {

@@ -41,8 +41,8 @@ const WALK_MPS: f64 = 3.0;
 /// not shake the picture.
 const SETTLE_S: f64 = 0.06;
 
-/// The range of the factor by which a user makes flights and walks faster.
-const PACES: [f64; 2] = [0.05, 50.0];
+/// The height of a walker's eye above the ground, meters.
+const EYE_HEIGHT_M: f64 = 1.7;
 
 /// The seconds in which a named view is flown to.
 pub const TRANSITION_S: f64 = 1.2;
@@ -85,16 +85,13 @@ pub struct Navigator {
     pose: ViewPose,
     mode: NavigationMode,
     space: NavigatedSpace,
-    eye_height_m: f64,
-    pace: f64,
     transition: Option<PoseTransition>,
 }
 
 impl Navigator {
-    /// Starts at a pose; walkers' eyes are 1.7 m above the ground.
+    /// Starts at a pose.
     pub fn new(pose: ViewPose, space: NavigatedSpace) -> Self {
-        let mode = NavigationMode::default();
-        Self { pose, mode, space, eye_height_m: 1.7, pace: 1.0, transition: None }
+        Self { pose, mode: NavigationMode::default(), space, transition: None }
     }
 
     /// The position of the eye and its viewing direction.
@@ -110,26 +107,6 @@ impl Navigator {
     /// Changes how steps move the eye. Who begins to walk stands on the ground below at the next step of time.
     pub fn set_mode(&mut self, mode: NavigationMode) {
         self.mode = mode;
-    }
-
-    /// The height of a walker's eye above the ground, meters.
-    pub fn eye_height_m(&self) -> f64 {
-        self.eye_height_m
-    }
-
-    /// Sets the height of a walker's eye above the ground: 1.5 to 100 meters.
-    pub fn set_eye_height_m(&mut self, height_m: f64) {
-        self.eye_height_m = height_m.clamp(CLEARANCE_M, 100.0);
-    }
-
-    /// The factor of the speed of flights and walks.
-    pub fn pace(&self) -> f64 {
-        self.pace
-    }
-
-    /// Multiplies the speed of flights and walks.
-    pub fn quicken(&mut self, factor: f64) {
-        self.pace = (self.pace * factor).clamp(PACES[0], PACES[1]);
     }
 
     /// Whether it is on the way to another pose.
@@ -222,13 +199,12 @@ impl Navigator {
     /// The speed of a step of 1, meters a second.
     pub fn speed_mps(&self, ground: GroundZ<'_>) -> f64 {
         let [least, most] = FLIGHT_MPS;
-        let speed = match self.mode {
+        match self.mode {
             NavigationMode::OnFoot => WALK_MPS,
             NavigationMode::Orbit | NavigationMode::Flight => {
                 (self.height_m(ground) * FLIGHT_PACE).clamp(least, most)
             }
-        };
-        speed * self.pace
+        }
     }
 
     /// The height of the eye above the ground, or above the lowest of it where there is none.
@@ -252,7 +228,7 @@ impl Navigator {
     /// Brings a walker's eye nearer to its height above the ground.
     fn settle(&mut self, seconds: f64, ground: GroundZ<'_>) {
         if let Some(z) = ground(self.pose.eye.truncate()) {
-            let wanted = z + self.eye_height_m;
+            let wanted = z + EYE_HEIGHT_M;
             let left = libm::exp2(-seconds / SETTLE_S);
             self.pose.eye.z = wanted + (self.pose.eye.z - wanted) * left;
         }
