@@ -65,7 +65,7 @@ pub(super) fn read(text: &str) -> Result<ObjFile, ModelError> {
     let mut sound = SoundText {
         uvs_and_normals: "vt NaN NaN\nvn 0 0 0\n".into(),
         name: Some(String::new()),
-        totals: totals(text),
+        text,
         ..SoundText::default()
     };
     for (line, statement) in logical_lines(text) {
@@ -80,21 +80,15 @@ pub(super) fn read(text: &str) -> Result<ObjFile, ModelError> {
 
 /// The numbers of positions, texture coordinates and normals that `text` defines.
 fn totals(text: &str) -> [usize; 3] {
-    let mut totals = [0; 3];
-    for (_, line) in logical_lines(text) {
-        match split_keyword(&line).0 {
-            "v" => totals[0] += 1,
-            "vt" => totals[1] += 1,
-            "vn" => totals[2] += 1,
-            _ => {}
-        }
-    }
-    totals
+    ["v", "vt", "vn"].map(|keyword| {
+        logical_lines(text).filter(|(_, line)| line.split_whitespace().next() == Some(keyword)).count()
+    })
 }
 
 /// The rewritten text so far.
 #[derive(Default)]
-struct SoundText {
+struct SoundText<'a> {
+    text: &'a str,
     /// Lines `v`.
     positions: String,
     /// Lines `vt` and `vn`, first those of corners without them.
@@ -103,9 +97,10 @@ struct SoundText {
     faces: String,
     file: ObjFile,
     line: usize,
-    /// The numbers of positions, texture coordinates and normals up to this line, and in the file.
+    /// The numbers of positions, texture coordinates and normals up to this line.
     counts: [usize; 3],
-    totals: [usize; 3],
+    /// The same in the file, counted when a face first names what no line so far defines.
+    totals: Option<[usize; 3]>,
     corner_count: usize,
     /// The object's name where none of its faces is written yet.
     name: Option<String>,
@@ -116,7 +111,7 @@ struct SoundText {
     undefined: Option<ModelError>,
 }
 
-impl SoundText {
+impl SoundText<'_> {
     fn error(&self, reason: String) -> ModelError {
         ModelError::Obj { line: self.line, reason }
     }
@@ -167,7 +162,7 @@ impl SoundText {
     }
 
     /// The words of a line, three at least.
-    fn coordinates<'a>(&self, rest: &'a str, what: &str) -> Result<Vec<&'a str>, ModelError> {
+    fn coordinates<'b>(&self, rest: &'b str, what: &str) -> Result<Vec<&'b str>, ModelError> {
         let words: Vec<&str> = without_comment(rest).take(8).collect();
         if words.len() < 3 {
             return Err(self.error(format!("a {what} has {} of 3 coordinates", words.len())));
@@ -190,31 +185,41 @@ impl SoundText {
     fn face(&mut self, rest: &str) -> Result<(), ModelError> {
         let corners = without_comment(rest).map(|word| self.corner(word)).collect::<Result<Vec<_>, _>>()?;
         self.corner_count += corners.len();
-        let totals = self.totals;
+        let is_ahead = |corner: &[usize; 3]| {
+            corner.iter().zip(self.counts).any(|(&index, count)| index >= count && index != usize::MAX)
+        };
+        if self.totals.is_none() && corners.iter().any(is_ahead) {
+            self.totals = Some(totals(self.text));
+        }
+        let totals = self.totals.unwrap_or(self.counts);
         if let Some(&[position, ..]) = corners.iter().find(|corner| corner[0] >= totals[0]) {
             let (number, defined) = (position.saturating_add(1), totals[0]);
             let error = self.error(format!("a face names vertex {number}, but only {defined} are defined"));
             self.undefined.get_or_insert(error);
         } else if corners.len() >= 3 {
-            self.write_face(&corners);
+            self.write_face(&corners, totals);
         } else {
             self.file.short_faces += usize::from(!corners.is_empty());
         }
         Ok(())
     }
 
-    fn write_face(&mut self, corners: &[[usize; 3]]) {
+    fn write_face(&mut self, corners: &[[usize; 3]], totals: [usize; 3]) {
         if let Some(name) = self.name.take() {
             let _ = writeln!(self.faces, "o {NAME_MARK}{name}");
             self.file.faces.push(Vec::new());
         }
         let [_, has_uvs, has_normals] =
-            [0, 1, 2].map(|place| corners.iter().all(|corner| corner[place] < self.totals[place]));
+            [0, 1, 2].map(|place| corners.iter().all(|corner| corner[place] < totals[place]));
         self.faces.push('f');
-        for &[position, uv, normal] in corners {
-            let uv = if has_uvs { uv + 2 } else { 1 };
-            let normal = if has_normals { normal + 2 } else { 1 };
-            let _ = write!(self.faces, " {}/{uv}/{normal}", position + 1);
+        for corner in corners {
+            // The first texture coordinate and the first normal stand for missing ones.
+            let uv = if has_uvs { corner[1] + 2 } else { 1 };
+            let normal = if has_normals { corner[2] + 2 } else { 1 };
+            for (separator, index) in [(' ', corner[0] + 1), ('/', uv), ('/', normal)] {
+                self.faces.push(separator);
+                self.faces.push_str(&index.to_string());
+            }
         }
         self.faces.push('\n');
         if let Some(faces) = self.file.faces.last_mut() {
@@ -270,10 +275,12 @@ fn without_comment(rest: &str) -> impl Iterator<Item = &str> {
 fn push_numbers<'a>(text: &mut String, keyword: &str, words: impl IntoIterator<Item = &'a &'a str>) {
     text.push_str(keyword);
     for &word in words {
-        let _ = match word.parse::<f32>() {
-            Ok(_) => write!(text, " {word}"),
-            Err(_) => write!(text, " {:e}", number(word)),
-        };
+        text.push(' ');
+        if word.parse::<f32>().is_ok() {
+            text.push_str(word);
+        } else {
+            let _ = write!(text, "{:e}", number(word));
+        }
     }
     text.push('\n');
 }
