@@ -282,7 +282,7 @@ fn no_cut_or_changed_byte_of_a_sound_file_does_harm() {
     }
 }
 
-/// OBJ files that `tobj` 4.0.5 reads otherwise, and why.
+/// OBJ files that `tobj` 4.0.5 by itself, without the repairs of our reader, reads otherwise, and why.
 const TOBJ_DIFFERS: [(&str, &str); 11] = [
     (
         "assets/models/firtree.obj",

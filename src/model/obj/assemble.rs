@@ -1,4 +1,4 @@
-//! Makes a [`Model`] from a parsed OBJ file and its libraries.
+//! Makes a [`Model`] from an OBJ file that `tobj` read and its libraries.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,10 +12,11 @@ use crate::texture::{Textures, load_any};
 use crate::triangulate::triangulate;
 use crate::{Census, Companions, Model};
 use sandtable_base::message::chain::error_text;
+use sandtable_draw::color::Srgba;
 use sandtable_draw::list::MaterialId;
 
 use super::mtl;
-use super::parse::{FaceGroup, ObjCorner, ObjFace, ObjFile};
+use super::sound::{ObjFace, ObjFile, unmarked};
 use super::text;
 
 pub(super) fn assemble(file: &ObjFile, companions: &dyn Companions) -> Result<Model, ModelError> {
@@ -23,20 +24,19 @@ pub(super) fn assemble(file: &ObjFile, companions: &dyn Companions) -> Result<Mo
     let defined = load_libraries(file, companions, &mut model.notes);
     let materials = FaceMaterials::new(file, &defined, companions, &mut model);
     let mut budget = TriangleBudget::default();
-    let mut dropped = 0;
-    for object in &file.objects {
-        let triangles = ObjTriangles::new(file, object);
+    let mut dropped = file.short_faces;
+    for (object, faces) in file.objects.iter().zip(&file.faces) {
+        let triangles = ObjTriangles::new(&object.mesh, faces, file.has_smoothing);
         budget.take(triangles.indices.len())?;
         dropped += triangles.dropped_faces;
-        let mut parts = PartBuilder::new(&object.name);
+        let mut parts = PartBuilder::new(unmarked(&object.name));
         triangles.add_to(&mut parts, &materials);
         model.parts.extend(parts.finish());
     }
-    let is_drawable = |object: &&FaceGroup| object.faces.iter().any(|face| face.corners.len() >= 3);
     model.census = Census {
-        meshes: file.objects.iter().filter(is_drawable).count(),
-        vertices: file.positions.len(),
-        faces: file.objects.iter().map(|object| object.faces.len()).sum(),
+        meshes: file.faces.len(),
+        vertices: file.vertices,
+        faces: file.short_faces + file.faces.iter().map(Vec::len).sum::<usize>(),
         materials: model.materials.len(),
     };
     if dropped > 0 {
@@ -58,9 +58,8 @@ fn load_libraries(
     let mut materials = Vec::new();
     for library in &file.libraries {
         match load_library(library, companions) {
-            Ok(files) => {
-                let parsed = files.iter().flat_map(|bytes| mtl::parse(&text::decode(bytes)));
-                materials.extend(parsed.filter(|material| names.insert(material.name.clone())));
+            Ok(parsed) => {
+                materials.extend(parsed.into_iter().filter(|material| names.insert(material.name.clone())));
             }
             Err(error) => {
                 notes.push(format!("material library '{library}' is missing: {}", error_text(&*error)));
@@ -70,13 +69,18 @@ fn load_libraries(
     materials
 }
 
-/// The files of an `mtllib` statement: one whose name has spaces, or several.
-fn load_library(library: &str, companions: &dyn Companions) -> Result<Vec<Vec<u8>>, CompanionError> {
-    load_any(companions, library).map(|bytes| vec![bytes]).or_else(|error| {
+/// The materials in the files of an `mtllib` statement: one whose name has spaces, or several.
+fn load_library(library: &str, companions: &dyn Companions) -> Result<Vec<MappedMaterial>, CompanionError> {
+    let files = load_any(companions, library).map(|bytes| vec![bytes]).or_else(|error| {
         let names = library.split_whitespace();
         let files: Vec<_> = names.filter_map(|name| load_any(companions, name).ok()).collect();
         if files.is_empty() { Err(error) } else { Ok(files) }
-    })
+    })?;
+    let mut materials = Vec::new();
+    for bytes in files {
+        materials.extend(mtl::parse(&text::decode(&bytes))?);
+    }
+    Ok(materials)
 }
 
 struct FaceMaterials {
@@ -108,8 +112,7 @@ impl FaceMaterials {
             named.push(MaterialId(index as u32));
         }
         let unnamed = MaterialId(model.materials.len() as u32);
-        let mut faces = file.objects.iter().flat_map(|object| &object.faces);
-        if faces.any(|face| face.material.is_none() && face.corners.len() >= 3) {
+        if file.faces.iter().flatten().any(|face| face.material.is_none()) {
             model.materials.push(unnamed_material("(no material)"));
         }
         Self { named, unnamed }
@@ -121,65 +124,71 @@ impl FaceMaterials {
 }
 
 struct ObjTriangles<'a> {
-    file: &'a ObjFile,
-    /// Triples of indices into [`ObjFile::corners`], with the face.
-    indices: Vec<([usize; 3], &'a ObjFace)>,
+    /// The mesh's vertices, Z up, V downward; their normals are as stored.
+    corners: Vec<ModelCorner>,
+    /// Triples of indices into `corners`, with the face.
+    indices: Vec<([u32; 3], &'a ObjFace)>,
     /// Normals of the corners of each triangle, for faces without their own.
     normals: Vec<[Vec3; 3]>,
     dropped_faces: usize,
 }
 
 impl<'a> ObjTriangles<'a> {
-    fn new(file: &'a ObjFile, object: &'a FaceGroup) -> Self {
-        let mut triangles = Self { file, indices: Vec::new(), normals: Vec::new(), dropped_faces: 0 };
-        for face in &object.faces {
-            let corners = file.corners[face.corners.clone()].iter();
-            let positions: Vec<Vec3> = corners.map(|corner| file.positions[corner.position]).collect();
-            if positions.len() < 3 || positions.iter().any(|position| !position.is_finite()) {
+    fn new(mesh: &tobj::Mesh, faces: &'a [ObjFace], has_smoothing: bool) -> Self {
+        let positions: Vec<Vec3> = z_up(&mesh.positions).collect();
+        let others = mesh.texcoords.as_chunks().0.iter().zip(mesh.vertex_color.as_chunks().0);
+        let corners = positions.iter().zip(z_up(&mesh.normals)).zip(others);
+        let corners = corners.map(|((&position, normal), (&uv, &color))| ModelCorner {
+            position,
+            normal,
+            uv: downward(uv.into()),
+            color: color_from_channels(color),
+        });
+        let mut triangles =
+            Self { corners: corners.collect(), indices: Vec::new(), normals: Vec::new(), dropped_faces: 0 };
+        let mut rest = &mesh.indices[..];
+        for (number, face) in faces.iter().enumerate() {
+            // Without arities, all faces are triangles.
+            let arity = mesh.face_arities.get(number).map_or(3, |&arity| arity as usize);
+            let (ids, after) = rest.split_at(arity);
+            rest = after;
+            let polygon: Vec<Vec3> = ids.iter().map(|&id| positions[id as usize]).collect();
+            if polygon.iter().all(|position| position.is_finite()) {
+                let cut = triangulate(&polygon).into_iter();
+                triangles.indices.extend(cut.map(|triangle| (triangle.map(|corner| ids[corner]), face)));
+            } else {
                 triangles.dropped_faces += 1;
-                continue;
             }
-            let cut = triangulate(&positions).into_iter();
-            let index = |corner: usize| face.corners.start + corner;
-            triangles.indices.extend(cut.map(|triangle| (triangle.map(index), face)));
         }
-        triangles.normals = triangles.computed_normals();
+        triangles.normals = triangles.computed_normals(&positions, has_smoothing);
         triangles
     }
 
-    fn corner(&self, index: usize) -> &'a ObjCorner {
-        &self.file.corners[index]
-    }
-
-    fn computed_normals(&self) -> Vec<[Vec3; 3]> {
-        let has_normals = |(triangle, _): &([usize; 3], _)| self.corner(triangle[0]).normal.is_some();
-        if self.indices.iter().all(has_normals) {
+    fn computed_normals(&self, positions: &[Vec3], has_smoothing: bool) -> Vec<[Vec3; 3]> {
+        if self.indices.iter().all(|(_, face)| face.has_normals) {
             return vec![[Vec3::Z; 3]; self.indices.len()];
         }
-        let positions =
-            |(triangle, _): &([usize; 3], _)| triangle.map(|index| self.corner(index).position as u32);
-        let triangles: Vec<[u32; 3]> = self.indices.iter().map(positions).collect();
+        let triangles: Vec<[u32; 3]> = self.indices.iter().map(|&(triangle, _)| triangle).collect();
         let groups: Vec<u32> = self.indices.iter().map(|(_, face)| face.smoothing).collect();
         let by_file = Smoothing::Numbers(&groups);
-        let smoothing = if self.file.has_smoothing { by_file } else { Smoothing::Crease(CREASE_COS) };
-        corner_normals(&self.file.positions, &triangles, smoothing)
+        let smoothing = if has_smoothing { by_file } else { Smoothing::Crease(CREASE_COS) };
+        corner_normals(positions, &triangles, smoothing)
     }
 
     fn add_to(&self, parts: &mut PartBuilder, materials: &FaceMaterials) {
         for ((triangle, face), computed) in self.indices.iter().zip(&self.normals) {
-            let corner = |place: usize| {
-                let corner = self.corner(triangle[place]);
-                let stored = corner.normal.and_then(|index| self.file.normals[index].try_normalize());
-                ModelCorner {
-                    position: self.file.positions[corner.position],
-                    normal: stored.unwrap_or(computed[place]),
-                    uv: corner.uv.map_or(Vec2::ZERO, |index| downward(self.file.uvs[index])),
-                    color: self.file.colors[corner.position],
-                }
-            };
-            parts.triangle(materials.of(face), [corner(0), corner(1), corner(2)]);
+            let corners = std::array::from_fn(|place| {
+                let corner = self.corners[triangle[place] as usize];
+                ModelCorner { normal: corner.normal.try_normalize().unwrap_or(computed[place]), ..corner }
+            });
+            parts.triangle(materials.of(face), corners);
         }
     }
+}
+
+/// Vectors with Z up from coordinates with Y up.
+fn z_up(coordinates: &[f32]) -> impl Iterator<Item = Vec3> {
+    coordinates.as_chunks().0.iter().map(|&[x, y, z]| Vec3::new(x, -z, y))
 }
 
 /// From V upward to V downward; zero where a coordinate is not finite.
@@ -187,11 +196,16 @@ fn downward(uv: Vec2) -> Vec2 {
     if uv.is_finite() { Vec2::new(uv.x, 1.0 - uv.y) } else { Vec2::ZERO }
 }
 
+/// An sRGB color from channels in 0..=1; NaN is 0.
+pub(super) fn color_from_channels(channels: [f32; 3]) -> Srgba {
+    let [red, green, blue] = channels.map(|channel| (channel * 255.0 + 0.5) as u8);
+    Srgba::opaque(red, green, blue)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::obj::read;
-    use sandtable_draw::color::Srgba;
     use sandtable_draw::material::AlphaMode;
 
     struct Library(&'static str);

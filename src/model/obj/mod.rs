@@ -1,17 +1,17 @@
 //! Wavefront OBJ with MTL: text, Y up, polygons.
 //!
 //! ```text
-//! bytes ─ text (encodings, continued lines) ─ parse (statements, indices checked) ─ assemble ─► Model
-//!                                            └─ mtl (material libraries) ─────────────┘
+//! bytes ─ text (encodings, continued lines) ─ sound (indices checked, repaired lines) ─ tobj ─ assemble ─► Model
+//!                                           └─ mtl (repaired material libraries) ────── tobj ──┘
 //! ```
 //!
-//! The reader is our own: `tobj` 4.0.5 has no smoothing groups, drops the name of a material whose library is missing,
-//! refuses a file or library for one odd number, mixes up corners with and without texture coordinates, and multiplies
-//! forged indices until they overflow.
+//! `tobj` 4.0.5 reads what is repaired before: left to itself it has no smoothing groups, drops the name of a material
+//! whose library is missing, refuses a file or library for one odd number, mixes up corners with and without texture
+//! coordinates, takes lines for faces, and multiplies forged indices until they overflow.
 
 mod assemble;
 mod mtl;
-mod parse;
+mod sound;
 mod text;
 
 use crate::error::ModelError;
@@ -22,6 +22,5 @@ use crate::{Companions, Model};
 /// # Errors
 /// [`ModelError::Obj`] and [`ModelError::TooLarge`]. A library or texture that cannot be loaded is a note.
 pub fn read(bytes: &[u8], companions: &dyn Companions) -> Result<Model, ModelError> {
-    let file = parse::parse(&text::decode(bytes))?;
-    assemble::assemble(&file, companions)
+    assemble::assemble(&sound::read(&text::decode(bytes))?, companions)
 }

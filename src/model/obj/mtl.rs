@@ -1,51 +1,55 @@
-//! Material libraries: names, diffuse colors, opacities and the maps of both.
+//! Material libraries: names, diffuse colors, opacities and the maps of both, as `tobj` reads them from repaired lines.
+
+use std::fmt::Write;
 
 use crate::material::MappedMaterial;
 use sandtable_draw::color::Srgba;
 
-use super::parse::color_from_channels;
+use super::assemble::color_from_channels;
+use super::sound::{NAME_MARK, unmarked};
 use super::text::{logical_lines, number, split_keyword};
 
 /// The materials of a library, in order. Unknown statements are ignored.
-pub(super) fn parse(text: &str) -> Vec<MappedMaterial> {
-    let mut materials: Vec<MappedMaterial> = Vec::new();
+pub(super) fn parse(text: &str) -> Result<Vec<MappedMaterial>, tobj::LoadError> {
+    let mut sound = String::new();
     for (_, line) in logical_lines(text) {
         let (keyword, rest) = split_keyword(&line);
-        if keyword == "newmtl" {
-            materials.push(MappedMaterial {
-                name: rest.into(),
-                color: color_from_channels([0.8; 3]),
-                color_under_map: color_from_channels([0.8; 3]),
-                alpha: 255,
-                map: None,
-                opacity_map: None,
-                // The format has no sides, and its files are modeled for viewers that draw both.
-                two_sided: true,
-            });
-        } else if let Some(material) = materials.last_mut() {
-            set(material, keyword, rest);
-        }
+        push_sound(&mut sound, keyword, rest);
     }
-    materials
+    let (materials, _) = tobj::load_mtl_buf(&mut sound.as_bytes())?;
+    Ok(materials.into_iter().map(mapped).collect())
 }
 
-fn set(material: &mut MappedMaterial, keyword: &str, rest: &str) {
+/// Writes a statement so that `tobj` reads it right; nothing for what is not used. A transparency becomes an opacity.
+fn push_sound(sound: &mut String, keyword: &str, rest: &str) {
     let first = || rest.split_whitespace().next().map(number).filter(|value| value.is_finite());
-    let file = || Some(without_options(rest)).filter(|file| !file.is_empty());
-    let alpha = |opacity: f32| (opacity * 255.0 + 0.5) as u8;
-    match keyword {
-        "Kd" => {
-            let Some(channels) = color(rest) else { return };
-            material.color = color_from_channels(channels);
-            // Exporters write black under a texture, which would blacken it.
-            let is_black = channels.iter().all(|&channel| channel <= 0.0);
-            material.color_under_map = if is_black { Srgba::WHITE } else { material.color };
-        }
-        "d" => material.alpha = alpha(first().unwrap_or(1.0).clamp(0.0, 1.0)),
-        "Tr" => material.alpha = alpha(1.0 - first().unwrap_or(0.0).clamp(0.0, 1.0)),
-        "map_Kd" => material.map = file(),
-        "map_d" => material.opacity_map = file(),
-        _ => {}
+    let _ = match keyword {
+        "newmtl" | "map_Kd" | "map_d" => writeln!(sound, "{keyword} {NAME_MARK}{rest}"),
+        "Kd" => match color(rest) {
+            Some([red, green, blue]) => writeln!(sound, "Kd {red} {green} {blue}"),
+            None => return,
+        },
+        "d" => writeln!(sound, "d {}", first().unwrap_or(1.0).clamp(0.0, 1.0)),
+        "Tr" => writeln!(sound, "d {}", 1.0 - first().unwrap_or(0.0).clamp(0.0, 1.0)),
+        _ => return,
+    };
+}
+
+fn mapped(material: tobj::Material) -> MappedMaterial {
+    let channels = material.diffuse.unwrap_or([0.8; 3]);
+    let color = color_from_channels(channels);
+    // Exporters write black under a texture, which would blacken it.
+    let is_black = channels.iter().all(|&channel| channel <= 0.0);
+    let file = |map: Option<String>| Some(without_options(unmarked(&map?))).filter(|file| !file.is_empty());
+    MappedMaterial {
+        name: unmarked(&material.name).into(),
+        color,
+        color_under_map: if is_black { Srgba::WHITE } else { color },
+        alpha: (material.dissolve.unwrap_or(1.0) * 255.0 + 0.5) as u8,
+        map: file(material.diffuse_texture),
+        opacity_map: file(material.dissolve_texture),
+        // The format has no sides, and its files are modeled for viewers that draw both.
+        two_sided: true,
     }
 }
 
@@ -105,7 +109,7 @@ mod tests {
     fn odd_statements_are_skipped_and_the_library_is_kept() {
         let text =
             "Kd 1 0 0\nnewmtl a b\n  Kd 0.5\n d 0.25\nKd spectral x.rfl\nnewmtl c\nTr 0.25\nmap_Kd\nilum";
-        let materials = parse(text);
+        let materials = parse(text).expect("repaired lines");
         assert_eq!(materials.len(), 2);
         assert_eq!(
             (materials[0].name.as_str(), materials[0].color, materials[0].alpha),
