@@ -6,7 +6,7 @@
 //!  SceneEdit ─► editor: places in the systems of the file ─► scene_text: bytes of the file ─► decoded as any scene file
 //!                                                                                            │ wrong: nothing changes
 //!  window ◄── EditEffect: ground mended, a model moved, or the scene built anew ◄── effect ◄─┘
-//!             save: beside the file, then renamed over it        reload: the file as others left it
+//!             save: beside the file, then renamed over it
 //! ```
 //!
 //! The text of the file is what is edited, so that all that its author wrote stays as it is, and undoing all edits gives
@@ -16,7 +16,6 @@
 pub mod edit;
 pub mod editor;
 pub mod effect;
-pub mod reload;
 mod scene_text;
 mod text_change;
 pub mod tool;

@@ -100,30 +100,6 @@ impl Walk {
         })
     }
 
-    /// Gives posts the elevations that they have in `elevations`, true to scale, a lattice of as many posts.
-    ///
-    /// # Errors
-    /// See [`Walk::edit`].
-    pub fn take_over(
-        &mut self,
-        elevations: &Lattice,
-        posts: &[PostRect],
-    ) -> Result<Option<WalkEdit>, WalkError> {
-        self.edit(|lattice| {
-            let over = |changes: BrushChanges, &posts: &PostRect| {
-                let heights: Vec<f32> = posts.posts().map(|post| elevations.height(post)).collect();
-                changes.and(set_heights(lattice, posts, &heights))
-            };
-            posts.iter().fold(BrushChanges::default(), over)
-        })
-    }
-
-    /// Publishes the elevations to the scene's height queries. They are a snapshot from then on, which the next edit copies:
-    /// call it when the last edit of several is made.
-    pub fn publish(&self) {
-        self.scene.heights.publish(std::sync::Arc::clone(self.elevations()));
-    }
-
     /// Whether something stands near posts, or the walls under the border do.
     fn holds_standing(&self, PostRect { first, last }: PostRect) -> bool {
         let lattice = self.elevations();

@@ -126,15 +126,7 @@ impl MeasurableGround for SightGround {
 }
 
 impl Walk {
-    /// The viewshed from a place.
-    ///
-    /// # Errors
-    /// The ground's answer at the observer, where it has no height there.
-    pub fn viewshed(&self, options: &ViewshedOptions) -> Result<SeenGround, Answer> {
-        self.viewshed_task(*options).seen()
-    }
-
-    /// The task of computing [`Walk::viewshed`].
+    /// The task of computing a viewshed.
     pub fn viewshed_task(&self, options: ViewshedOptions) -> ViewshedTask {
         ViewshedTask { elevations: Arc::clone(self.elevations()), options }
     }

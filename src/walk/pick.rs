@@ -11,7 +11,6 @@ use sandtable_draw::list::{DrawItem, DrawList, FeatureId};
 use sandtable_geom::aabb::Aabb;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::mgrs;
-use sandtable_scene::feature::SceneFeature;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_sheet::picture_buffers::PickedPlace;
 use sandtable_terrain::lattice::Lattice;
@@ -181,11 +180,6 @@ impl Walk {
         let patch = (lattice.grid_at(at) / f64::from(layout.patch())).floor();
         let is_inside = patch.cmpge(DVec2::ZERO).all() && patch.x < east as f64 && patch.y < north as f64;
         is_inside.then(|| self.laid.feature_at(patch.y as usize * east + patch.x as usize, at)).flatten()
-    }
-
-    /// A feature of the scene; `None` for the ground, the plinth and nothing.
-    pub fn feature(&self, feature: FeatureId) -> Option<&SceneFeature> {
-        self.scene.features.get(feature.index()?)
     }
 
     /// All that is known of a place in world space.

@@ -174,19 +174,6 @@ fn the_rise_that_is_needed_is_the_plain_walks_to_the_last_bit_and_just_enough() 
 }
 
 #[test]
-fn a_batch_is_what_its_pairs_are_one_by_one() {
-    let (_, lattice) = grounds().swap_remove(2);
-    let ground = SightGround::new(Arc::new(lattice));
-    let mut random = Random(3);
-    let pairs: Vec<_> = (0..3000).map(|_| ends(ground.lattice(), &mut random)).collect();
-    let mut batch = vec![Sight::Clear; pairs.len()];
-    ground.lines_of_sight(&pairs, Curvature::default(), &mut batch);
-    for (&(observer, target), &sight) in pairs.iter().zip(&batch) {
-        assert_eq!(sight, ground.line_of_sight(observer, target, Curvature::default()));
-    }
-}
-
-#[test]
 fn after_an_edit_lines_see_the_new_ground_and_the_old_snapshot_its_own() {
     let (_, lattice) = grounds().swap_remove(1);
     let before = SightGround::new(Arc::new(lattice.clone()));
@@ -195,7 +182,7 @@ fn after_an_edit_lines_see_the_new_ground_and_the_old_snapshot_its_own() {
         edited.pin(Post { column: 33, row }, 50.0);
     }
     let rect = PostRect { first: Post { column: 33, row: 20 }, last: Post { column: 33, row: 39 } };
-    let after = before.edited(Arc::new(edited.clone()), rect);
+    let after = SightGround::again(Arc::clone(before.pyramid()), Arc::new(edited.clone()), &[rect]);
     let end = |column: f64| SightEnd { at: ORIGIN + DVec2::new(column, 30.0) * CELL, above_m: 2.0 };
     assert_eq!(before.line_of_sight(end(3.0), end(60.5), Curvature::FLAT), Sight::Clear);
     let blocked = line_of_sight(&edited, end(3.0), end(60.5), Curvature::FLAT);

@@ -10,7 +10,6 @@ use sandtable_earthworks::earthwork::dig;
 use sandtable_editing::edit::{EarthworkDraft, EditPlace, EditValue, NewTable, SceneEdit};
 use sandtable_editing::editor::{EditError, OnConflict, SaveError, SceneEditor};
 use sandtable_editing::effect::EditEffect;
-use sandtable_editing::reload::{ReloadedScene, WatchedScene};
 use sandtable_scene::scene_file::open_scene;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::lattice::Lattice;
@@ -254,29 +253,6 @@ fn an_elevation_file_gets_a_scene_file_beside_it_once_it_is_edited() {
     let saved = open_scene(&scratch.at("dem-2.toml"), &[], &|_| {}).expect("sound");
     assert_eq!((saved.title.as_deref(), saved.report.earthworks.len()), (Some("dem"), 1));
     assert_eq!(fs::read_to_string(scratch.at("dem.toml")).expect("readable"), "title = \"another\"\n");
-}
-
-#[test]
-fn a_scene_file_is_opened_again_when_it_changes_and_an_error_is_told_once() {
-    let scratch = scratch(SCENE);
-    let (editor, scene) = opened(&scratch);
-    let mut watched = WatchedScene::new(editor.source(), &scene);
-    let path = scratch.at("scene.toml");
-    assert!(matches!(watched.reload(&|_| ()), ReloadedScene::Unchanged));
-    fs::write(&path, SCENE.replace("cell = 10", "cell = -10")).expect("written");
-    let ReloadedScene::Wrong(error) = watched.reload(&|_| ()) else { panic!("the file is wrong") };
-    let cause =
-        std::error::Error::source(&error).map(ToString::to_string).unwrap_or_else(|| error.to_string());
-    assert!(cause.contains("scene.toml:7:8") && cause.contains("cell"), "{cause}");
-    assert!(matches!(watched.reload(&|_| ()), ReloadedScene::Unchanged));
-    fs::write(&path, SCENE.replace("A hill", "Another hill")).expect("written");
-    let ReloadedScene::Scene(scene) = watched.reload(&|_| ()) else { panic!("the file is sound") };
-    assert_eq!(scene.labels[0].text, "Another hill");
-    fs::remove_file(&path).expect("removed");
-    assert!(matches!(watched.reload(&|_| ()), ReloadedScene::Wrong(_)));
-    assert!(matches!(watched.reload(&|_| ()), ReloadedScene::Unchanged));
-    fs::write(&path, SCENE).expect("written");
-    assert!(matches!(watched.reload(&|_| ()), ReloadedScene::Scene(_)));
 }
 
 #[test]

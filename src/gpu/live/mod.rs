@@ -3,7 +3,7 @@
 //! ```text
 //! load(DrawList) ─► materials, ground map, solids ┐
 //! update(GroundChanges) ─► patches, drapes        ├─► draw: sky ─ ground ─ drapes ─ solids ─ transparent solids
-//! set_shadows(LiveShadows) ─► shadow maps         ┘   pick: the same to a single pixel
+//! set_shadows(LiveShadows) ─► shadow maps         ┘
 //!
 //! loader() ─► another thread: prepare ─► show, show_shadows      as load and set_shadows, without a late frame
 //! ```
@@ -28,24 +28,19 @@ mod encode;
 mod ground_calls;
 mod ground_map;
 mod patches;
-pub mod pick;
 pub mod prepared;
 mod targets;
 
 use std::sync::Arc;
 
-use glam::Vec2;
-
 use crate::adapter::Gpu;
 use crate::error::GpuError;
-use crate::formats::FEATURE;
 use crate::frame::{FrameGroup, FrameTextures};
 use crate::geometry::GpuGeometry;
 use crate::layouts::Layouts;
 use crate::live::encode::Encoder;
 use crate::live::ground_map::EditedMap;
 use crate::live::patches::PatchStore;
-use crate::live::pick::{PickTarget, PickedPoint};
 use crate::live::prepared::{LiveLoader, PreparedScene, PreparedShadows, PreparedWindows};
 use crate::live::targets::{LiveFormat, LiveTargets};
 use crate::materials::GpuMaterials;
@@ -115,7 +110,6 @@ pub struct LiveRenderer {
     format: LiveFormat,
     layouts: Arc<Layouts>,
     colors: Pipelines,
-    features: Pipelines,
     encoder: Option<Encoder>,
     targets: Option<LiveTargets>,
     scene: Option<LoadedScene>,
@@ -144,7 +138,6 @@ struct LoadedScene {
     geometry: GpuGeometry,
     plan: Plan,
     patches: PatchStore,
-    pick: PickTarget,
 }
 
 impl LiveQuality {
@@ -215,17 +208,14 @@ impl LiveRenderer {
         let made = gpu.guarded("building its shaders", || {
             let layouts = Layouts::new(&gpu);
             let shader = shader(&gpu);
-            let target = |pass, format, samples| {
-                Pipelines::new(&gpu, &layouts, &shader, PassTarget { pass, format, samples })
-            };
-            let colors = target(GpuPass::Color, format.drawn(), samples);
-            let features = target(GpuPass::Feature, FEATURE, 1);
+            let target = PassTarget { pass: GpuPass::Color, format: format.drawn(), samples };
+            let colors = Pipelines::new(&gpu, &layouts, &shader, target);
             let encoder = (format.drawn() != format.window).then(|| Encoder::new(&gpu, format.window));
-            Ok((Arc::new(layouts), colors, features, encoder))
+            Ok((Arc::new(layouts), colors, encoder))
         });
-        let (layouts, colors, features, encoder) = made?;
+        let (layouts, colors, encoder) = made?;
         format.shade_pixels = colors.shade_pixels(&gpu);
-        Ok(Self { gpu, format, layouts, colors, features, encoder, targets: None, scene: None })
+        Ok(Self { gpu, format, layouts, colors, encoder, targets: None, scene: None })
     }
 
     /// The device that it draws with.
@@ -246,21 +236,20 @@ impl LiveRenderer {
 
     /// A loader that prepares scenes for this renderer on other threads.
     pub fn loader(&self) -> LiveLoader {
-        LiveLoader::new(&self.gpu, &self.layouts, [&self.colors, &self.features])
+        LiveLoader::new(&self.gpu, &self.layouts, &self.colors)
     }
 
     /// Shows a scene that a loader of this renderer has prepared.
     pub fn show(&mut self, prepared: PreparedScene, kept: KeptPatches) {
-        let PreparedScene { mut scene, pipelines: [colors, features] } = prepared;
+        let PreparedScene { mut scene, colors } = prepared;
         self.colors.adopt(colors);
-        self.features.adopt(features);
         if let (KeptPatches::All, Some(before)) = (kept, self.scene.take()) {
             // Without them the ground is shown from the map alone.
             let _ = scene.take_windows(&self.gpu, &self.layouts, before.textures.windows().clone());
             let added = std::mem::replace(&mut scene.patches, before.patches);
             scene.patches.adopt_materials(added);
         }
-        scene.make(&self.gpu, &mut self.colors, &mut self.features);
+        scene.make(&self.gpu, &mut self.colors);
         self.scene = Some(*scene);
     }
 
@@ -286,7 +275,7 @@ impl LiveRenderer {
             let parts = scene.parts.with(ShaderParts::of_picture(None, &lighting, [false; 2]));
             if parts != scene.parts {
                 scene.parts = parts;
-                scene.make(&self.gpu, &mut self.colors, &mut self.features);
+                scene.make(&self.gpu, &mut self.colors);
             }
         }
     }
@@ -302,7 +291,7 @@ impl LiveRenderer {
             let parts = scene.parts;
             scene.take_windows(&self.gpu, &self.layouts, windows)?;
             if scene.parts != parts {
-                scene.make(&self.gpu, &mut self.colors, &mut self.features);
+                scene.make(&self.gpu, &mut self.colors);
             }
             Ok(())
         })
@@ -331,7 +320,7 @@ impl LiveRenderer {
             let parts = scene.parts.with(ShaderParts::of_picture(None, &scene.lighting, has_shadows));
             if parts != scene.parts {
                 scene.parts = parts;
-                scene.make(&self.gpu, &mut self.colors, &mut self.features);
+                scene.make(&self.gpu, &mut self.colors);
             }
             Ok(())
         })
@@ -399,7 +388,7 @@ impl LiveRenderer {
                     pass
                 }
             };
-            drawn.add(scene.draw_rest(&mut pass, GpuPass::Color, camera, (&patches, *options)));
+            drawn.add(scene.draw_rest(&mut pass, camera, (&patches, *options)));
             drop(pass);
             if let (Some(encode), Some(linear)) = (&self.encoder, &targets.linear) {
                 encode.record(gpu, encoder, linear, target);
@@ -408,33 +397,6 @@ impl LiveRenderer {
         });
         self.targets = Some(targets);
         drawn
-    }
-
-    /// The feature and the depth at the position `pixel` of the picture of `camera`, in pixels from its upper left
-    /// corner; `None` for the sky, outside the picture, and before a scene is loaded. Waits for the device.
-    ///
-    /// # Errors
-    /// See [`GpuError`].
-    pub fn pick(&mut self, camera: &Camera, pixel: Vec2) -> Result<Option<PickedPoint>, GpuError> {
-        let Some(scene) = &mut self.scene else { return Ok(None) };
-        let size = camera.size();
-        let is_inside = pixel.cmpge(Vec2::ZERO).all() && pixel.x < size.0 as f32 && pixel.y < size.1 as f32;
-        if !is_inside {
-            return Ok(None);
-        }
-        let gpu = &self.gpu;
-        gpu.guarded("picking a pixel", || {
-            scene.frame.write(gpu, &scene.constants(camera, size));
-            let patches = scene.patches.shown(camera);
-            let ground = scene.patches.ground_calls(gpu, &patches)?;
-            let mut encoder = gpu.encoder("pick");
-            let pass = scene.pick.begin(&mut encoder, &scene.frame.group, pixel, size);
-            let mut pass = ScenePass::new(pass, &self.features, &scene.materials);
-            scene.patches.draw_ground(&mut pass, &ground, PipelineKey::PATCH);
-            scene.draw_rest(&mut pass, GpuPass::Feature, camera, (&patches, LiveOptions::default()));
-            drop(pass);
-            scene.pick.read(gpu, encoder)
-        })
     }
 }
 
@@ -449,16 +411,14 @@ impl LoadedScene {
     }
 
     /// Makes the pipelines that it draws with and that are missing.
-    fn make(&self, gpu: &Gpu, colors: &mut Pipelines, features: &mut Pipelines) {
-        let [color_keys, feature_keys] = self.plan.keys(self.parts);
+    fn make(&self, gpu: &Gpu, colors: &mut Pipelines) {
+        let [color_keys, _] = self.plan.keys(self.parts);
         let ground = match colors.shade_pixels(gpu) {
             true => vec![PipelineKey::PATCH_DEPTHS, ground_key(PipelineKey::GROUND_PIXELS, self.parts)],
             false => vec![ground_key(PipelineKey::PATCH, self.parts)],
         };
         colors.make(gpu, color_keys.into_iter().chain([PipelineKey::SKY]).chain(ground));
-        colors.make(gpu, self.patches.keys(GpuPass::Color, self.parts));
-        features.make(gpu, feature_keys.into_iter().chain([PipelineKey::PATCH]));
-        features.make(gpu, self.patches.keys(GpuPass::Feature, self.parts));
+        colors.make(gpu, self.patches.keys(self.parts));
     }
 
     fn constants(&self, camera: &Camera, size: (u32, u32)) -> FrameUniforms {
@@ -481,19 +441,15 @@ impl LoadedScene {
     fn draw_rest(
         &self,
         pass: &mut ScenePass<'_, '_>,
-        which: GpuPass,
         camera: &Camera,
         (patches, options): (&[PatchId], LiveOptions),
     ) -> LiveStatistics {
         let parts = self.parts;
-        let mut drawn = self.patches.draw_drapes(pass, which, patches, parts);
+        let mut drawn = self.patches.draw_drapes(pass, patches, parts);
         if options.wireframe {
             drawn.add(self.patches.draw_lines(pass, patches));
         }
-        let calls: Vec<&DrawCall> = match which {
-            GpuPass::Color => self.plan.color.iter().chain(self.plan.transparent(camera)).collect(),
-            GpuPass::Feature => self.plan.features.iter().collect(),
-        };
+        let calls: Vec<&DrawCall> = self.plan.color.iter().chain(self.plan.transparent(camera)).collect();
         drawn.calls += calls.len() as u32;
         pass.draw(&self.geometry, calls, parts);
         drawn

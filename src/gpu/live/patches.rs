@@ -21,7 +21,6 @@ use crate::merged_vertex::SurfaceOwner;
 use crate::parts::ShaderParts;
 use crate::passes::ScenePass;
 use crate::pipeline_key::{DepthRule, PipelineKey, VertexSource};
-use crate::pipelines::GpuPass;
 use sandtable_draw::list::{DrawList, DrawListError, MaterialId};
 use sandtable_draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use sandtable_draw::patches::{
@@ -87,17 +86,14 @@ struct DrapeMaterial {
 }
 
 impl DrapeMaterial {
-    fn key(self, pass: GpuPass, picture: ShaderParts) -> PipelineKey {
+    fn key(self, picture: ShaderParts) -> PipelineKey {
         PipelineKey {
             source: VertexSource::Merged,
             rule: DepthRule::Drape,
             two_sided: self.two_sided,
-            masked: self.masked && pass == GpuPass::Color,
+            masked: self.masked,
             textured: self.array != ArrayId::NONE,
-            parts: match pass {
-                GpuPass::Color => self.parts.in_picture(picture),
-                GpuPass::Feature => ShaderParts::NONE,
-            },
+            parts: self.parts.in_picture(picture),
         }
     }
 
@@ -145,11 +141,11 @@ impl PatchStore {
     }
 
     /// The keys that drapes are drawn with in a picture that has the parts `picture`.
-    pub fn keys(&self, pass: GpuPass, picture: ShaderParts) -> impl Iterator<Item = PipelineKey> + '_ {
+    pub fn keys(&self, picture: ShaderParts) -> impl Iterator<Item = PipelineKey> + '_ {
         let untextured =
             self.materials.iter().map(|&material| DrapeMaterial { array: ArrayId::NONE, ..material });
         let drapes = self.materials.iter().copied().chain(untextured);
-        drapes.map(move |material| material.key(pass, picture))
+        drapes.map(move |material| material.key(picture))
     }
 
     /// Applies changes; returns the bytes sent for them.
@@ -243,7 +239,6 @@ impl PatchStore {
     pub fn draw_drapes(
         &self,
         pass: &mut ScenePass<'_, '_>,
-        which: GpuPass,
         shown: &[PatchId],
         picture: ShaderParts,
     ) -> LiveStatistics {
@@ -257,7 +252,7 @@ impl PatchStore {
             pass.pass.set_vertex_buffer(0, vertices);
             pass.pass.set_index_buffer(indices, wgpu::IndexFormat::Uint32);
             for call in &drapes.calls {
-                if pass.set(call.material.key(which, picture), call.material.array) {
+                if pass.set(call.material.key(picture), call.material.array) {
                     pass.pass.draw_indexed(call.indices.clone(), 0, 0..1);
                     drawn.count(call.indices.len() as u32 / 3);
                 }

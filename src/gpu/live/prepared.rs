@@ -13,7 +13,6 @@ use crate::ground::row_bits;
 use crate::layouts::Layouts;
 use crate::live::ground_map::EditedMap;
 use crate::live::patches::PatchStore;
-use crate::live::pick::PickTarget;
 use crate::live::{LiveShadows, LoadedScene};
 use crate::materials::{GpuMaterials, TexturePlaces, TextureScope};
 use crate::memory::Loader;
@@ -31,15 +30,14 @@ use sandtable_draw::patches::GroundChanges;
 pub struct LiveLoader {
     gpu: Gpu,
     layouts: Arc<Layouts>,
-    /// Of colors and of features.
-    pipelines: [Pipelines; 2],
+    colors: Pipelines,
 }
 
 /// A scene on the device that is not shown yet.
 #[derive(Debug)]
 pub struct PreparedScene {
     pub(super) scene: Box<LoadedScene>,
-    pub(super) pipelines: [Pipelines; 2],
+    pub(super) colors: Pipelines,
 }
 
 /// Shadow maps on the device that are not shown yet.
@@ -56,8 +54,8 @@ pub struct PreparedShadows {
 pub struct PreparedWindows(pub(super) WindowTexture);
 
 impl LiveLoader {
-    pub(super) fn new(gpu: &Gpu, layouts: &Arc<Layouts>, pipelines: [&Pipelines; 2]) -> Self {
-        Self { gpu: gpu.clone(), layouts: Arc::clone(layouts), pipelines: pipelines.map(Pipelines::clone) }
+    pub(super) fn new(gpu: &Gpu, layouts: &Arc<Layouts>, colors: &Pipelines) -> Self {
+        Self { gpu: gpu.clone(), layouts: Arc::clone(layouts), colors: colors.clone() }
     }
 
     /// Brings a list to the device as [`LiveRenderer::load`](super::LiveRenderer::load) does, and waits until it is there.
@@ -66,7 +64,7 @@ impl LiveLoader {
     /// See [`GpuError`].
     pub fn prepare(&self, list: &DrawList, shadows: &LiveShadows) -> Result<PreparedScene, GpuError> {
         list.check()?;
-        let Self { gpu, layouts, pipelines } = self;
+        let Self { gpu, layouts, colors } = self;
         gpu.guarded("loading the scene", || {
             let places = TexturePlaces::new(list, TextureScope::All, &gpu.limits);
             let plan = Plan::new(list, &places, |layer| layer == DepthLayer::Solid);
@@ -87,13 +85,11 @@ impl LiveLoader {
                 geometry: GpuGeometry::upload(&loader, list, &plan, None)?,
                 plan,
                 patches,
-                pick: PickTarget::new(&loader)?,
             };
-            let mut pipelines = pipelines.clone();
-            let [colors, features] = &mut pipelines;
-            scene.make(gpu, colors, features);
+            let mut colors = colors.clone();
+            scene.make(gpu, &mut colors);
             gpu.finish_sending()?;
-            Ok(PreparedScene { scene: Box::new(scene), pipelines })
+            Ok(PreparedScene { scene: Box::new(scene), colors })
         })
     }
 
@@ -116,9 +112,9 @@ impl LiveLoader {
     /// See [`GpuError`].
     pub fn expect_windows(&self, prepared: &mut PreparedScene) -> Result<(), GpuError> {
         self.gpu.guarded("building its shaders", || {
-            let PreparedScene { scene, pipelines: [colors, features] } = prepared;
+            let PreparedScene { scene, colors } = prepared;
             scene.parts = scene.parts.with(ShaderParts::WINDOWS);
-            scene.make(&self.gpu, colors, features);
+            scene.make(&self.gpu, colors);
             Ok(())
         })
     }

@@ -10,8 +10,6 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
 use crate::lattice::Lattice;
 use crate::post_rect::PostRect;
 use crate::pyramid::Pyramid;
@@ -21,9 +19,6 @@ use crate::sight::descent::{Probe, descend};
 use crate::sight::line::{GroundedSight, Sight, SightEnd};
 use crate::sight::rise::{Raised, Rise, RiseSearch};
 use sandtable_raster::answer::Answer;
-
-/// Lines of sight per task of a batch: some hundred microseconds' work.
-const CHUNK: usize = 512;
 
 /// A lattice with the pyramid of its heights; cheap to clone.
 #[derive(Clone, Debug)]
@@ -52,23 +47,13 @@ impl SightGround {
         Self { lattice, pyramid: Arc::new(pyramid), slack_m }
     }
 
-    /// The ground after an edit of the posts in `edited` alone, which made it `lattice`: a copy of the pyramid is updated
-    /// there, and this ground stays as it is for its users.
-    ///
-    /// # Panics
-    /// Where `lattice` is of another size, or `edited` leaves it.
-    pub fn edited(&self, lattice: Arc<Lattice>, edited: PostRect) -> Self {
-        let mut pyramid = Pyramid::clone(&self.pyramid);
-        pyramid.update(&lattice, edited);
-        Self::with_pyramid(lattice, pyramid)
-    }
-
     /// Lets the ground go, so that it can be edited without a copy; [`SightGround::again`] takes it back.
     pub fn release(self) -> Arc<Pyramid> {
         self.pyramid
     }
 
-    /// The ground that was released as `pyramid`, after an edit of the posts in `edited` alone, which made it `lattice`.
+    /// The ground that was released as `pyramid`, after an edit of the posts in `edited` alone, which made it `lattice`. A
+    /// pyramid that others hold stays as it is for them.
     ///
     /// # Panics
     /// Where `lattice` is of another size, or `edited` leaves it.
@@ -98,16 +83,6 @@ impl SightGround {
         let margin_m = self.slack_m + sight.line.rounding_m();
         let mut search = BlockerSearch { sight: &sight, margin_m };
         sight.result(descend(&self.lattice, &self.pyramid, sight.grid, &mut search))
-    }
-
-    /// [`SightGround::line_of_sight`] for many pairs of observer and target, in order, on all threads.
-    ///
-    /// # Panics
-    /// Where `out` is not as long as `pairs`.
-    pub fn lines_of_sight(&self, pairs: &[(SightEnd, SightEnd)], curvature: Curvature, out: &mut [Sight]) {
-        assert_eq!(pairs.len(), out.len(), "one answer per pair");
-        let answers = pairs.par_iter().zip(out).with_min_len(CHUNK);
-        answers.for_each(|(&(observer, target), out)| *out = self.line_of_sight(observer, target, curvature));
     }
 
     /// The rise of `raised` that lets the line clear the ground, and where that is decided: to the last bit
