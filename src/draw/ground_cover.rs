@@ -12,26 +12,28 @@ use crate::ground::GroundPost;
 use crate::ground_grain::noise_of;
 
 /// Wavelengths in meters with their shares of the noise: from a gully to a mountainside.
-const WAVES: [(f32, f32); 3] = [(60.0, 0.25), (170.0, 0.35), (480.0, 0.4)];
+pub(crate) const WAVES: [(f32, f32); 3] = [(60.0, 0.25), (170.0, 0.35), (480.0, 0.4)];
 /// How far the noise moves the borders between covers, in meters of elevation and in rise.
-const UNEVEN_M: f32 = 160.0;
-const UNEVEN_RISE: f32 = 0.2;
+pub(crate) const UNEVEN_M: f32 = 160.0;
+pub(crate) const UNEVEN_RISE: f32 = 0.2;
 /// How much higher shady ground counts than sunny ground where it is as steep as 45°, in meters.
-const ASPECT_M: f32 = 150.0;
+pub(crate) const ASPECT_M: f32 = 150.0;
 /// From and to which rise scree and rock take the place of what grows.
-const SCREE_RISE: [f32; 2] = [0.50, 0.66];
-const ROCK_RISE: [f32; 2] = [0.78, 1.05];
+pub(crate) const SCREE_RISE: [f32; 2] = [0.50, 0.66];
+pub(crate) const ROCK_RISE: [f32; 2] = [0.78, 1.05];
 /// How far below the tree line meadows begin and below the snow line they end, and half the width of the snow's border;
 /// meters.
-const MEADOW_M: [f32; 3] = [300.0, 500.0, 200.0];
+pub(crate) const MEADOW_M: [f32; 3] = [300.0, 500.0, 200.0];
 
-/// The hues of the covers, linear, and the factors on a tint's luminance.
-const MEADOW: (Vec3, f32) = (Vec3::new(0.42, 0.55, 0.25), 0.92);
-const SCREE: (Vec3, f32) = (Vec3::new(0.56, 0.53, 0.48), 0.97);
-const ROCK: (Vec3, f32) = (Vec3::new(0.45, 0.43, 0.42), 0.80);
-const SNOW: (Vec3, f32) = (Vec3::new(0.86, 0.90, 0.97), 1.2);
+/// The hues of meadow, scree, rock and snow, linear, and the factors on a tint's luminance.
+pub(crate) const COVERS: [(Vec3, f32); 4] = [
+    (Vec3::new(0.42, 0.55, 0.25), 0.92),
+    (Vec3::new(0.56, 0.53, 0.48), 0.97),
+    (Vec3::new(0.45, 0.43, 0.42), 0.80),
+    (Vec3::new(0.86, 0.90, 0.97), 1.2),
+];
 /// The greatest share of a cover over the tint.
-const MOST: f32 = 0.8;
+pub(crate) const MOST: f32 = 0.8;
 
 /// The elevations at which covers change.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,7 +64,7 @@ impl GroundCover {
         let snow = step(height, [self.snow_m - half, self.snow_m + half]) * (1.0 - rock);
         let own = luminance(tint);
         let mut color = tint;
-        for ((hue, light), share) in [(MEADOW, meadow), (SCREE, scree), (ROCK, rock), (SNOW, snow)] {
+        for ((hue, light), share) in COVERS.into_iter().zip([meadow, scree, rock, snow]) {
             if share == 0.0 {
                 continue;
             }

@@ -10,15 +10,15 @@
 use glam::{UVec2, Vec2};
 
 /// Wavelengths in meters with their shares of the contrast.
-const WAVES: [(f32, f32); 3] = [(1.7, 0.3), (6.1, 0.35), (23.0, 0.35)];
+pub(crate) const WAVES: [(f32, f32); 3] = [(1.7, 0.3), (6.1, 0.35), (23.0, 0.35)];
 
 /// A wave shows in full where it is this many pixels wide, and not at all where it is half as wide.
-const WIDE_PX: f32 = 8.0;
+pub(crate) const WIDE_PX: f32 = 8.0;
 
 /// By how much the light of level ground differs from its mean at the most; ±4 of lightness L*.
-const LEVEL: f32 = 0.10;
+pub(crate) const LEVEL: f32 = 0.10;
 /// The same for ground as steep as 45°; ±7 of lightness.
-const STEEP: f32 = 0.20;
+pub(crate) const STEEP: f32 = 0.20;
 
 /// The factor on the color of natural ground at world X and Y, over a pixel `pixel_m` meters wide; `rise` is the slope in
 /// meters per meter. Its mean is 1.

@@ -20,6 +20,7 @@ pub mod material;
 pub mod patches;
 pub mod pixels;
 pub mod print_pattern;
+pub mod shader_constants;
 pub mod undergrowth;
 pub mod water;
 pub mod wireframe;

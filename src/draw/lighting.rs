@@ -237,7 +237,7 @@ impl ReliefShading {
 
 /// Cosine and sine of the side lights' altitude, 30°.
 const SIDE_LEVEL: f32 = 0.866_025_4;
-const SIDE_RISE: f32 = 0.5;
+pub(crate) const SIDE_RISE: f32 = 0.5;
 
 #[cfg(test)]
 mod tests {

@@ -87,14 +87,14 @@ impl ShorePixel {
 }
 
 /// Ripples: wavelengths in meters with the steepness of each.
-const RIPPLES: [(f32, f32); 3] = [(1.9, 0.030), (7.3, 0.035), (29.0, 0.030)];
+pub(crate) const RIPPLES: [(f32, f32); 3] = [(1.9, 0.030), (7.3, 0.035), (29.0, 0.030)];
 
 /// A ripple shows in full where it is this many pixels wide, and not at all where it is half as wide.
-const RIPPLE_PX: f32 = 8.0;
+pub(crate) const RIPPLE_PX: f32 = 8.0;
 
 /// Ripples show where the ray is this much flatter than straight down (1 less its fall), and in full that much above: from
 /// high up, the mirror that they tilt shows next to nothing.
-const RIPPLE_GRAZING: [f32; 2] = [0.3, 0.7];
+pub(crate) const RIPPLE_GRAZING: [f32; 2] = [0.3, 0.7];
 
 /// The slope of the water's surface eastward and northward at world X and Y, over a pixel `pixel_m` meters wide, seen along
 /// `ray` of unit length.

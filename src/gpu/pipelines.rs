@@ -9,6 +9,8 @@ use crate::merged_vertex::MergedVertex;
 use crate::pipeline_key::{DepthRule, PipelineKey, VertexSource};
 use crate::uniforms::Instance;
 use sandtable_draw::list::{DRAPE_TOLERANCE, DrawVertex};
+use sandtable_draw::shader_constants::{ShaderLanguage, shader_constants};
+use sandtable_render::shadow::filter;
 
 /// The factor by which a drape counts as nearer than it is.
 const DRAPE_NEARER: f64 = 1.0 + DRAPE_TOLERANCE;
@@ -20,6 +22,12 @@ const LINES_NEARER: f64 = 1.0 + 1.0 / 1000.0;
 /// The same as a part of a pixel. Hardware snaps corners to a grid of 1/256 pixel, moving each by up to 0.7 of half a
 /// step. A drape has corners that the ground lacks; four times that covers both.
 const DRAPE_NEARER_PX: f32 = 1.0 / 128.0;
+
+/// The shaders, with the constants that they share with the renderer on the processor.
+pub fn shader_text() -> String {
+    let constants = [shader_constants(), filter::shader_constants()].concat();
+    ShaderLanguage::Wgsl.declarations(&constants) + SHADER
+}
 
 const SHADER: &str = concat!(
     include_str!("shader.wgsl"),
@@ -209,7 +217,7 @@ impl Pipelines {
 pub fn shader(gpu: &Gpu) -> wgpu::ShaderModule {
     gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("sandtable"),
-        source: wgpu::ShaderSource::Wgsl(SHADER.into()),
+        source: wgpu::ShaderSource::Wgsl(shader_text().into()),
     })
 }
 
@@ -257,12 +265,13 @@ mod tests {
 
     #[test]
     fn the_shader_is_valid_without_any_gpu() {
-        let module = naga::front::wgsl::parse_str(SHADER)
-            .unwrap_or_else(|error| panic!("{}", error.emit_to_string(SHADER)));
+        let text = shader_text();
+        let module = naga::front::wgsl::parse_str(&text)
+            .unwrap_or_else(|error| panic!("{}", error.emit_to_string(&text)));
         let flags = naga::valid::ValidationFlags::all();
         naga::valid::Validator::new(flags, naga::valid::Capabilities::empty())
             .validate(&module)
-            .unwrap_or_else(|error| panic!("{}", error.emit_to_string(SHADER)));
+            .unwrap_or_else(|error| panic!("{}", error.emit_to_string(&text)));
         let names: Vec<&str> = module.entry_points.iter().map(|entry| entry.name.as_str()).collect();
         assert_eq!(
             names,
@@ -285,7 +294,7 @@ mod tests {
 
     #[test]
     fn the_constants_are_laid_out_as_the_shader_declares_them() {
-        let module = naga::front::wgsl::parse_str(SHADER).expect("valid, by the test above");
+        let module = naga::front::wgsl::parse_str(&shader_text()).expect("valid, by the test above");
         let size_of_struct = |name: &str| {
             let found = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name));
             match found.map(|(_, ty)| &ty.inner) {

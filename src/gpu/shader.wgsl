@@ -406,44 +406,48 @@ fn grain_noise(at: vec2f) -> f32 {
 
 // A wave's part of the grain.
 fn grain_wave(at: vec2f, pixel_m: f32, wave_m: f32, share: f32) -> f32 {
-    let shown = clamp(2.0 * wave_m / (8.0 * pixel_m) - 1.0, 0.0, 1.0);
+    let shown = clamp(2.0 * wave_m / (GRAIN_WAVE_PX * pixel_m) - 1.0, 0.0, 1.0);
     if shown <= 0.0 {
         return 0.0;
     }
     return share * shown * grain_noise(at / wave_m);
 }
 
+fn grain_waves(at: vec2f, pixel_m: f32, waves_m: vec3f, shares: vec3f) -> f32 {
+    return grain_wave(at, pixel_m, waves_m.x, shares.x) + grain_wave(at, pixel_m, waves_m.y, shares.y)
+        + grain_wave(at, pixel_m, waves_m.z, shares.z);
+}
+
 fn ground_grain(at: vec2f, pixel_m: f32, rise: f32) -> f32 {
-    let sum = grain_wave(at, pixel_m, 1.7, 0.3) + grain_wave(at, pixel_m, 6.1, 0.35)
-        + grain_wave(at, pixel_m, 23.0, 0.35);
-    return 1.0 + (0.10 + 0.10 * clamp(rise, 0.0, 1.0)) * sum;
+    let sum = grain_waves(at, pixel_m, GRAIN_WAVES_M, GRAIN_SHARES);
+    return 1.0 + (GRAIN_LEVEL + (GRAIN_STEEP - GRAIN_LEVEL) * clamp(rise, 0.0, 1.0)) * sum;
 }
 
 // The functions of src/draw/ground_cover.rs.
 fn cover_noise(at: vec2f, pixel_m: f32) -> f32 {
-    return grain_wave(at, pixel_m, 60.0, 0.25) + grain_wave(at, pixel_m, 170.0, 0.35)
-        + grain_wave(at, pixel_m, 480.0, 0.4);
+    return grain_waves(at, pixel_m, COVER_WAVES_M, COVER_SHARES);
 }
 
 fn covered_by(color: vec3f, tint: vec3f, hue: vec3f, light: f32, share: f32) -> vec3f {
     let luminance = vec3f(0.2126, 0.7152, 0.0722);
-    return mix(color, hue * (dot(tint, luminance) * light / dot(hue, luminance)), 0.8 * share);
+    return mix(color, hue * (dot(tint, luminance) * light / dot(hue, luminance)), COVER_MOST * share);
 }
 
 fn with_cover(tint: vec3f, post: Post, uneven: f32) -> vec3f {
     let slope = post.slope * frame.cover.z;
     let shade = clamp(-slope.y * frame.cover.w, -1.0, 1.0);
-    let height = post.height + 160.0 * uneven + 150.0 * shade;
-    let rise = length(slope) + 0.2 * uneven;
-    let above_trees = smoothstep(frame.cover.x - 300.0, frame.cover.x, height);
-    let meadow = above_trees * (1.0 - smoothstep(frame.cover.y - 500.0, frame.cover.y, height));
-    let scree = above_trees * smoothstep(0.50, 0.66, rise);
-    let rock = smoothstep(0.78, 1.05, rise);
-    let snow = smoothstep(frame.cover.y - 200.0, frame.cover.y + 200.0, height) * (1.0 - rock);
-    var color = covered_by(tint, tint, vec3f(0.42, 0.55, 0.25), 0.92, meadow);
-    color = covered_by(color, tint, vec3f(0.56, 0.53, 0.48), 0.97, scree);
-    color = covered_by(color, tint, vec3f(0.45, 0.43, 0.42), 0.80, rock);
-    return covered_by(color, tint, vec3f(0.86, 0.90, 0.97), 1.2, snow);
+    let height = post.height + COVER_UNEVEN_M * uneven + COVER_ASPECT_M * shade;
+    let rise = length(slope) + COVER_UNEVEN_RISE * uneven;
+    let above_trees = smoothstep(frame.cover.x - COVER_MEADOW_M.x, frame.cover.x, height);
+    let meadow = above_trees * (1.0 - smoothstep(frame.cover.y - COVER_MEADOW_M.y, frame.cover.y, height));
+    let scree = above_trees * smoothstep(COVER_SCREE_RISE.x, COVER_SCREE_RISE.y, rise);
+    let rock = smoothstep(COVER_ROCK_RISE.x, COVER_ROCK_RISE.y, rise);
+    let half = COVER_MEADOW_M.z;
+    let snow = smoothstep(frame.cover.y - half, frame.cover.y + half, height) * (1.0 - rock);
+    var color = covered_by(tint, tint, MEADOW_HUE, MEADOW_LIGHT, meadow);
+    color = covered_by(color, tint, SCREE_HUE, SCREE_LIGHT, scree);
+    color = covered_by(color, tint, ROCK_HUE, ROCK_LIGHT, rock);
+    return covered_by(color, tint, SNOW_HUE, SNOW_LIGHT, snow);
 }
 
 // Lines `spacing` meters apart vanish before they run together.
@@ -471,19 +475,7 @@ const TABLE_COLUMNS = 1024u;
 const PAGE_COLUMNS = 64u;
 const PAGE = 32;
 const NOTHING = -1e30;
-const MOST_RADIUS = 5.0;
 const MOST_WINDOW = 12; // more texels than any radius reads
-const LEAST_RADIUS = 1.5;
-const SPREAD = 0.013 * 1.25;
-const BIAS_TEXELS = 0.05;
-const BIAS_PER_METER = 1e-6;
-const FULL_TEXELS = 1.0;
-const STEEPEST = 20.0;
-const SPARSE_RADIUS = 2.5;
-const CONTACT_RADIUS = 2.0;
-const WALL_RADIUS = 1.0;
-const GROUND_CONTACT = 0.9;
-const WALL_CONTACT = 0.35;
 
 // A point as a map sees it: its level, its place in texels, its height toward the light.
 struct ShadowPlace {
@@ -650,7 +642,7 @@ fn water_tint(height: f32, off_shore: f32) -> vec3f {
 
 // The functions of src/draw/water.rs.
 fn ripple(at: vec2f, pixel_m: f32, low: f32, wave_m: f32, steepness: f32) -> vec2f {
-    let shown = low * clamp(2.0 * wave_m / (8.0 * pixel_m) - 1.0, 0.0, 1.0);
+    let shown = low * clamp(2.0 * wave_m / (RIPPLE_WAVE_PX * pixel_m) - 1.0, 0.0, 1.0);
     if shown <= 0.0 {
         return vec2f(0.0);
     }
@@ -659,9 +651,10 @@ fn ripple(at: vec2f, pixel_m: f32, low: f32, wave_m: f32, steepness: f32) -> vec
 }
 
 fn ripples(at: vec2f, pixel_m: f32, ray: vec3f) -> vec2f {
-    let low = clamp((1.0 + ray.z - 0.3) / 0.4, 0.0, 1.0);
-    return ripple(at, pixel_m, low, 1.9, 0.030) + ripple(at, pixel_m, low, 7.3, 0.035)
-        + ripple(at, pixel_m, low, 29.0, 0.030);
+    let low = clamp((1.0 + ray.z - RIPPLE_GRAZING.x) / (RIPPLE_GRAZING.y - RIPPLE_GRAZING.x), 0.0, 1.0);
+    return ripple(at, pixel_m, low, RIPPLE_WAVES_M.x, RIPPLE_STEEPNESS.x)
+        + ripple(at, pixel_m, low, RIPPLE_WAVES_M.y, RIPPLE_STEEPNESS.y)
+        + ripple(at, pixel_m, low, RIPPLE_WAVES_M.z, RIPPLE_STEEPNESS.z);
 }
 
 // Lighting::mirror_sky.
@@ -673,7 +666,7 @@ fn mirror_sky(color: vec3f, toward: vec3f, water: f32, at: vec2f, pixel_m: f32) 
     let normal = normalize(vec3f(-ripples(at, pixel_m, ray), 1.0));
     let facing = -dot(ray, normal);
     let grazing = 1.0 - clamp(facing, 0.0, 1.0);
-    let share = 0.02 + 0.48 * (grazing * grazing * grazing * grazing * grazing);
+    let share = WATER_MIRRORED + (WATER_MOST_MIRRORED - WATER_MIRRORED) * (grazing * grazing * grazing * grazing * grazing);
     return mix(color, sky_at(ray + normal * (2.0 * facing)), share * water);
 }
 
@@ -681,16 +674,17 @@ fn facing_sun(normal: vec3f) -> f32 {
     return max(dot(normal, frame.to_sun.xyz), 0.0);
 }
 
-// ReliefShading::soft, with the same constants.
+// ReliefShading::soft.
 fn soft_brightness(brightness: f32) -> f32 {
-    let toe = 0.05 + 0.45 * 0.45 / (0.45 + max(0.5 - brightness, 0.0));
-    let shoulder = 1.9 - 0.55 * 0.55 / (0.55 + max(brightness - 1.35, 0.0));
-    return select(select(brightness, shoulder, brightness > 1.35), toe, brightness < 0.5);
+    const dark = RELIEF_TOE - RELIEF_DARKEST;
+    const bright = RELIEF_BRIGHTEST - RELIEF_SHOULDER;
+    let toe = RELIEF_DARKEST + dark * dark / (dark + max(RELIEF_TOE - brightness, 0.0));
+    let shoulder = RELIEF_BRIGHTEST - bright * bright / (bright + max(brightness - RELIEF_SHOULDER, 0.0));
+    return select(select(brightness, shoulder, brightness > RELIEF_SHOULDER), toe, brightness < RELIEF_TOE);
 }
 
-// ReliefShading::shade, with the same constants.
+// ReliefShading::shade.
 fn relief_lit(albedo: vec3f, post: Post, at: vec2f, received: vec2f) -> vec3f {
-    let shares = vec3f(0.55, 0.20, 0.25);
     let z_factor = frame.to_sun.w;
     let normal = normalize(vec3f(-post.slope * z_factor, 1.0));
     let form = normalize(vec3f(-ground_on_level(at, frame.ground_size.w).slope * z_factor, 1.0));
@@ -698,20 +692,21 @@ fn relief_lit(albedo: vec3f, post: Post, at: vec2f, received: vec2f) -> vec3f {
     for (var side = 0; side < 4; side += 1) {
         sides += max(dot(normal, frame.sides[side].xyz), 0.0) * frame.sides[side].w;
     }
-    let shade = dot(shares, vec3f(facing_sun(normal), sides, facing_sun(form)));
-    let lost = shares.x * facing_sun(normal) * (1.0 - post.visibility.x * received.x);
-    let level = dot(shares, vec3f(facing_sun(vec3f(0.0, 0.0, 1.0)), 0.5, facing_sun(vec3f(0.0, 0.0, 1.0))));
+    let shade = dot(RELIEF_SHARES, vec3f(facing_sun(normal), sides, facing_sun(form)));
+    let lost = RELIEF_SHARES.x * facing_sun(normal) * (1.0 - post.visibility.x * received.x);
+    let upright = facing_sun(vec3f(0.0, 0.0, 1.0));
+    let level = dot(RELIEF_SHARES, vec3f(upright, RELIEF_SIDE_RISE, upright));
     let low = stop_at(0u).w;
     let high = stop_at(frame.ground_size.x - 1u).w;
     let elevation = select(0.0, (post.height - low) / (high - low), high > low);
-    let contrast = mix(0.75, 1.0, clamp(elevation / 0.75, 0.0, 1.0));
+    let contrast = mix(RELIEF_LOW_CONTRAST, 1.0, clamp(elevation / 0.75, 0.0, 1.0));
     let relief = contrast * (shade - level);
     let shadow = contrast * lost;
-    let brightness = soft_brightness(1.0 + select(2.4, frame.sun.w, relief < 0.0) * relief - 2.4 * shadow);
-    let cool = vec3f(0.80, 0.90, 1.12);
-    let warm = vec3f(1.06, 1.0, 0.90);
-    let tint = mix(cool, warm, clamp(0.5 + 1.2 * (relief - shadow), 0.0, 1.0)) / mix(cool, warm, 0.5);
-    return albedo * tint * (brightness * mix(0.5, 1.0, post.visibility.y * received.y));
+    let gain = select(RELIEF_GAIN, frame.sun.w, relief < 0.0);
+    let brightness = soft_brightness(1.0 + gain * relief - RELIEF_GAIN * shadow);
+    let hue = mix(RELIEF_COOL, RELIEF_WARM, clamp(0.5 + 1.2 * (relief - shadow), 0.0, 1.0));
+    let tint = hue / mix(RELIEF_COOL, RELIEF_WARM, 0.5);
+    return albedo * tint * (brightness * mix(RELIEF_CLOSED, 1.0, post.visibility.y * received.y));
 }
 
 // The normal on the side that is seen; the triangle's own where its corners have none.
@@ -729,8 +724,8 @@ fn is_opaque() -> bool {
 
 // hatching_cover.
 fn hatching_cover(at: vec2f) -> f32 {
-    let across = (at.x + at.y) * 0.70710678 / 8.0;
-    return clamp(1.1 / 2.0 + 0.5 - abs(fract(across) - 0.5) * 8.0, 0.0, 1.0);
+    let across = (at.x + at.y) * 0.70710678 / HATCHING_PITCH_PX;
+    return clamp(HATCHING_WIDTH_PX / 2.0 + 0.5 - abs(fract(across) - 0.5) * HATCHING_PITCH_PX, 0.0, 1.0);
 }
 
 fn texture_at(uv: vec2f) -> vec4f {
@@ -756,10 +751,6 @@ fn has(part: u32) -> bool {
     return (parts & part) != 0u;
 }
 
-// src/draw/wireframe.rs: the linear color of lines, their alpha.
-const LINE_COLOR = vec3f(0.00913406, 0.00913406, 0.01298303);
-const LINE_ALPHA = 0.78431374;
-
 // wireframe::edge_cover, by the weights of a triangle's second and third corner.
 fn edge_cover(weights: vec2f) -> f32 {
     let right = dpdx(weights);
@@ -769,8 +760,8 @@ fn edge_cover(weights: vec2f) -> f32 {
     let per_px = max(sqrt(across * across + along * along), vec3f(1e-30));
     let height = 1.0 / max(max(per_px.x, per_px.y), per_px.z);
     let away = abs(vec3f(1.0 - weights.x - weights.y, weights)) / per_px;
-    let shown = clamp((height - 2.0) / 5.0, 0.0, 1.0);
-    return clamp(1.0 - min(min(away.x, away.y), away.z), 0.0, 1.0) * shown;
+    let shown = clamp((height - WIREFRAME_FADE_PX.x) / (WIREFRAME_FADE_PX.y - WIREFRAME_FADE_PX.x), 0.0, 1.0);
+    return clamp(WIREFRAME_WIDTH_PX * 0.5 + 0.5 - min(min(away.x, away.y), away.z), 0.0, 1.0) * shown;
 }
 
 // The color of bare ground; water_share is that of the water that mirrors the sky, unlit that of an unshaded picture.
@@ -796,7 +787,7 @@ fn ground_color(at: vec2f, post: Post, right: vec2f, down: vec2f, grain: f32) ->
         let change = length(vec2f(dot(post.water, right), dot(post.water, down)));
         let away = (post.visibility.z - 0.5) / max(change, 1e-4);
         let water = clamp(away + 0.5, 0.0, 1.0);
-        let shore = 1.0 - 0.4 * clamp(1.25 - abs(away), 0.0, 1.0);
+        let shore = 1.0 - WATER_SHORE * clamp(WATER_SHORE_PX - abs(away), 0.0, 1.0);
         let tint = water_tint(post.height, clamp((post.visibility.z - 0.75) * 4.0, 0.0, 1.0));
         seen.color = mix(seen.color, tint, water) * shore;
         seen.water_share = water;
@@ -913,7 +904,7 @@ fn shade(in: Varying, front: bool) -> vec4f {
     light = mirrored_sky(light, water_share, in.world, span);
     if has(EDGES_PART) {
         let cover = edge_cover(in.uv);
-        light = mix(light, LINE_COLOR, select(0.0, cover * LINE_ALPHA, (flags & EDGES) != 0u));
+        light = mix(light, WIREFRAME_COLOR, select(0.0, cover * WIREFRAME_ALPHA, (flags & EDGES) != 0u));
     }
     light = in_haze(light, in.world);
     return vec4f(light, select(1.0, color.a, (flags & BLEND) != 0u));
@@ -943,7 +934,7 @@ fn shade_or_discard(in: Varying, front: bool) -> vec4f {
 @fragment
 fn line_color(in: Varying) -> @location(0) vec4f {
     let clear = exp(-max(distance(in.world, frame.eye.xyz) - frame.zenith.w, 0.0) * frame.haze.w);
-    return vec4f(mix(frame.haze.rgb, LINE_COLOR, clear), LINE_ALPHA);
+    return vec4f(mix(frame.haze.rgb, WIREFRAME_COLOR, clear), WIREFRAME_ALPHA);
 }
 
 @fragment

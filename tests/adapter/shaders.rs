@@ -1,9 +1,11 @@
-//! The shaders of the GPU renderer are valid on every machine: this test needs no adapter, nor the renderer itself.
+//! The shaders of the GPU renderer are valid on every machine: this test needs no adapter.
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
+use sandtable_draw::shader_constants::{ShaderLanguage, shader_constants};
+use sandtable_render::shadow::filter;
 
 /// The folder of the shaders.
 const FOLDER: &str = concat!(env!("SANDTABLE_ROOT"), "src/gpu");
@@ -19,7 +21,8 @@ fn text_of(module: &[&str]) -> String {
         let path = Path::new(FOLDER).join(file);
         std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
     };
-    module.iter().map(read).collect::<Vec<_>>().join("\n")
+    let constants = [shader_constants(), filter::shader_constants()].concat();
+    ShaderLanguage::Wgsl.declarations(&constants) + &module.iter().map(read).collect::<Vec<_>>().join("\n")
 }
 
 #[test]

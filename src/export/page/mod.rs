@@ -27,6 +27,7 @@ use sandtable_draw::color::Srgba;
 use sandtable_draw::ground::GroundMap;
 use sandtable_draw::lighting::{Lighting, ReliefShading};
 use sandtable_draw::pixels::Pixels;
+use sandtable_draw::shader_constants::{ShaderLanguage, shader_constants};
 use sandtable_draw::undergrowth::Undergrowth;
 use sandtable_draw::water::WaterColor;
 use sandtable_geom::chebyshev::ChebyshevTable;
@@ -182,7 +183,8 @@ fn assemble(title: &str, description: &str, numbers: &str) -> String {
         include_str!("script/main.js"),
     ];
     let title = if title.is_empty() { "Scene".to_owned() } else { as_text(title) };
-    let scripts = SCRIPTS.concat();
+    let constants = ShaderLanguage::Glsl.declarations(&shader_constants());
+    let scripts = format!("const CONSTANTS = `{constants}`;\n{}", SCRIPTS.concat());
     let parts = [
         ("{{title}}", title.as_str()),
         ("{{style}}", include_str!("page.css")),

@@ -56,6 +56,25 @@ const WALL_CONTACT: f32 = 0.35;
 const PAGE_BITS: u32 = PAGE.trailing_zeros();
 const PAGE_MASK: i32 = PAGE as i32 - 1;
 
+/// Returns the constants of filters as shaders name them; see
+/// [`shader_constants`](sandtable_draw::shader_constants::shader_constants).
+pub fn shader_constants() -> Vec<(&'static str, Vec<f32>)> {
+    vec![
+        ("MOST_RADIUS", vec![MOST_RADIUS]),
+        ("LEAST_RADIUS", vec![LEAST_RADIUS]),
+        ("SPREAD", vec![SPREAD]),
+        ("BIAS_TEXELS", vec![BIAS_TEXELS]),
+        ("BIAS_PER_METER", vec![BIAS_PER_METER]),
+        ("FULL_TEXELS", vec![FULL_TEXELS]),
+        ("STEEPEST", vec![STEEPEST]),
+        ("SPARSE_RADIUS", vec![SPARSE_RADIUS]),
+        ("CONTACT_RADIUS", vec![CONTACT_RADIUS]),
+        ("WALL_RADIUS", vec![WALL_RADIUS]),
+        ("GROUND_CONTACT", vec![GROUND_CONTACT]),
+        ("WALL_CONTACT", vec![WALL_CONTACT]),
+    ]
+}
+
 /// The kind of point that receives a shadow, which decides what casts on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShadowReceiver {

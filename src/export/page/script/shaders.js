@@ -44,6 +44,7 @@ precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DShadow;
+${CONSTANTS}
 uniform vec3 eye, forward;
 uniform vec4 depth;
 uniform vec3 to_sun, sun, sky, bounce;
@@ -96,8 +97,12 @@ float noise(vec2 at) {
 }
 
 float wave(vec2 at, float pixel_m, float wave_m, float share) {
-  float shown = clamp(2.0 * wave_m / (8.0 * pixel_m) - 1.0, 0.0, 1.0);
+  float shown = clamp(2.0 * wave_m / (GRAIN_WAVE_PX * pixel_m) - 1.0, 0.0, 1.0);
   return shown <= 0.0 ? 0.0 : share * shown * noise(at / wave_m);
+}
+
+float waves(vec2 at, float pixel_m, vec3 waves_m, vec3 shares) {
+  return wave(at, pixel_m, waves_m.x, shares.x) + wave(at, pixel_m, waves_m.y, shares.y) + wave(at, pixel_m, waves_m.z, shares.z);
 }
 
 vec3 from_eye() {
@@ -110,7 +115,7 @@ vec3 sky_at(vec3 ray) {
 }
 
 vec2 ripple(vec2 at, float pixel_m, float low, float wave_m, float steepness) {
-  float shown = low * clamp(2.0 * wave_m / (8.0 * pixel_m) - 1.0, 0.0, 1.0);
+  float shown = low * clamp(2.0 * wave_m / (RIPPLE_WAVE_PX * pixel_m) - 1.0, 0.0, 1.0);
   if (shown <= 0.0) return vec2(0.0);
   vec2 place = at / wave_m;
   return vec2(noise(place), noise(place + vec2(37.5, 17.25))) * (shown * steepness);
@@ -119,13 +124,14 @@ vec2 ripple(vec2 at, float pixel_m, float low, float wave_m, float steepness) {
 vec3 mirror_sky(vec3 color, float water, float pixel_m) {
   if (water <= 0.0) return color;
   vec3 ray = normalize(from_eye());
-  float low = clamp((1.0 + ray.z - 0.3) / 0.4, 0.0, 1.0);
-  vec2 ripples = ripple(world.xy, pixel_m, low, 1.9, 0.030) + ripple(world.xy, pixel_m, low, 7.3, 0.035)
-    + ripple(world.xy, pixel_m, low, 29.0, 0.030);
+  float low = clamp((1.0 + ray.z - RIPPLE_GRAZING.x) / (RIPPLE_GRAZING.y - RIPPLE_GRAZING.x), 0.0, 1.0);
+  vec2 ripples = ripple(world.xy, pixel_m, low, RIPPLE_WAVES_M.x, RIPPLE_STEEPNESS.x)
+    + ripple(world.xy, pixel_m, low, RIPPLE_WAVES_M.y, RIPPLE_STEEPNESS.y)
+    + ripple(world.xy, pixel_m, low, RIPPLE_WAVES_M.z, RIPPLE_STEEPNESS.z);
   vec3 normal = normalize(vec3(-ripples, 1.0));
   float facing = -dot(ray, normal);
   float grazing = 1.0 - clamp(facing, 0.0, 1.0);
-  float share = 0.02 + 0.48 * pow(grazing, 5.0);
+  float share = WATER_MIRRORED + (WATER_MOST_MIRRORED - WATER_MIRRORED) * pow(grazing, 5.0);
   return mix(color, sky_at(ray + normal * (2.0 * facing)), share * water);
 }
 
@@ -145,8 +151,8 @@ float sun_share(vec3 normal) {
 
 vec4 surface() {
   if (is_hatching > 0.5) {
-    float across = (gl_FragCoord.x - gl_FragCoord.y) * 0.70710678 / 8.0;
-    return vec4(base_color.rgb, base_color.a * clamp(1.05 - abs(fract(across) - 0.5) * 8.0, 0.0, 1.0));
+    float across = (gl_FragCoord.x - gl_FragCoord.y) * 0.70710678 / HATCHING_PITCH_PX;
+    return vec4(base_color.rgb, base_color.a * clamp(HATCHING_WIDTH_PX / 2.0 + 0.5 - abs(fract(across) - 0.5) * HATCHING_PITCH_PX, 0.0, 1.0));
   }
   return base_color * tint * texture(base_texture, at_texture);
 }
@@ -228,23 +234,23 @@ vec3 water_at(float height) {
 
 vec3 covered_by(vec3 color, vec3 own, vec3 hue, float light, float share) {
   vec3 luminance = vec3(0.2126, 0.7152, 0.0722);
-  return mix(color, hue * (dot(own, luminance) * light / dot(hue, luminance)), 0.8 * share);
+  return mix(color, hue * (dot(own, luminance) * light / dot(hue, luminance)), COVER_MOST * share);
 }
 
 vec3 with_cover(vec3 own, float height_m, vec2 slope, float uneven) {
   slope *= cover.z;
   float shade = clamp(-slope.y * cover.w, -1.0, 1.0);
-  float height = height_m + 160.0 * uneven + 150.0 * shade;
-  float rise = length(slope) + 0.2 * uneven;
-  float above_trees = smoothstep(cover.x - 300.0, cover.x, height);
-  float meadow = above_trees * (1.0 - smoothstep(cover.y - 500.0, cover.y, height));
-  float scree = above_trees * smoothstep(0.50, 0.66, rise);
-  float rock = smoothstep(0.78, 1.05, rise);
-  float snow = smoothstep(cover.y - 200.0, cover.y + 200.0, height) * (1.0 - rock);
-  vec3 color = covered_by(own, own, vec3(0.42, 0.55, 0.25), 0.92, meadow);
-  color = covered_by(color, own, vec3(0.56, 0.53, 0.48), 0.97, scree);
-  color = covered_by(color, own, vec3(0.45, 0.43, 0.42), 0.80, rock);
-  return covered_by(color, own, vec3(0.86, 0.90, 0.97), 1.2, snow);
+  float height = height_m + COVER_UNEVEN_M * uneven + COVER_ASPECT_M * shade;
+  float rise = length(slope) + COVER_UNEVEN_RISE * uneven;
+  float above_trees = smoothstep(cover.x - COVER_MEADOW_M.x, cover.x, height);
+  float meadow = above_trees * (1.0 - smoothstep(cover.y - COVER_MEADOW_M.y, cover.y, height));
+  float scree = above_trees * smoothstep(COVER_SCREE_RISE.x, COVER_SCREE_RISE.y, rise);
+  float rock = smoothstep(COVER_ROCK_RISE.x, COVER_ROCK_RISE.y, rise);
+  float snow = smoothstep(cover.y - COVER_MEADOW_M.z, cover.y + COVER_MEADOW_M.z, height) * (1.0 - rock);
+  vec3 color = covered_by(own, own, MEADOW_HUE, MEADOW_LIGHT, meadow);
+  color = covered_by(color, own, SCREE_HUE, SCREE_LIGHT, scree);
+  color = covered_by(color, own, ROCK_HUE, ROCK_LIGHT, rock);
+  return covered_by(color, own, SNOW_HUE, SNOW_LIGHT, snow);
 }
 
 float contour_fade(float spacing, float per_pixel) {
@@ -264,8 +270,10 @@ float contour_cover(float height, float per_pixel) {
 }
 
 float soft_brightness(float brightness) {
-  if (brightness < 0.5) return 0.05 + 0.45 * 0.45 / (0.45 + 0.5 - brightness);
-  if (brightness > 1.35) return 1.9 - 0.55 * 0.55 / (0.55 + brightness - 1.35);
+  const float dark = RELIEF_TOE - RELIEF_DARKEST;
+  const float bright = RELIEF_BRIGHTEST - RELIEF_SHOULDER;
+  if (brightness < RELIEF_TOE) return RELIEF_DARKEST + dark * dark / (dark + RELIEF_TOE - brightness);
+  if (brightness > RELIEF_SHOULDER) return RELIEF_BRIGHTEST - bright * bright / (bright + brightness - RELIEF_SHOULDER);
   return brightness;
 }
 
@@ -276,18 +284,17 @@ vec3 relief_lit(vec3 albedo, float height, vec4 post, float sky_share, vec2 plac
   float side_light = 0.0;
   for (int index = 0; index < 4; index += 1) side_light += max(dot(normal, sides[index]), 0.0) * side_shares[index];
   float facing = max(dot(normal, to_sun), 0.0);
-  float shade = 0.55 * facing + 0.20 * side_light + 0.25 * max(dot(form, to_sun), 0.0);
-  float lost = 0.55 * facing * (1.0 - post.z * received);
-  float level = 0.80 * max(to_sun.z, 0.0) + 0.10;
+  float upright = max(to_sun.z, 0.0);
+  float shade = dot(RELIEF_SHARES, vec3(facing, side_light, max(dot(form, to_sun), 0.0)));
+  float lost = RELIEF_SHARES.x * facing * (1.0 - post.z * received);
+  float level = dot(RELIEF_SHARES, vec3(upright, RELIEF_SIDE_RISE, upright));
   float elevation = (height - ramp_range.x) * ramp_range.y;
-  float contrast = mix(0.75, 1.0, clamp(elevation / 0.75, 0.0, 1.0));
+  float contrast = mix(RELIEF_LOW_CONTRAST, 1.0, clamp(elevation / 0.75, 0.0, 1.0));
   float relief = contrast * (shade - level);
   float shadow = contrast * lost;
-  float brightness = soft_brightness(1.0 + (relief < 0.0 ? shade_gain : 2.4) * relief - 2.4 * shadow);
-  vec3 cool = vec3(0.80, 0.90, 1.12);
-  vec3 warm = vec3(1.06, 1.0, 0.90);
-  vec3 hue = mix(cool, warm, clamp(0.5 + 1.2 * (relief - shadow), 0.0, 1.0)) / mix(cool, warm, 0.5);
-  return albedo * hue * (brightness * mix(0.5, 1.0, sky_share));
+  float brightness = soft_brightness(1.0 + (relief < 0.0 ? shade_gain : RELIEF_GAIN) * relief - RELIEF_GAIN * shadow);
+  vec3 hue = mix(RELIEF_COOL, RELIEF_WARM, clamp(0.5 + 1.2 * (relief - shadow), 0.0, 1.0)) / mix(RELIEF_COOL, RELIEF_WARM, 0.5);
+  return albedo * hue * (brightness * mix(RELIEF_CLOSED, 1.0, sky_share));
 }
 
 void main() {
@@ -315,8 +322,8 @@ void main() {
   vec4 color = surface();
   float grain = 1.0;
   if ((is_map > 0.5 || is_natural > 0.5) && ramp_range.w > 0.5) {
-    float sum = wave(world.xy, pixel_m, 1.7, 0.3) + wave(world.xy, pixel_m, 6.1, 0.35) + wave(world.xy, pixel_m, 23.0, 0.35);
-    grain = 1.0 + (0.10 + 0.10 * clamp(length(post.xy), 0.0, 1.0)) * sum;
+    float sum = waves(world.xy, pixel_m, GRAIN_WAVES_M, GRAIN_SHARES);
+    grain = 1.0 + (GRAIN_LEVEL + (GRAIN_STEEP - GRAIN_LEVEL) * clamp(length(post.xy), 0.0, 1.0)) * sum;
   }
   float water_share = is_water;
   float unlit = 0.0;
@@ -325,15 +332,14 @@ void main() {
     float lines = contour_cover(reading.height, per_pixel) * contour.a;
     float away = (post.w - 0.5) / max(length(wet_change), 1e-4);
     float water = clamp(away + 0.5, 0.0, 1.0);
-    float shore = 1.0 - 0.4 * clamp(1.25 - abs(away), 0.0, 1.0);
+    float shore = 1.0 - WATER_SHORE * clamp(WATER_SHORE_PX - abs(away), 0.0, 1.0);
     float off_shore = clamp((post.w - 0.75) * 4.0, 0.0, 1.0);
     vec3 deep = water_at(reading.height);
     vec3 blue = mix(mix(shallow.rgb, deep, clamp(off_shore / shallow.w, 0.0, 1.0)), min(deep, open_water.rgb),
       clamp((off_shore - shallow.w) / (1.0 - shallow.w), 0.0, 1.0));
     vec3 land = texture(ramp, vec2((reading.height - ramp_range.x) * ramp_range.y, 0.5)).rgb;
     if (cover.z > 0.0) {
-      float uneven = wave(world.xy, pixel_m, 60.0, 0.25) + wave(world.xy, pixel_m, 170.0, 0.35)
-        + wave(world.xy, pixel_m, 480.0, 0.4);
+      float uneven = waves(world.xy, pixel_m, COVER_WAVES_M, COVER_SHARES);
       land = with_cover(land, reading.height, post.xy, uneven);
     }
     land = mix(land, undergrowth.rgb, clamp(-post.w, 0.0, 1.0) * undergrowth.w) * grain;

@@ -1,0 +1,115 @@
+//! The constants of shading as declarations of a shading language: the formulas are written in Rust, in WGSL and in GLSL, their
+//! numbers once.
+
+use std::fmt::Write;
+
+use glam::Vec3;
+
+use crate::lighting::ReliefShading;
+use crate::water::WaterColor;
+use crate::{ground_cover, ground_grain, hatching, lighting, water, wireframe};
+
+/// A language that shaders are written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShaderLanguage {
+    /// The WebGPU Shading Language.
+    Wgsl,
+    /// The OpenGL ES Shading Language 3.00.
+    Glsl,
+}
+
+impl ShaderLanguage {
+    /// Returns a line that declares each constant by its name: one number as a scalar, two or three as a vector.
+    pub fn declarations(self, constants: &[(&str, Vec<f32>)]) -> String {
+        let mut text = String::new();
+        for (name, values) in constants {
+            let list = values.iter().map(|value| format!("{value:?}")).collect::<Vec<_>>().join(", ");
+            let _ = match (self, values.len()) {
+                (Self::Wgsl, 1) => writeln!(text, "const {name} = {list};"),
+                (Self::Wgsl, count) => writeln!(text, "const {name} = vec{count}f({list});"),
+                (Self::Glsl, 1) => writeln!(text, "const float {name} = {list};"),
+                (Self::Glsl, count) => writeln!(text, "const vec{count} {name} = vec{count}({list});"),
+            };
+        }
+        text
+    }
+}
+
+/// Returns the constants of [`ReliefShading`], the grain, the land cover, water, hatching and wireframes.
+pub fn shader_constants() -> Vec<(&'static str, Vec<f32>)> {
+    let vector = |color: Vec3| color.to_array().to_vec();
+    let lengths = |waves: &[(f32, f32); 3]| waves.iter().map(|wave| wave.0).collect();
+    let shares = |waves: &[(f32, f32); 3]| waves.iter().map(|wave| wave.1).collect();
+    let [meadow, scree, rock, snow] = ground_cover::COVERS;
+    vec![
+        ("RELIEF_SHARES", ReliefShading::SHARES.to_vec()),
+        ("RELIEF_SIDE_RISE", vec![lighting::SIDE_RISE]),
+        ("RELIEF_GAIN", vec![ReliefShading::GAIN]),
+        ("RELIEF_DARKEST", vec![ReliefShading::DARKEST]),
+        ("RELIEF_TOE", vec![ReliefShading::TOE]),
+        ("RELIEF_SHOULDER", vec![ReliefShading::SHOULDER]),
+        ("RELIEF_BRIGHTEST", vec![ReliefShading::BRIGHTEST]),
+        ("RELIEF_WARM", vector(ReliefShading::WARM)),
+        ("RELIEF_COOL", vector(ReliefShading::COOL)),
+        ("RELIEF_CLOSED", vec![ReliefShading::CLOSED]),
+        ("RELIEF_LOW_CONTRAST", vec![ReliefShading::LOW_CONTRAST]),
+        ("GRAIN_WAVES_M", lengths(&ground_grain::WAVES)),
+        ("GRAIN_SHARES", shares(&ground_grain::WAVES)),
+        ("GRAIN_WAVE_PX", vec![ground_grain::WIDE_PX]),
+        ("GRAIN_LEVEL", vec![ground_grain::LEVEL]),
+        ("GRAIN_STEEP", vec![ground_grain::STEEP]),
+        ("COVER_WAVES_M", lengths(&ground_cover::WAVES)),
+        ("COVER_SHARES", shares(&ground_cover::WAVES)),
+        ("COVER_UNEVEN_M", vec![ground_cover::UNEVEN_M]),
+        ("COVER_UNEVEN_RISE", vec![ground_cover::UNEVEN_RISE]),
+        ("COVER_ASPECT_M", vec![ground_cover::ASPECT_M]),
+        ("COVER_SCREE_RISE", ground_cover::SCREE_RISE.to_vec()),
+        ("COVER_ROCK_RISE", ground_cover::ROCK_RISE.to_vec()),
+        ("COVER_MEADOW_M", ground_cover::MEADOW_M.to_vec()),
+        ("COVER_MOST", vec![ground_cover::MOST]),
+        ("MEADOW_HUE", vector(meadow.0)),
+        ("MEADOW_LIGHT", vec![meadow.1]),
+        ("SCREE_HUE", vector(scree.0)),
+        ("SCREE_LIGHT", vec![scree.1]),
+        ("ROCK_HUE", vector(rock.0)),
+        ("ROCK_LIGHT", vec![rock.1]),
+        ("SNOW_HUE", vector(snow.0)),
+        ("SNOW_LIGHT", vec![snow.1]),
+        ("RIPPLE_WAVES_M", lengths(&water::RIPPLES)),
+        ("RIPPLE_STEEPNESS", shares(&water::RIPPLES)),
+        ("RIPPLE_WAVE_PX", vec![water::RIPPLE_PX]),
+        ("RIPPLE_GRAZING", water::RIPPLE_GRAZING.to_vec()),
+        ("WATER_MIRRORED", vec![WaterColor::MIRRORED]),
+        ("WATER_MOST_MIRRORED", vec![WaterColor::MOST_MIRRORED]),
+        ("WATER_SHORE", vec![WaterColor::SHORE]),
+        ("WATER_SHORE_PX", vec![WaterColor::SHORE_PX]),
+        ("HATCHING_PITCH_PX", vec![hatching::PITCH_PX]),
+        ("HATCHING_WIDTH_PX", vec![hatching::WIDTH_PX]),
+        ("WIREFRAME_COLOR", vector(wireframe::LINE.linear())),
+        ("WIREFRAME_ALPHA", vec![f32::from(wireframe::LINE.0[3]) / 255.0]),
+        ("WIREFRAME_WIDTH_PX", vec![wireframe::WIDTH_PX]),
+        ("WIREFRAME_FADE_PX", wireframe::FADE_PX.to_vec()),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_language_declares_scalars_and_vectors() {
+        let constants = [("A", vec![0.5]), ("B", vec![1.0, 1e-6]), ("C", vec![-1.0, 0.1, 200.0])];
+        let wgsl = "const A = 0.5;\nconst B = vec2f(1.0, 1e-6);\nconst C = vec3f(-1.0, 0.1, 200.0);\n";
+        assert_eq!(ShaderLanguage::Wgsl.declarations(&constants), wgsl);
+        let glsl =
+            "const float A = 0.5;\nconst vec2 B = vec2(1.0, 1e-6);\nconst vec3 C = vec3(-1.0, 0.1, 200.0);\n";
+        assert_eq!(ShaderLanguage::Glsl.declarations(&constants), glsl);
+    }
+
+    #[test]
+    fn no_name_is_declared_twice() {
+        let mut names: Vec<_> = shader_constants().into_iter().map(|(name, _)| name).collect();
+        names.sort_unstable();
+        assert!(names.windows(2).all(|pair| pair[0] != pair[1]), "{names:?}");
+    }
+}
