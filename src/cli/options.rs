@@ -51,7 +51,7 @@ pub struct HeightArguments {
     /// The encoding of heights in the colors of a PNG: terrain-rgb (Mapbox) or terrarium (Mapzen)
     #[arg(long, value_name = "ENCODING", conflicts_with_all = ["height_scale", "height_offset"])]
     pub height_encoding: Option<HeightEncoding>,
-    /// The vertical datum of the heights: egm96, ellipsoid or a name [default: the one that the file states]
+    /// The vertical datum of the heights: egm96, ellipsoid or a name [default: the file's]
     #[arg(long, value_name = "DATUM")]
     pub vertical_datum: Option<String>,
     /// The layout of a RAW file: 1201x1201:i16be, then :skip=BYTES and :nodata=VALUE

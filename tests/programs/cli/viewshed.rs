@@ -67,7 +67,7 @@ fn what_cannot_be_looked_at_is_refused_with_a_reason_and_nothing_is_written() {
         |arguments: &[&str]| run_in(scratch.folder(), &[&["viewshed", "wall.asc"], arguments].concat());
     assert!(look(&["--at", "500,25", "-o", "x.png"]).failed(1).contains("outside the elevation model"));
     assert!(look(&["--at", "5,25", "-o", "x.jpg"]).failed(2).contains("name a file that ends so"));
-    assert!(look(&["--at", "5,25", "-o", "wall.asc"]).failed(1).contains("a file that is read"));
+    assert!(look(&["--at", "5,25", "-o", "wall.asc"]).failed(1).contains("an input file"));
     assert!(look(&["--at", "5;25"]).failed(2).contains("two numbers with a comma between"));
     assert!(look(&["--at", "5,25", "--range", "0"]).failed(2).contains("above 0"));
     assert!(look(&["--at", "5,25", "--crs", "EPSG:99999"]).failed(2).contains("'EPSG:99999' for '--crs"));
