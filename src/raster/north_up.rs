@@ -50,7 +50,11 @@ fn mirrored<T: Copy>(mut values: Vec<T>, width: usize, (mirrors_x, mirrors_y): (
     } else if mirrors_x {
         values.chunks_mut(width).for_each(<[T]>::reverse);
     } else if mirrors_y {
-        values = values.chunks(width).rev().flatten().copied().collect();
+        let rows = values.len() / width;
+        for row in 0..rows / 2 {
+            let (upper, lower) = values.split_at_mut((rows - 1 - row) * width);
+            upper[row * width..][..width].swap_with_slice(&mut lower[..width]);
+        }
     }
     values
 }
