@@ -42,11 +42,13 @@ impl DisplayedTerrain {
         bintree::triangles(&self.active, self.patches.iter().copied(), world::placing(self.ground(), sink));
     }
 
+    #[inline]
     fn ground(&self) -> PatchedGround<'_> {
         PatchedGround { lattice: &self.lattice, layout: self.active.layout() }
     }
 
     /// The rectangle around a triangle; called for every triangle that a walk comes to.
+    #[inline]
     fn plan_bounds(&self, [apex, entry, exit]: [Vertex; 3]) -> Rect {
         let ground = self.ground();
         let (a, b, c) = (ground.plan(apex), ground.plan(entry), ground.plan(exit));
@@ -72,8 +74,9 @@ impl TriangleSurface for DisplayedTerrain {
         for corner in self.patches_meeting(rect) {
             let meets = |corners| self.plan_bounds(corners).meets(rect);
             bintree::triangles_where(&self.active, corner, meets, |corners| {
-                if let Some(posts) = world::drawn_posts(ground, corners) {
-                    visit(&posts.map(|post| world::position(ground, post)));
+                if let Some([apex, entry, exit]) = world::drawn_posts(ground, corners) {
+                    let at = |post| world::position(ground, post);
+                    visit(&[at(apex), at(entry), at(exit)]);
                 }
             });
         }

@@ -38,11 +38,13 @@ pub fn triangles_where(
 }
 
 /// The key of a vertex of the layout, tagged with its row.
+#[inline]
 pub fn key(layout: &PatchLayout, vertex: Vertex) -> WalkKey {
     WalkKey::new(layout.index(vertex) as u32, vertex.y as u32)
 }
 
 /// The vertex of a key that is tagged with its row; `columns` vertices make a row.
+#[inline]
 pub fn vertex(columns: i32, key: WalkKey) -> Vertex {
     let y = key.tag() as i32;
     Vertex::new(key.index() as i32 - y * columns, y)
@@ -69,12 +71,14 @@ impl VertexBlock {
     }
 
     /// The vertex at `index` in the block of the patch with south-west corner `corner`.
+    #[inline]
     pub fn vertex(self, corner: Vertex, index: u16) -> Vertex {
         let side = self.patch + 1;
         corner.moved(i32::from(index) % side, i32::from(index) / side)
     }
 
     /// The index of a vertex of the patch with south-west corner `corner`.
+    #[inline]
     pub fn index(self, corner: Vertex, vertex: Vertex) -> u16 {
         ((vertex.y - corner.y) * (self.patch + 1) + vertex.x - corner.x) as u16
     }

@@ -27,26 +27,31 @@ pub struct WalkKey(u64);
 
 impl WalkKey {
     /// The key of the vertex with an index in the layout.
+    #[inline]
     pub const fn new(index: u32, tag: u32) -> Self {
         Self((tag as u64) << 32 | index as u64)
     }
 
     /// The index in the layout.
+    #[inline]
     pub const fn index(self) -> usize {
         self.0 as u32 as usize
     }
 
     /// The tag.
+    #[inline]
     pub const fn tag(self) -> u32 {
         (self.0 >> 32) as u32
     }
 
     /// The key halfway to `other`, for the ends of a hypotenuse.
+    #[inline]
     pub const fn middle(self, other: Self) -> Self {
         Self((self.0 + other.0) >> 1)
     }
 
     /// The key moved by the difference of two others, `to` less `from`.
+    #[inline]
     pub const fn moved(self, from: Self, to: Self) -> Self {
         Self(self.0.wrapping_add(to.0).wrapping_sub(from.0))
     }
@@ -62,6 +67,7 @@ struct WalkTriangle {
 }
 
 impl WalkTriangle {
+    #[inline]
     fn halves(&self, middle: WalkKey) -> [Self; 2] {
         let depth = self.depth + 1;
         [
@@ -71,6 +77,7 @@ impl WalkTriangle {
     }
 
     /// Its corners, counter-clockwise from the apex.
+    #[inline]
     fn corners(&self) -> [WalkKey; 3] {
         if self.depth.is_multiple_of(2) {
             [self.apex, self.entry, self.exit]

@@ -9,19 +9,24 @@ use sandtable_terrain::lattice::Post;
 
 /// The posts of a triangle of vertices of the layout; `None` where it is not drawn: it has no area, as beyond the border, or
 /// a corner without data.
+#[inline]
 pub fn drawn_posts(ground: PatchedGround<'_>, corners: [Vertex; 3]) -> Option<[Post; 3]> {
-    let posts = corners.map(|vertex| ground.layout.post(vertex));
+    let [apex, entry, exit] = corners;
+    let posts = [ground.layout.post(apex), ground.layout.post(entry), ground.layout.post(exit)];
     let has_data = posts.iter().all(|&post| !ground.lattice.height(post).is_nan());
     (has_data && doubled_area(posts) != 0).then_some(posts)
 }
 
 /// Twice a triangle's signed area in cells.
+#[inline]
 pub(crate) fn doubled_area(posts: [Post; 3]) -> i64 {
-    let [a, b, c] = posts.map(|post| (i64::from(post.column), i64::from(post.row)));
+    let at = |post: Post| (i64::from(post.column), i64::from(post.row));
+    let (a, b, c) = (at(posts[0]), at(posts[1]), at(posts[2]));
     (b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0)
 }
 
 /// The world position of a post with data, meters.
+#[inline]
 pub fn position(ground: PatchedGround<'_>, post: Post) -> Vec3 {
     ground.lattice.position(post).extend(ground.lattice.height(post))
 }

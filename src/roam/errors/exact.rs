@@ -77,13 +77,16 @@ fn general_error(lattice: &Lattice, layout: &PatchLayout, vertex: Vertex) -> f32
 }
 
 /// The triangles that `vertex` splits; one of them may be missing at the terrain's border.
+#[inline]
 pub fn triangles_split_at(layout: &PatchLayout, vertex: Vertex) -> [Option<Triangle>; 2] {
     let [from, to] = vertex.hypotenuse();
-    vertex.parents().map(|apex| {
+    let below = |apex: Vertex| {
         let turn = (from.x - apex.x) * (to.y - apex.y) - (from.y - apex.y) * (to.x - apex.x);
         let (left, right) = if turn > 0 { (from, to) } else { (to, from) };
         layout.contains(apex).then_some(Triangle { apex, left, right })
-    })
+    };
+    let [one, other] = vertex.parents();
+    [below(one), below(other)]
 }
 
 /// The triangles that a vertex splits, where all their corners are posts.

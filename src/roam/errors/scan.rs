@@ -74,19 +74,21 @@ pub struct PostTriangle<'a> {
 
 impl<'a> PostTriangle<'a> {
     /// The triangle over a lattice, which holds the posts under it; `None` where it reaches beyond the lattice's border.
+    #[inline]
     pub fn new(lattice: &'a Lattice, triangle: &Triangle) -> Option<Self> {
         let (columns, rows) = (lattice.columns() as i32, lattice.rows() as i32);
-        let corners = triangle.corners();
-        if corners.iter().any(|corner| corner.x >= columns || corner.y >= rows) {
+        if triangle.corners().iter().any(|corner| corner.x >= columns || corner.y >= rows) {
             return None;
         }
         let (heights, held) = (lattice.held_heights(), lattice.held());
         let stride = held.width();
         let origin = -((held.first.row as usize * stride + held.first.column as usize) as isize);
         let index = |corner: Vertex| origin + (corner.y as usize * stride + corner.x as usize) as isize;
-        let [apex_height, left, right] = corners.map(|corner| heights[index(corner) as usize]);
-        let [apex, from, to] = corners.map(|corner| (corner.x, corner.y));
-        let (left, right) = (left - apex_height, right - apex_height);
+        let height = |corner: Vertex| heights[index(corner) as usize];
+        let apex_height = height(triangle.apex);
+        let (left, right) = (height(triangle.left) - apex_height, height(triangle.right) - apex_height);
+        let at = |corner: Vertex| (corner.x, corner.y);
+        let (apex, from, to) = (at(triangle.apex), at(triangle.left), at(triangle.right));
         let (shape, per_column, per_row) = if from.1 == to.1 {
             let reach = (from.1 - apex.1).abs();
             let north = (from.1 - apex.1).signum();

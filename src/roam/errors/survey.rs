@@ -41,6 +41,7 @@ impl TileSurvey {
     }
 
     /// Whether all posts from column and row `first` to `last`, ends included and held, are known to be plain.
+    #[inline]
     pub fn is_plain(&self, first: (i32, i32), last: (i32, i32)) -> bool {
         let tile = |at: i32, first: i32| (at - first) as usize / TILE;
         let (column, row) = (|at| tile(at, self.first.0), |at| tile(at, self.first.1));
@@ -51,6 +52,7 @@ impl TileSurvey {
     }
 
     /// Whether all posts under a triangle are known to be plain.
+    #[inline]
     pub fn covers(&self, triangle: &PostTriangle<'_>) -> bool {
         let (first, last) = triangle.bounds();
         self.is_plain(first, last)
@@ -59,6 +61,7 @@ impl TileSurvey {
 
 /// Whether all these posts have data and none is pinned. It does not stop early: that would cost more than it saves on the
 /// few posts of a row.
+#[inline]
 pub fn is_plain(heights: &[f32], pinned: &[bool]) -> bool {
     !(heights.iter().fold(false, |hole, height| hole | height.is_nan())
         | pinned.iter().fold(false, |any, &pin| any | pin))
