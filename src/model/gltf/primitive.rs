@@ -58,6 +58,12 @@ impl<'a> MeshReader<'a> {
                 self.notes.push(format!("{place} has no positions and is not drawn"));
                 continue;
             };
+            if vertices.uvs.is_none() && self.materials[material].material.texture.is_some() {
+                let set = uv.set;
+                self.notes.push(format!(
+                    "{place} has no TEXCOORD_{set}, which its texture needs; the texture's corner colors it"
+                ));
+            }
             let triangles = self.triangles(&primitive, &vertices, &place)?;
             let drawn = vertices.add_to(parts, &triangles, MaterialId(material as u32), uv);
             if drawn < triangles.len() {

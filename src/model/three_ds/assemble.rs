@@ -89,6 +89,17 @@ fn census(file: &ThreeDsFile) -> Census {
 
 fn translate(stored: &MaterialChunk, textures: &mut Textures<'_>) -> Material {
     let file = |map: &Option<MapChunk>| map.as_ref().map(|map| map.file.clone());
+    let name = &stored.name;
+    if stored.map.as_ref().is_some_and(|map| map.is_decal) {
+        textures.note(format!(
+            "the picture of material '{name}' is a decal: beyond its borders its own border goes on, not the material's color"
+        ));
+    }
+    if let (Some(map), Some(mask)) = (&stored.map, &stored.opacity_map)
+        && (map.scale, map.offset, map.rotation_rad) != (mask.scale, mask.offset, mask.rotation_rad)
+    {
+        textures.note(format!("the opacity map of material '{name}' lies like its color map, not in its own place"));
+    }
     let mapped = MappedMaterial {
         name: stored.name.clone(),
         color: stored.diffuse,
@@ -208,11 +219,13 @@ fn default_material(model: &mut Model) -> MaterialId {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::material::MapFile;
 
     #[test]
     fn a_map_turned_by_a_right_angle_shows_its_lower_left_corner_at_the_lower_right() {
         let map = MapChunk {
-            file: String::new(),
+            file: MapFile::default(),
+            is_decal: false,
             scale: Vec2::ONE,
             offset: Vec2::ZERO,
             rotation_rad: std::f32::consts::FRAC_PI_2,
