@@ -14,6 +14,7 @@ use sandtable_query::dem::{self, OpenedDem};
 use sandtable_raster::error::DemErrorKind;
 use sandtable_raster::raster::Raster;
 use sandtable_raster::stats::Stats;
+use sandtable_raster::unstated_unit;
 use sandtable_raster::void_counts::VoidCounts;
 
 #[derive(Debug, Args)]
@@ -64,7 +65,8 @@ struct DemInfo {
 
 impl DemInfo {
     fn new(raster: Raster, stats: Stats, enclosed_voids: VoidCounts, joined: Option<String>) -> Self {
-        let notes = joined.into_iter().chain(format_note(&raster).map(str::to_owned)).collect();
+        let own = format_note(&raster).map(str::to_owned).into_iter().chain(unstated_unit::note(&raster));
+        let notes = joined.into_iter().chain(own).collect();
         Self { raster, stats, enclosed_voids, notes }
     }
 

@@ -167,6 +167,19 @@ fn dem_info_tells_type_datum_unit_and_voids() {
 }
 
 #[test]
+fn elevations_beside_coordinates_in_feet_are_told_to_be_taken_for_meters() {
+    let scratch = Scratch::new();
+    let at = "ncols 2\nnrows 2\nxllcorner 2700000\nyllcorner 250000\ncellsize 10\n";
+    scratch.write("a.asc", format!("{at}1053 1100\n1200 1664\n"));
+    scratch.write("a.prj", "EPSG:2272");
+    let info = run_in(scratch.folder(), &["dem", "info", "a.asc"]).ok();
+    let told = "coordinates are in US survey feet, and nothing states the unit of elevations";
+    assert!(info.contains(told), "{info}");
+    let heights = run_in(scratch.folder(), &["height", "a.asc", "--at", "2700010,250010"]);
+    assert!(heights.stderr.contains(told), "{}", heights.stderr);
+}
+
+#[test]
 fn a_raw_file_is_what_the_command_line_says() {
     let scratch = Scratch::new();
     scratch.write("a.raw", "AB");
