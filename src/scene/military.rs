@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use crate::attributes::{Attributes, written};
+use crate::builder::SceneBuilder;
 use crate::scene_findings::SceneFindings;
 use crate::shape_place::place;
 use crate::sources::Sources;
@@ -49,21 +50,23 @@ pub enum SymbolSize {
     Ground(f32),
 }
 
-/// The symbols of the document; `findings` gets what is not drawn.
-///
-/// # Errors
-/// A code that the scene file states is none, or its place lies off the ground; a file cannot be read or holds no feature
-/// that matches.
+/// The symbols of the document; `collected` gets what is not drawn, and keeps an error where a code that the scene file states
+/// is none, its place lies off the ground, or a file cannot be read or holds no feature that matches.
 pub fn symbols(
     sources: &Sources<'_>,
     lattice: &Lattice,
-    findings: &mut SceneFindings,
-) -> Result<Vec<SceneSymbol>, Diagnostic> {
+    collected: &mut SceneBuilder,
+) -> Vec<SceneSymbol> {
     let (mut symbols, mut first_beyond) = (Vec::new(), None);
+    let SceneBuilder { findings, errors, .. } = collected;
     for table in &sources.frame.document.symbols {
         match &table.at {
-            Some(at) => symbols.push(symbol_at(table, at, sources.frame, lattice, findings)?),
-            None => read_features(table, sources, lattice, &mut symbols, findings)?,
+            Some(at) => {
+                symbols.extend(errors.keep(symbol_at(table, at, sources.frame, lattice, findings)));
+            }
+            None => {
+                errors.keep(read_features(table, sources, lattice, &mut symbols, findings));
+            }
         }
         if symbols.len() > SCENE_SYMBOLS.count() {
             first_beyond = first_beyond.or(Some(table));
@@ -78,7 +81,7 @@ pub fn symbols(
         findings.add(FindingCode::TooMany, place.unwrap_or_default(), message);
         symbols.truncate(SCENE_SYMBOLS.count());
     }
-    Ok(symbols)
+    symbols
 }
 
 fn symbol_at(

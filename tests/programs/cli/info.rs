@@ -176,7 +176,7 @@ fn elevations_beside_coordinates_in_feet_are_told_to_be_taken_for_meters() {
     let told = "coordinates are in US survey feet, and nothing states the unit of elevations";
     assert!(info.contains(told), "{info}");
     let heights = run_in(scratch.folder(), &["height", "a.asc", "--at", "2700010,250010"]);
-    assert!(heights.stderr.contains(told), "{}", heights.stderr);
+    assert!(heights.err.contains(told), "{}", heights.err);
 }
 
 #[test]
