@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use crate::error::CliError;
 use crate::options::HeightArguments;
 use crate::output::{print, print_lines, row};
+use sandtable_base::message::numbers::counted;
 use sandtable_base::limits::RASTER_SAMPLES;
 use sandtable_files::error::FileError;
 use sandtable_query::dem::{self, OpenedDem};
@@ -114,7 +115,10 @@ impl DemInfo {
             ("sample", format!("({}, {}) a column, ({}, {}) a row", east.x, east.y, south.x, south.y)),
             ("nodata", raster.nodata.map_or("none stated".to_owned(), |value| value.to_string())),
             ("valid", format!("{} of {all} samples", stats.valid)),
-            ("voids", format!("{} samples, {samples} of them enclosed, in {voids} voids", all - stats.valid)),
+            ("voids", {
+                let (samples_s, voids_s) = (counted(all - stats.valid, "sample", "samples"), counted(*voids, "void", "voids"));
+                format!("{samples_s}, {samples} of them enclosed, in {voids_s}")
+            }),
             ("heights", heights),
             ("unit", format!("{} m", raster.meters_per_z)),
             ("datum", raster.vertical_datum.as_deref().unwrap_or("none stated").to_owned()),

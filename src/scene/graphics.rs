@@ -8,6 +8,7 @@ use crate::feature::FeatureKind;
 use crate::scene_findings::FeatureTable;
 use crate::scene_graphic::SceneGraphic;
 use crate::sources::Sources;
+use sandtable_base::message::numbers::fixed;
 use sandtable_base::limits::SCENE_GRAPHICS;
 use sandtable_base::message::suggest::{nearest, quoted};
 use sandtable_description::diagnostic::Diagnostic;
@@ -118,7 +119,7 @@ fn graphic(
     let echelon = text(&table.echelon, "echelon");
     let echelon =
         if echelon.is_empty() { code.map(|code| echelon_of(&code)).unwrap_or_default() } else { echelon };
-    let heights = table.elevations.map(|range| range.map(|meters| format!("{meters:.0} m")));
+    let heights = table.elevations.map(|range| range.map(|meters| format!("{} m", fixed(meters, 0))));
     let fields = GraphicFields {
         designation: text(&table.designation, "designation"),
         designation_2: text(&table.designation_2, "designation_2"),

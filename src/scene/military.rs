@@ -8,6 +8,7 @@ use crate::scene_findings::SceneFindings;
 use crate::shape_place::place;
 use crate::sources::Sources;
 use crate::world_frame::WorldFrame;
+use sandtable_base::message::numbers::counted;
 use sandtable_base::limits::SCENE_SYMBOLS;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::expression::Expression;
@@ -75,7 +76,7 @@ pub fn symbols(
     if let Some(table) = first_beyond {
         let more = symbols.len() - SCENE_SYMBOLS.count();
         let message =
-            format!("{more} symbols beyond the first {SCENE_SYMBOLS} are left out; {SCENE_SYMBOLS:#}");
+            format!("{} beyond the first {SCENE_SYMBOLS} left out: {SCENE_SYMBOLS:#}", counted(more, "symbol", "symbols"));
         let of_file = table.file.as_ref().and_then(Stated::span);
         let place = of_file.or_else(|| table.at.as_ref().and_then(Stated::span));
         findings.add(FindingCode::TooMany, place.unwrap_or_default(), message);

@@ -151,6 +151,24 @@ fn keys_and_the_wheel_move_the_camera_and_typing_does_not() {
 }
 
 #[test]
+fn backspace_takes_back_the_last_point_of_what_is_measured() {
+    let mut harness = window(Some(Path::new(concat!(env!("SANDTABLE_ROOT"), "scenes/road.toml"))));
+    let points = |harness: &AppHarness| match &app(harness).tool {
+        Some(crate::active_tool::ActiveTool::Measure(measuring)) => measuring.points.len(),
+        _ => usize::MAX,
+    };
+    key(&mut harness, Modifiers::NONE, Key::M);
+    click(&mut harness, IN_VIEW);
+    click(&mut harness, IN_VIEW - egui::vec2(60.0, 0.0));
+    assert_eq!(points(&harness), 2);
+    key(&mut harness, Modifiers::NONE, Key::Backspace);
+    assert_eq!(points(&harness), 1);
+    key(&mut harness, Modifiers::NONE, Key::Backspace);
+    key(&mut harness, Modifiers::NONE, Key::Backspace);
+    assert_eq!(points(&harness), 0, "the tool stays");
+}
+
+#[test]
 fn an_edit_is_undone_redone_saved_and_closing_with_one_asks() {
     let scene = TestScene::new("edits");
     let mut harness = window(Some(&scene.file));

@@ -25,6 +25,7 @@ use crate::error::ModelError;
 use crate::part::PartBuilder;
 use crate::texture::Textures;
 use crate::{Companions, Model};
+use sandtable_base::message::numbers::counted;
 
 use accessor::AccessorReader;
 use container::GltfFile;
@@ -81,7 +82,10 @@ fn note_omissions(document: &Document, notes: &mut Vec<String>) {
     }
     let animations = document.animations().len();
     if animations > 0 {
-        notes.push(format!("{animations} animations are not played; the rest pose is drawn"));
+        notes.push(format!(
+            "{} not played; the rest pose is drawn",
+            counted(animations, "animation is", "animations are")
+        ));
     }
     let moves = |weights: Option<&[f32]>| weights.into_iter().flatten().any(|&weight| weight != 0.0);
     if document.meshes().any(|mesh| moves(mesh.weights()))

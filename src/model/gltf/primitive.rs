@@ -8,6 +8,7 @@ use crate::Census;
 use crate::error::ModelError;
 use crate::normals::{Smoothing, corner_normals};
 use crate::part::{ModelCorner, PartBuilder, TriangleBudget};
+use sandtable_base::message::numbers::counted;
 use sandtable_draw::color::{Srgba, srgb_from_linear};
 use sandtable_draw::list::MaterialId;
 
@@ -68,7 +69,10 @@ impl<'a> MeshReader<'a> {
             let drawn = vertices.add_to(parts, &triangles, MaterialId(material as u32), uv);
             if drawn < triangles.len() {
                 let dropped = triangles.len() - drawn;
-                self.notes.push(format!("{place} has {dropped} triangles that are not finite"));
+                self.notes.push(format!(
+                    "{place} has {} not finite",
+                    counted(dropped, "triangle that is", "triangles that are")
+                ));
             }
             counts.vertices += vertices.positions.len();
             counts.faces += triangles.len();

@@ -11,6 +11,7 @@ use crate::part::{ModelCorner, PartBuilder, TriangleBudget};
 use crate::texture::{Textures, load_any};
 use crate::triangulate::triangulate;
 use crate::{Census, Companions, Model};
+use sandtable_base::message::numbers::counted;
 use sandtable_base::message::chain::error_text;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::MaterialId;
@@ -41,10 +42,14 @@ pub(super) fn assemble(file: &ObjFile, companions: &dyn Companions) -> Result<Mo
         materials: model.materials.len(),
     };
     if dropped > 0 {
-        model.notes.push(format!("{dropped} faces have fewer than three corners or one that is not finite"));
+        model.notes.push(format!(
+            "{} fewer than three corners or one that is not finite",
+            counted(dropped, "face has", "faces have")
+        ));
     }
     if file.points_and_lines > 0 {
-        model.notes.push(format!("{} points and lines are not drawn", file.points_and_lines));
+        let drawn = counted(file.points_and_lines, "point or line is", "points and lines are");
+        model.notes.push(format!("{drawn} not drawn"));
     }
     Ok(model)
 }

@@ -14,6 +14,7 @@ use crate::normals::{Smoothing, corner_normals};
 use crate::part::{ModelCorner, PartBuilder, TriangleBudget};
 use crate::texture::Textures;
 use crate::{Census, Companions, Model};
+use sandtable_base::message::numbers::counted;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::MaterialId;
 use sandtable_draw::material::Material;
@@ -72,7 +73,10 @@ pub(super) fn assemble(file: &ThreeDsFile, companions: &dyn Companions) -> Resul
         dropped += placed.add_to(&mut model, &palette);
     }
     if dropped > 0 {
-        model.notes.push(format!("{dropped} faces have a vertex that is missing or not finite"));
+        model.notes.push(format!(
+            "{} a vertex that is missing or not finite",
+            counted(dropped, "face has", "faces have")
+        ));
     }
     textures.move_to(&mut model);
     Ok(model)
