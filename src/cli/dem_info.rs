@@ -8,8 +8,8 @@ use serde_json::{Value, json};
 use crate::error::CliError;
 use crate::options::HeightArguments;
 use crate::output::{print, print_lines, row};
-use sandtable_base::message::numbers::counted;
 use sandtable_base::limits::RASTER_SAMPLES;
+use sandtable_base::message::numbers::counted;
 use sandtable_files::error::FileError;
 use sandtable_query::dem::{self, OpenedDem};
 use sandtable_raster::error::DemErrorKind;
@@ -116,7 +116,8 @@ impl DemInfo {
             ("nodata", raster.nodata.map_or("none stated".to_owned(), |value| value.to_string())),
             ("valid", format!("{} of {all} samples", stats.valid)),
             ("voids", {
-                let (samples_s, voids_s) = (counted(all - stats.valid, "sample", "samples"), counted(*voids, "void", "voids"));
+                let (samples_s, voids_s) =
+                    (counted(all - stats.valid, "sample", "samples"), counted(*voids, "void", "voids"));
                 format!("{samples_s}, {samples} of them enclosed, in {voids_s}")
             }),
             ("heights", heights),

@@ -203,7 +203,10 @@ fn summary(
         row("origin", format!("({}, {}) in {}", fixed(origin.x, 3), fixed(origin.y, 3), crs.name())),
     ];
     if left_out > 0 {
-        lines.push(row("left out", format!("{} with data that only cells with a hole touch", counted(left_out, "post", "posts"))));
+        lines.push(row(
+            "left out",
+            format!("{} with data that only cells with a hole touch", counted(left_out, "post", "posts")),
+        ));
     }
     lines
 }

@@ -164,7 +164,11 @@ fn summary(
         .flat_map(|scene| &scene.pictures)
         .flat_map(|picture| &picture.annotations.missing_glyphs)
     {
-        warn(&format!("warning: the font lacks {} of '{}'", counted(missing.count, "character", "characters"), missing.text));
+        warn(&format!(
+            "warning: the font lacks {} of '{}'",
+            counted(missing.count, "character", "characters"),
+            missing.text
+        ));
     }
     let mut lines: Vec<String> = arguments.sheet.then(|| path.display().to_string()).into_iter().collect();
     lines.extend(scenes.iter().flat_map(RenderedScene::lines));

@@ -132,7 +132,8 @@ impl<'a> Textures<'a> {
         let Some(pixels) = self.pixels.get(id.0 as usize) else { return id };
         let (width, height) = (pixels.width(), pixels.height());
         if let Err(error) = check_pixels(width, height, self.pixels_left) {
-            self.notes.push(format!("the values of a map of {width} × {height} pixels stay as they are: {error}"));
+            self.notes
+                .push(format!("the values of a map of {width} × {height} pixels stay as they are: {error}"));
             return id;
         }
         let changed = Pixels::from_fn(width, height, |x, y| {

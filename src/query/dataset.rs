@@ -56,7 +56,10 @@ pub struct Dataset {
 
 enum DatasetContent {
     /// The ground is made at the first query: an elevation file in degrees must be warped for it.
-    Raster { raster: Arc<Raster>, ground: OnceLock<Result<HeightService, Arc<GroundError>>> },
+    Raster {
+        raster: Arc<Raster>,
+        ground: OnceLock<Result<HeightService, Arc<GroundError>>>,
+    },
     /// Too large to be kept.
     Windows(Box<WindowedElevation>),
     Scene(SceneGround),

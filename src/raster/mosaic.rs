@@ -12,9 +12,9 @@ use glam::{DVec2, I64Vec2, U64Vec2};
 
 use crate::raster::{Raster, SampleFloat, Samples};
 use crate::units::FOOT_M;
-use sandtable_base::message::numbers::counted;
 use sandtable_base::limits::RASTER_SAMPLES;
 use sandtable_base::limits::TILE_SAMPLES;
+use sandtable_base::message::numbers::counted;
 use sandtable_geom::crs::Crs;
 
 /// The greatest distance, in cells, of a tile's samples from the nodes of the first tile's grid.

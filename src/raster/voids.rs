@@ -43,11 +43,8 @@ impl Filled {
     pub fn note(&self) -> String {
         let samples = |count: u64| counted(count, "sample", "samples");
         let voids = |count: u64| counted(count, "void", "voids");
-        let mut note = format!(
-            "{} in {} filled by a membrane from their rims",
-            samples(self.cells),
-            voids(self.voids)
-        );
+        let mut note =
+            format!("{} in {} filled by a membrane from their rims", samples(self.cells), voids(self.voids));
         if self.voids_left > 0 {
             note.push_str(&format!(
                 "; {} in {} of more than {MOST_CELLS} left",

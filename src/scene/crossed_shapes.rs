@@ -52,7 +52,8 @@ impl CrossedShapes {
         let Some((name, at)) = self.first else { return };
         let (what, at, others) = (described(noun, &name), at + frame.origin, self.count - 1);
         let more = if others > 0 { format!("; {others} more of this table do") } else { String::new() };
-        let message = format!("{what} crosses itself at ({}, {}): {outcome}{more}", fixed(at.x, 0), fixed(at.y, 0));
+        let message =
+            format!("{what} crosses itself at ({}, {}): {outcome}{more}", fixed(at.x, 0), fixed(at.y, 0));
         let finding = Finding::new(FindingCode::CrossesItself, message).at(&frame.document.source, span);
         let help = "mend the order of its points, for example with: ogr2ogr -makevalid out.geojson IN";
         findings.push(finding.with_help(help).and_more(others));

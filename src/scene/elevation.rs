@@ -481,7 +481,12 @@ fn check_tile(
     }
     if let Some(note) = unstated_unit::note(tile).filter(|_| terrain.height_scale.is_none()) {
         let message = format!("the elevations of '{}': {note}", quoted(name));
-        findings.add_with_help(FindingCode::HeightsInFeet, span.clone(), message, unstated_unit::remedy(tile));
+        findings.add_with_help(
+            FindingCode::HeightsInFeet,
+            span.clone(),
+            message,
+            unstated_unit::remedy(tile),
+        );
     }
     let Some(stated) = &terrain.vertical_datum else { return };
     if let Some(own) = tile.vertical_datum.as_deref().filter(|own| !own.eq_ignore_ascii_case(stated)) {

@@ -8,8 +8,8 @@ use crate::scene_findings::SceneFindings;
 use crate::shape_place::place;
 use crate::sources::Sources;
 use crate::world_frame::WorldFrame;
-use sandtable_base::message::numbers::counted;
 use sandtable_base::limits::SCENE_SYMBOLS;
+use sandtable_base::message::numbers::counted;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::expression::Expression;
 use sandtable_description::finding_code::FindingCode;
@@ -53,11 +53,7 @@ pub enum SymbolSize {
 
 /// The symbols of the document; `collected` gets what is not drawn, and keeps an error where a code that the scene file states
 /// is none, its place lies off the ground, or a file cannot be read or holds no feature that matches.
-pub fn symbols(
-    sources: &Sources<'_>,
-    lattice: &Lattice,
-    collected: &mut SceneBuilder,
-) -> Vec<SceneSymbol> {
+pub fn symbols(sources: &Sources<'_>, lattice: &Lattice, collected: &mut SceneBuilder) -> Vec<SceneSymbol> {
     let (mut symbols, mut first_beyond) = (Vec::new(), None);
     let SceneBuilder { findings, errors, .. } = collected;
     for table in &sources.frame.document.symbols {
@@ -75,8 +71,10 @@ pub fn symbols(
     }
     if let Some(table) = first_beyond {
         let more = symbols.len() - SCENE_SYMBOLS.count();
-        let message =
-            format!("{} beyond the first {SCENE_SYMBOLS} left out: {SCENE_SYMBOLS:#}", counted(more, "symbol", "symbols"));
+        let message = format!(
+            "{} beyond the first {SCENE_SYMBOLS} left out: {SCENE_SYMBOLS:#}",
+            counted(more, "symbol", "symbols")
+        );
         let of_file = table.file.as_ref().and_then(Stated::span);
         let place = of_file.or_else(|| table.at.as_ref().and_then(Stated::span));
         findings.add(FindingCode::TooMany, place.unwrap_or_default(), message);

@@ -79,8 +79,9 @@ fn viewshed(
         find_viewshed(&layer, exact).map_err(|error| failed(document, &table.observers, error, help))?;
     if let Some(part) = part.filter(|_| table.range.is_none()) {
         let (columns, rows) = (part.held().width(), part.held().height());
-        let message =
-            format!("this viewshed has no `range`, and took all {columns} x {rows} samples of the elevation model");
+        let message = format!(
+            "this viewshed has no `range`, and took all {columns} x {rows} samples of the elevation model"
+        );
         let span = table.observers.span().unwrap_or_default();
         collected.findings.add_with_help(FindingCode::RangeMissing, span, message, help);
     }

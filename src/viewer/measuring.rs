@@ -119,7 +119,11 @@ impl Measuring {
             format!("up {:.1} m, down {:.1} m", summary.ascent_m, summary.descent_m),
         ];
         if let (Some(lowest), Some(highest)) = (summary.lowest, summary.highest) {
-            facts.push(format!("from {} to {} m high", fixed(lowest.height_m, 1), fixed(highest.height_m, 1)));
+            facts.push(format!(
+                "from {} to {} m high",
+                fixed(lowest.height_m, 1),
+                fixed(highest.height_m, 1)
+            ));
         }
         if summary.covered_m < summary.length_m * 0.999 {
             facts.push("a part has no ground".to_owned());
@@ -135,7 +139,12 @@ fn area(ring: &[DVec2], ground: &impl MeasurableGround) -> Vec<String> {
                 vec![area_text(measured.plan_m2), format!("{} round it", length_text(measured.perimeter_m))];
             if let Some(heights) = measured.zone.heights {
                 let (min, mean, max) = (heights.min_m, heights.mean_m, heights.max_m);
-                facts.push(format!("{} to {} m high, {} m on average", fixed(min, 1), fixed(max, 1), fixed(mean, 1)));
+                facts.push(format!(
+                    "{} to {} m high, {} m on average",
+                    fixed(min, 1),
+                    fixed(max, 1),
+                    fixed(mean, 1)
+                ));
             }
             facts
         }

@@ -296,9 +296,9 @@ fn elevations_of_a_system_in_feet_whose_unit_nothing_states_are_found() {
         }
     };
     let found = |raster: &Raster| {
-        let bytes = write(raster, DemFormat::to_write("tif").expect("a GeoTIFF"), "a").expect("written").bytes;
-        let findings =
-            seed("", 0, "[terrain]\ndem = \"state.tif\"\n").with("state.tif", bytes).findings();
+        let bytes =
+            write(raster, DemFormat::to_write("tif").expect("a GeoTIFF"), "a").expect("written").bytes;
+        let findings = seed("", 0, "[terrain]\ndem = \"state.tif\"\n").with("state.tif", bytes).findings();
         grave(&findings).into_iter().map(|finding| finding.code.word()).collect::<Vec<_>>()
     };
     assert_eq!(found(&raster(1.0, false)), ["heights-in-feet"]);

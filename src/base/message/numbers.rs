@@ -10,7 +10,8 @@ use std::fmt::Display;
 /// ```
 pub fn fixed(value: impl Into<f64>, decimals: usize) -> String {
     let text = format!("{:.decimals$}", value.into());
-    let unsigned = text.strip_prefix('-').filter(|digits| digits.bytes().all(|byte| matches!(byte, b'0' | b'.')));
+    let unsigned =
+        text.strip_prefix('-').filter(|digits| digits.bytes().all(|byte| matches!(byte, b'0' | b'.')));
     unsigned.map(str::to_owned).unwrap_or(text)
 }
 

@@ -65,8 +65,9 @@ impl GeoKeys {
     /// Whether the elevations are those of a vertical system in meters: EPSG's others are; the numbers of GeoTIFF 1.0 are of
     /// datums alone.
     pub fn names_system_in_meters(&self) -> bool {
-        let is_in_meters =
-            |code: u16| ![&IN_US_SURVEY_FEET[..], &IN_FEET].concat().contains(&code) && !DATUMS.contains(&code);
+        let is_in_meters = |code: u16| {
+            ![&IN_US_SURVEY_FEET[..], &IN_FEET].concat().contains(&code) && !DATUMS.contains(&code)
+        };
         self.real_code(key::VERTICAL_TYPE).is_some_and(is_in_meters)
     }
 

@@ -136,7 +136,8 @@ impl WrappedPicture<'_> {
     /// The brightness at a place in pixels, 0 to 255.
     fn brightness(&self, at: Vec2) -> f32 {
         let sides = [self.pixels.width(), self.pixels.height()];
-        let [x, y] = std::array::from_fn(|axis| self.wrap[axis].texel(at[axis] / sides[axis] as f32, sides[axis]));
+        let [x, y] =
+            std::array::from_fn(|axis| self.wrap[axis].texel(at[axis] / sides[axis] as f32, sides[axis]));
         let [red, green, blue, _] = self.pixels.at(x, y).0.map(f32::from);
         (red + green + blue) / 3.0
     }

@@ -86,7 +86,8 @@ fn each_object(document: &mut Value, list: &str, change: fn(&mut Map<String, Val
 
 /// The WebP image of a texture counts, not the one for readers that know none.
 fn take_webp_source(texture: &mut Map<String, Value>) {
-    let source = texture.get("extensions").and_then(|all| all.get("EXT_texture_webp")?.get("source")).cloned();
+    let source =
+        texture.get("extensions").and_then(|all| all.get("EXT_texture_webp")?.get("source")).cloned();
     if let Some(source) = source {
         texture.insert("source".into(), source);
     }

@@ -77,7 +77,8 @@ pub(super) fn load_materials(
             translated.texture_wrap = [sampler.wrap_s(), sampler.wrap_t()].map(wrap);
             if sampler.mag_filter() == Some(MagFilter::Nearest) {
                 let index = info.texture().index();
-                textures.note(format!("texture {index} asks for hard texels (NEAREST); it is drawn filtered"));
+                textures
+                    .note(format!("texture {index} asks for hard texels (NEAREST); it is drawn filtered"));
             }
         }
         materials.push(GltfMaterial { material: translated, uv });

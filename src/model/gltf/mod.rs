@@ -165,10 +165,9 @@ mod tests {
             r#"{"mesh":0}"#,
             &format!(r#""samplers":[{sampler}],"#),
         );
-        let json = json.replace("data:image/png;base64,AAAA", PIXEL).replace(
-            r#""textures":[{"source":0}]"#,
-            r#""textures":[{"source":0,"sampler":0}]"#,
-        );
+        let json = json
+            .replace("data:image/png;base64,AAAA", PIXEL)
+            .replace(r#""textures":[{"source":0}]"#, r#""textures":[{"source":0,"sampler":0}]"#);
         read(json.as_bytes(), &NoCompanions).expect("sound")
     }
 

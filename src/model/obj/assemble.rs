@@ -11,8 +11,8 @@ use crate::part::{ModelCorner, PartBuilder, TriangleBudget};
 use crate::texture::{Textures, load_any};
 use crate::triangulate::triangulate;
 use crate::{Census, Companions, Model};
-use sandtable_base::message::numbers::counted;
 use sandtable_base::message::chain::error_text;
+use sandtable_base::message::numbers::counted;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::MaterialId;
 
@@ -55,11 +55,7 @@ pub(super) fn assemble(file: &ObjFile, companions: &dyn Companions) -> Result<Mo
 }
 
 /// The materials of all libraries; the first of a name counts.
-fn load_libraries(
-    file: &ObjFile,
-    companions: &dyn Companions,
-    notes: &mut Vec<String>,
-) -> Vec<MtlMaterial> {
+fn load_libraries(file: &ObjFile, companions: &dyn Companions, notes: &mut Vec<String>) -> Vec<MtlMaterial> {
     let mut names = BTreeSet::new();
     let mut materials = Vec::new();
     for library in &file.libraries {
@@ -100,12 +96,7 @@ struct FaceMaterials {
 }
 
 impl FaceMaterials {
-    fn new(
-        file: &ObjFile,
-        defined: &[MtlMaterial],
-        companions: &dyn Companions,
-        model: &mut Model,
-    ) -> Self {
+    fn new(file: &ObjFile, defined: &[MtlMaterial], companions: &dyn Companions, model: &mut Model) -> Self {
         let mut textures = Textures::new(companions);
         model.materials = defined.iter().map(|material| material.mapped.load(&mut textures)).collect();
         model.notes.extend(defined.iter().flat_map(|material| material.notes.iter().cloned()));
@@ -260,7 +251,8 @@ mod tests {
 
     #[test]
     fn options_of_maps_place_them_and_end_them_at_their_borders() {
-        let library = Library("newmtl wall\nmap_Kd -clamp on -s 2 4 1 -o 0.5 0.25 0 lost.png\nnewmtl plain\n");
+        let library =
+            Library("newmtl wall\nmap_Kd -clamp on -s 2 4 1 -o 0.5 0.25 0 lost.png\nnewmtl plain\n");
         let text = format!("{SQUARE}vt 0.25 0.5\nusemtl wall\nf 1/1 2/1 3/1\nusemtl plain\nf 1/1 3/1 4/1");
         let model = read(text.as_bytes(), &library).expect("a sound file");
         assert_eq!(model.materials[0].texture_wrap, [TextureWrap::Clamp; 2]);

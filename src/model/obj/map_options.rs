@@ -89,7 +89,8 @@ impl MtlMap {
 /// The option that `words` begin with, and what follows; `None` at the file. A lone dash or a dash before spaces begins a
 /// name.
 fn split_option(words: &str) -> Option<(&str, &str)> {
-    let is_option = words.strip_prefix('-').is_some_and(|rest| rest.starts_with(|first: char| first.is_alphabetic()));
+    let is_option =
+        words.strip_prefix('-').is_some_and(|rest| rest.starts_with(|first: char| first.is_alphabetic()));
     let (option, after) = words.split_once(char::is_whitespace)?;
     is_option.then(|| (option, after.trim_start()))
 }
@@ -138,14 +139,18 @@ mod tests {
 
     #[test]
     fn what_is_drawn_of_the_options_is_kept_and_the_rest_is_named() {
-        let map = MtlMap::parse("-s 2 3 1 -o 0.5 -mm 0.25 2 -clamp on -cc off -t 1 0 0 -boost 3 -imfchan l a.png");
+        let map =
+            MtlMap::parse("-s 2 3 1 -o 0.5 -mm 0.25 2 -clamp on -cc off -t 1 0 0 -boost 3 -imfchan l a.png");
         assert_eq!(map.file.wrap, [TextureWrap::Clamp; 2]);
         assert_eq!(map.file.range, ValueRange { base: 0.25, gain: 2.0 });
         assert_eq!(map.unused, ["-t 1 0 0", "-boost 3", "-imfchan l"]);
         // V upward: (0.25, 0.5) becomes (0.25 · 2 + 0.5, 0.5 · 3).
         assert_eq!(map.uv.apply(Vec2::new(0.25, 0.5)), Vec2::new(1.0, -0.5));
         let plain = MtlMap::parse("-clamp off -blendu on -t 0 0 0 -colorspace sRGB a.png");
-        assert_eq!(plain, MtlMap { file: MapFile { name: "a.png".into(), ..MapFile::default() }, ..MtlMap::default() });
+        assert_eq!(
+            plain,
+            MtlMap { file: MapFile { name: "a.png".into(), ..MapFile::default() }, ..MtlMap::default() }
+        );
         assert_eq!(plain.uv.apply(Vec2::new(0.1, 0.7)), Vec2::new(0.1, 0.7));
     }
 

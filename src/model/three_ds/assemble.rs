@@ -102,7 +102,9 @@ fn translate(stored: &MaterialChunk, textures: &mut Textures<'_>) -> Material {
     if let (Some(map), Some(mask)) = (&stored.map, &stored.opacity_map)
         && (map.scale, map.offset, map.rotation_rad) != (mask.scale, mask.offset, mask.rotation_rad)
     {
-        textures.note(format!("the opacity map of material '{name}' lies like its color map, not in its own place"));
+        textures.note(format!(
+            "the opacity map of material '{name}' lies like its color map, not in its own place"
+        ));
     }
     let mapped = MappedMaterial {
         name: stored.name.clone(),

@@ -210,7 +210,11 @@ mod tests {
             let body = chunk(0xA200, &[chunk(0xA300, b"A.TGA\0"), tiling].concat());
             let bytes = chunk(0xAFFF, &body);
             let map = parse(&Chunk::first(&bytes).expect("a chunk")).expect("sound").map.expect("a map");
-            assert_eq!((map.file.wrap, map.is_decal, map.file.range), ([wrap; 2], is_decal, range), "{flags:#x}");
+            assert_eq!(
+                (map.file.wrap, map.is_decal, map.file.range),
+                ([wrap; 2], is_decal, range),
+                "{flags:#x}"
+            );
         }
     }
 }

@@ -218,7 +218,8 @@ mod tests {
     fn a_hole_s_color_does_not_bleed_when_weighted_by_alpha() {
         let pixels = Pixels::from_fn(2, 1, |x, _| if x == 0 { Srgba::WHITE } else { Srgba([0, 0, 0, 0]) });
         let texture = Texture::new(&pixels);
-        let texel = texture.sample(Vec2::new(0.5, 0.5), &sharp(), Reading { weighting: Weighting::ByAlpha, ..EVEN });
+        let texel =
+            texture.sample(Vec2::new(0.5, 0.5), &sharp(), Reading { weighting: Weighting::ByAlpha, ..EVEN });
         assert!((texel.color - Vec3::ONE).length() < 1e-6 && (texel.alpha - 0.5).abs() < 1e-6);
     }
 

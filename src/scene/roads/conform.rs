@@ -15,8 +15,8 @@ use crate::roads::meetings::{RoadMeetings, meetings};
 use crate::roads::network_survey::{NetworkSurvey, Rules, conforms};
 use crate::roads::profiles::RoadProfile;
 use crate::roads::route::Route;
-use sandtable_base::message::numbers::{counted, fixed};
 use sandtable_base::limits::{GROUND_POSTS, ROAD_CROSSINGS, ROAD_PAIRS};
+use sandtable_base::message::numbers::{counted, fixed};
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::finding_code::FindingCode;
@@ -288,8 +288,11 @@ fn note_totals(
         let name =
             document.roads[table].name.as_deref().map(|name| format!(" of '{name}'")).unwrap_or_default();
         let roads = counted(count, "road", "roads");
-        let mut note =
-            format!("the ground follows {roads}{name}: {} m³ cut, {} m³ filled", fixed(cut_m3, 0), fixed(fill_m3, 0));
+        let mut note = format!(
+            "the ground follows {roads}{name}: {} m³ cut, {} m³ filled",
+            fixed(cut_m3, 0),
+            fixed(fill_m3, 0)
+        );
         if bridges + tunnels > 0 {
             note += &format!(
                 "; on bridges {} and in tunnels {}",

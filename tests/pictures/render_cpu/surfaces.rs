@@ -75,7 +75,8 @@ fn each_axis_of_a_texture_goes_on_beyond_its_border_in_its_own_way() {
             for (place, share) in places.into_iter().zip(expected) {
                 let across = (place + 0.5) * 2.0 - 3.0;
                 // V runs downward.
-                let world = if axis == 0 { Vec3::new(across, 10.0, 0.9) } else { Vec3::new(0.9, 10.0, -across) };
+                let world =
+                    if axis == 0 { Vec3::new(across, 10.0, 0.9) } else { Vec3::new(0.9, 10.0, -across) };
                 let seen = (0..300 * 300).map(|at| (at % 300, at / 300)).min_by(|&a, &b| {
                     let off = |(x, y): (u32, u32)| {
                         let ray = camera.ray_through(Vec2::new(x as f32 + 0.5, y as f32 + 0.5));
@@ -85,7 +86,10 @@ fn each_axis_of_a_texture_goes_on_beyond_its_border_in_its_own_way() {
                 });
                 let (x, y) = seen.expect("pixels");
                 let red = f32::from(picture.pixels.at(x, y).0[0]) / 252.0;
-                assert!((red - share).abs() < 0.04, "{wrap:?} along axis {axis} at {place}: {red} for {share}");
+                assert!(
+                    (red - share).abs() < 0.04,
+                    "{wrap:?} along axis {axis} at {place}: {red} for {share}"
+                );
             }
         }
     }

@@ -160,7 +160,8 @@ fn dem_info_tells_type_datum_unit_and_voids() {
     assert_eq!((&about["type"], &about["enclosed_voids"]), (&Value::from("Int32"), &Value::from(1)));
     assert_eq!((&about["vertical_datum"], &about["meters_per_z"]), (&Value::Null, &Value::from(1.0)));
     let table = run_in(scratch.folder(), &["dem", "info", "a.asc"]).ok();
-    for wanted in ["type     Int32", "1 sample, 1 of them enclosed, in 1 void", "datum    none stated", "unit     1 m"]
+    for wanted in
+        ["type     Int32", "1 sample, 1 of them enclosed, in 1 void", "datum    none stated", "unit     1 m"]
     {
         assert!(table.contains(wanted), "{wanted} in\n{table}");
     }
