@@ -271,7 +271,7 @@ mod tests {
         let mut raster = plane(side, |column, row| (1..399).contains(&column) && (1..399).contains(&row));
         let filled = fill(&mut raster);
         assert_eq!(filled, Filled { voids_left: 1, cells_left: 398 * 398, ..Filled::default() });
-        assert!(filled.note().contains("158404 samples in 1 voids"), "{}", filled.note());
+        assert!(filled.note().contains("158404 samples in 1 void"), "{}", filled.note());
         assert!(raster.at(200, 200).is_nan());
     }
 }
