@@ -75,7 +75,7 @@ fn one_check_tells_every_table_that_keeps_the_scene_from_being_built() {
         ("[[model]]\nfile = \"conifer\"\nat = [1, 2]\n", "off-terrain"),
         ("[[sight]]\nobserver = [1, 2]\ntargets = [[750500, 4018883]]\n", "off-terrain"),
         ("[[road]]\nfile = \"none.geojson\"\n", "missing-file"),
-        ("[[area]]\ncover = \"wood\"\nfile = \"none.geojson\"\n", "missing-file"),
+        ("[[area]]\ncover = \"forest\"\nfile = \"none.geojson\"\n", "missing-file"),
         ("[[camera]]\nname = \"a\"\neye = [0, 0]\nlook_at = [750500, 4018883]\n", "off-terrain"),
         ("[[camera]]\nname = \"b\"\neye = [750500, 4018883]\nlook_at = [0, 0]\n", "off-terrain"),
     ];
