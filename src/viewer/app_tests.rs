@@ -361,3 +361,27 @@ fn a_file_that_breaks_leaves_the_scene_and_one_that_is_mended_is_read_again() {
         opened.scene.title.as_deref() == Some("Three roads")
     });
 }
+
+#[test]
+fn a_script_that_moves_the_sun_ends_without_a_question() {
+    let scene = TestScene::new("script");
+    let mut harness = window(Some(&scene.file));
+    let commands = crate::script::parse_script("sun 120,30\nquit\n").expect("commands");
+    let mut run = crate::script_run::ScriptRun::new(commands, None, std::time::Instant::now());
+    let mut closes = false;
+    for _ in 0..600 {
+        harness.step();
+        let app = harness.state_mut().as_mut().expect("shown");
+        run.step(app);
+        closes |= app.take_requests().contains(&WindowRequest::Close);
+        if closes {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    assert!(closes, "the window is closed");
+    let report = run.report("none");
+    let quit = report["commands"].as_array().and_then(|done| done.last()).expect("told");
+    assert_eq!((&quit["command"], &quit["unsaved"]), (&"quit".into(), &true.into()));
+    assert!(!fs::read_to_string(&scene.file).expect("there").contains("azimuth = 120"), "not saved");
+}
