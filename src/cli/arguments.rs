@@ -45,7 +45,7 @@ pub struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Render a scene file to an annotated PNG
+    /// Render a scene file to an annotated picture: PNG, PDF or SVG
     Render(RenderArguments),
     /// Open a window on a scene or an elevation file: walk through it, measure, dig, save
     View(ViewArguments),

@@ -11,6 +11,7 @@ use crate::output::{print, print_lines, row};
 use crate::progress::StepTimer;
 use crate::values::choice;
 use sandtable_base::message::choice::{Choice, ChoiceWord, word};
+use sandtable_base::message::numbers::counted;
 use sandtable_description::finding::{Finding, Severity};
 use sandtable_description::source_place::SourcePlace;
 use sandtable_lint::opened::open_linted;
@@ -91,12 +92,12 @@ fn counts(findings: &[Finding]) -> String {
     let count = |severity| findings.iter().filter(|finding| finding.severity() == severity).count();
     let each = Severity::ALL.map(|severity| (severity, count(severity)));
     let present = each.iter().filter(|(_, count)| *count > 0);
-    present.map(|&(severity, count)| counted(count, severity)).collect::<Vec<_>>().join(", ")
+    present.map(|&(severity, count)| counted_findings(count, severity)).collect::<Vec<_>>().join(", ")
 }
 
 /// `3 warnings`.
-pub fn counted(count: usize, severity: Severity) -> String {
-    format!("{count} {}{}", severity.word(), if count == 1 { "" } else { "s" })
+pub fn counted_findings(count: usize, severity: Severity) -> String {
+    counted(count, severity.word(), &format!("{}s", severity.word()))
 }
 
 fn as_json(name: &str, findings: &[Finding]) -> Value {
@@ -152,7 +153,7 @@ fn summary(scene: &SceneModel) -> Vec<String> {
     );
     let census = scene.census().into_iter().map(|(kind, count)| format!("{count} {}", kind.noun(count)));
     let labels = scene.labels.len();
-    let labels = format!("{labels} label{}", if labels == 1 { "" } else { "s" });
+    let labels = counted(labels, "label", "labels");
     let cameras: Vec<&str> = scene.cameras.iter().map(|view| view.name.as_str()).collect();
     vec![
         row(9, "ground", ground),

@@ -9,11 +9,13 @@ use crate::error::CliError;
 use crate::options::HeightArguments;
 use crate::output::{print, print_lines, row};
 use sandtable_base::limits::RASTER_SAMPLES;
+use sandtable_base::message::numbers::counted;
 use sandtable_files::error::FileError;
 use sandtable_query::dem::{self, OpenedDem};
 use sandtable_raster::error::DemErrorKind;
 use sandtable_raster::raster::Raster;
 use sandtable_raster::stats::Stats;
+use sandtable_raster::unstated_unit;
 use sandtable_raster::void_counts::VoidCounts;
 
 #[derive(Debug, Args)]
@@ -64,7 +66,8 @@ struct DemInfo {
 
 impl DemInfo {
     fn new(raster: Raster, stats: Stats, enclosed_voids: VoidCounts, joined: Option<String>) -> Self {
-        let notes = joined.into_iter().chain(format_note(&raster).map(str::to_owned)).collect();
+        let own = format_note(&raster).map(str::to_owned).into_iter().chain(unstated_unit::note(&raster));
+        let notes = joined.into_iter().chain(own).collect();
         Self { raster, stats, enclosed_voids, notes }
     }
 
@@ -112,7 +115,11 @@ impl DemInfo {
             ("sample", format!("({}, {}) a column, ({}, {}) a row", east.x, east.y, south.x, south.y)),
             ("nodata", raster.nodata.map_or("none stated".to_owned(), |value| value.to_string())),
             ("valid", format!("{} of {all} samples", stats.valid)),
-            ("voids", format!("{} samples, {samples} of them enclosed, in {voids} voids", all - stats.valid)),
+            ("voids", {
+                let (samples_s, voids_s) =
+                    (counted(all - stats.valid, "sample", "samples"), counted(*voids, "void", "voids"));
+                format!("{samples_s}, {samples} of them enclosed, in {voids_s}")
+            }),
             ("heights", heights),
             ("unit", format!("{} m", raster.meters_per_z)),
             ("datum", raster.vertical_datum.as_deref().unwrap_or("none stated").to_owned()),

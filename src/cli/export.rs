@@ -106,7 +106,9 @@ fn run_scene(arguments: &ExportArguments, format: ExportFormat) -> Result<(), Cl
         row(10, "triangles", exported.triangles),
         row(10, "materials", exported.list.materials.len()),
     ];
-    print_lines(&summary(&exported.files, &facts, &scene.notes()))
+    let notes: Vec<&str> =
+        scene.notes().into_iter().chain(exported.notes.iter().map(String::as_str)).collect();
+    print_lines(&summary(&exported.files, &facts, &notes))
 }
 
 fn run_page(arguments: &ExportArguments) -> Result<(), CliError> {

@@ -21,6 +21,7 @@ use sandtable_geom::crs::Crs;
 use sandtable_geom::rect::Rect;
 use sandtable_query::gridding::PointSources;
 use sandtable_raster::cell_grid::CellGrid;
+use sandtable_raster::unstated_unit;
 
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
@@ -186,7 +187,8 @@ fn summary(
         let apart = format!("{} times, up to {gap_m:.3} m apart", crossings.count);
         rows.push(("note", format!("breaklines cross {apart}: the mean was taken")));
     }
-    rows.extend(cloud.notes.iter().chain(&written.notes).map(|note| ("note", note.clone())));
+    let unit = unstated_unit::note(raster);
+    rows.extend(cloud.notes.iter().chain(&unit).chain(&written.notes).map(|note| ("note", note.clone())));
     rows.iter().map(|(name, value)| format!("{name:<16} {value}\n")).collect()
 }
 

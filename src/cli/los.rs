@@ -10,6 +10,7 @@ use crate::output::{print, print_lines, row};
 use crate::values::{RaisedPosition, number, raised_position};
 use sandtable_annotate::chart_sight::paint;
 use sandtable_annotate::nice;
+use sandtable_base::message::numbers::fixed;
 use sandtable_files::disk;
 use sandtable_query::positions::format_position;
 use sandtable_query::sight::{GroundedEnd, SightQuery, SightReport};
@@ -113,22 +114,23 @@ fn text(report: &SightReport) -> Vec<String> {
     let mut lines = vec![match &report.blocker {
         None => "visible".to_owned(),
         Some(Blocker { at, distance_m, height_m }) => format!(
-            "blocked at {}, {distance_m:.1} m from the observer, where the ground is {height_m:.2} m high",
-            position(*at)
+            "blocked at {}, {distance_m:.1} m from the observer, where the ground is {} m high",
+            position(*at),
+            fixed(*height_m, 2)
         ),
     }];
     lines.push(row(10, "distance", format!("{:.1} m", report.distance_m)));
     for (name, end) in ["observer", "target"].iter().zip(report.ends) {
-        let height = format!("{:.2} m high, {} m above the ground", end.height_m(), end.above_m);
+        let height = format!("{} m high, {} m above the ground", fixed(end.height_m(), 2), end.above_m);
         lines.push(row(10, name, height));
     }
     if let Some(Rise { rise_m, grazing }) = report.both_rise {
         let place = format!("{} ({:.1} m along)", position(grazing.at), grazing.distance_m);
-        lines.push(row(10, "clearance", format!("{:.2} m, least at {place}", -rise_m)));
+        lines.push(row(10, "clearance", format!("{} m, least at {place}", fixed(-rise_m, 2))));
     }
     let rises = [("the target", report.target_rise), ("the observer", report.observer_rise)];
     for (name, rise) in rises.into_iter().filter(|_| report.blocker.is_some()) {
-        lines.extend(rise.map(|rise| format!("  to be seen, {name} must rise {:.2} m", rise.rise_m)));
+        lines.extend(rise.map(|rise| format!("  to be seen, {name} must rise {} m", fixed(rise.rise_m, 2))));
     }
     lines.push(row(10, "Earth", earth(report.query.curvature)));
     lines

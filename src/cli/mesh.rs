@@ -13,6 +13,7 @@ use crate::output::{print_lines, row, warn};
 use crate::output_format::output_format;
 use crate::progress::StepTimer;
 use crate::values::number;
+use sandtable_base::message::numbers::{counted, fixed};
 use sandtable_dem::hints::DemOptions;
 use sandtable_files::disk;
 use sandtable_files::error::FileError;
@@ -189,7 +190,8 @@ fn summary(
     let origin = lattice.origin();
     let place = worst.map_or_else(String::new, |post| {
         let at = lattice.map_position(post);
-        format!(" at column {}, row {} from the south-west ({:.2}, {:.2})", post.column, post.row, at.x, at.y)
+        let at = format!("({}, {})", fixed(at.x, 2), fixed(at.y, 2));
+        format!(" at column {}, row {} from the south-west {at}", post.column, post.row)
     });
     let row = |name: &str, value: String| row(10, name, value);
     let mut lines = vec![
@@ -198,10 +200,13 @@ fn summary(
         row("triangles", size.triangles.to_string()),
         row("error", format!("maximum {} m, asked for {} m{place}", rounded_up(max_m), arguments.max_error)),
         row("", format!("mean {mean_m:.4} m, RMS {rms_m:.4} m, over {measured} posts")),
-        row("origin", format!("({:.3}, {:.3}) in {}", origin.x, origin.y, crs.name())),
+        row("origin", format!("({}, {}) in {}", fixed(origin.x, 3), fixed(origin.y, 3), crs.name())),
     ];
     if left_out > 0 {
-        lines.push(row("left out", format!("{left_out} posts with data that only cells with a hole touch")));
+        lines.push(row(
+            "left out",
+            format!("{} with data that only cells with a hole touch", counted(left_out, "post", "posts")),
+        ));
     }
     lines
 }

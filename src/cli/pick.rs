@@ -9,6 +9,7 @@ use crate::output::{print, print_lines, row};
 use crate::progress::StepTimer;
 use crate::render::find_camera;
 use crate::values::{picture_size, pixel};
+use sandtable_base::message::numbers::fixed;
 use sandtable_scene::scene_file::open_scene;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_sheet::picture::PictureSize;
@@ -68,8 +69,8 @@ fn text(scene: &SceneModel, [x, y]: [u32; 2], place: Option<&PickedPlace>) -> Ve
     vec![
         format!("{x},{y}"),
         row(10, "shows", scene.feature_name(*feature)),
-        row(10, "at", format!("{:.1}, {:.1} in {}", at.x, at.y, scene.crs.name())),
-        row(10, "elevation", format!("{elevation_m:.2} m")),
+        row(10, "at", format!("{}, {} in {}", fixed(at.x, 1), fixed(at.y, 1), scene.crs.name())),
+        row(10, "elevation", format!("{} m", fixed(*elevation_m, 2))),
         row(10, "distance", format!("{distance_m:.1} m")),
     ]
 }

@@ -1,4 +1,4 @@
-//! `sandtable render`: a scene file to an annotated PNG.
+//! `sandtable render`: a scene file to an annotated picture or sheet.
 
 use std::path::{Path, PathBuf};
 
@@ -6,7 +6,7 @@ use clap::Args;
 use serde_json::{Map, Value, json};
 
 use crate::backend::BackendName;
-use crate::check::{contents, counted};
+use crate::check::{contents, counted_findings};
 use crate::error::CliError;
 use crate::options::AccessArguments;
 use crate::output::{print, print_lines, row, warn};
@@ -15,6 +15,7 @@ use crate::render_series::{RenderFailure, RenderedFile, RenderedPicture, Rendere
 use crate::threads;
 use crate::values::{choice, picture_size};
 use sandtable_annotate::report::{AnnotationReport, LabelMove, SymbolReport};
+use sandtable_base::message::numbers::counted;
 use sandtable_base::message::suggest::{nearest, quoted};
 use sandtable_description::finding::{Finding, Severity};
 use sandtable_files::disk::{self, WriteFileCause, WriteFileError};
@@ -163,7 +164,11 @@ fn summary(
         .flat_map(|scene| &scene.pictures)
         .flat_map(|picture| &picture.annotations.missing_glyphs)
     {
-        warn(&format!("warning: the font lacks {} characters of '{}'", missing.count, missing.text));
+        warn(&format!(
+            "warning: the font lacks {} of '{}'",
+            counted(missing.count, "character", "characters"),
+            missing.text
+        ));
     }
     let mut lines: Vec<String> = arguments.sheet.then(|| path.display().to_string()).into_iter().collect();
     lines.extend(scenes.iter().flat_map(RenderedScene::lines));
@@ -225,7 +230,10 @@ impl RenderedScene {
             row(
                 9,
                 "findings",
-                format!("{}; `sandtable check` shows them", counted(warnings, Severity::Warning)),
+                format!(
+                    "{} while building; `sandtable check` shows them, and looks for more",
+                    counted_findings(warnings, Severity::Warning)
+                ),
             )
         });
         paths.chain(contents(&self.scene)).chain(notes).chain(warnings).chain(summaries).collect()

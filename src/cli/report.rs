@@ -9,6 +9,7 @@ use crate::error::CliError;
 use crate::options::SceneArguments;
 use crate::output::{aligned, print, print_lines};
 use crate::progress::StepTimer;
+use sandtable_base::message::numbers::fixed;
 use sandtable_files::disk::{self, WriteFileError};
 use sandtable_files::output_files::OutputFiles;
 use sandtable_scene::report::{ReportCell, ReportColumn, ReportTable, SceneReport};
@@ -29,7 +30,7 @@ pub struct ReportArguments {
     /// Print one JSON object with every row
     #[arg(long)]
     pub json: bool,
-    /// Write every table, and the profile of every conforming road, as CSV files into this folder, which must exist
+    /// Write every table, and the profile of every conforming road, as CSV files into this folder; it is made if it does not exist
     #[arg(long, value_name = "FOLDER", conflicts_with = "json")]
     pub csv: Option<PathBuf>,
 }
@@ -90,6 +91,7 @@ fn write_csv_files(scene: &SceneModel, folder: &Path) -> Result<Vec<String>, Wri
         let separator = if name.is_empty() { "" } else { "_" };
         (format!("profile_{}{separator}{name}", profile.feature.0), profile.csv())
     });
+    disk::make_folder(folder)?;
     let mut outputs = OutputFiles::default();
     let mut written = Vec::new();
     for (name, csv) in tables.chain(profiles) {
@@ -112,7 +114,8 @@ fn as_csv(table: &ReportTable) -> String {
 fn csv_cell(cell: &ReportCell) -> String {
     match cell {
         ReportCell::Text(text) => quoted(text),
-        ReportCell::Number(number) => number.to_string(),
+        // −0 is written as 0.
+        ReportCell::Number(number) => (number + 0.0).to_string(),
         ReportCell::Count(count) => count.to_string(),
         ReportCell::Empty => String::new(),
     }
@@ -144,8 +147,8 @@ fn printed_cell(cell: &ReportCell) -> String {
         ReportCell::Text(text) => {
             text.chars().take(SHOWN_CHARACTERS).map(|at| if at.is_control() { ' ' } else { at }).collect()
         }
-        ReportCell::Number(number) if number.abs() >= 1000.0 => format!("{number:.0}"),
-        ReportCell::Number(number) => format!("{number:.2}"),
+        ReportCell::Number(number) if number.abs() >= 1000.0 => fixed(*number, 0),
+        ReportCell::Number(number) => fixed(*number, 2),
         ReportCell::Count(count) => count.to_string(),
         ReportCell::Empty => "-".into(),
     }

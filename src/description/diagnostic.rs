@@ -127,21 +127,28 @@ impl fmt::Display for Diagnostics {
 
 impl Error for Diagnostics {}
 
-/// Collects errors, so that reading continues after the first.
+/// Collects errors, so that work continues after the first.
 #[derive(Debug)]
-pub(super) struct DiagnosticSink {
+pub struct DiagnosticSink {
     source: Arc<SourceText>,
     list: Vec<Diagnostic>,
     omitted: usize,
 }
 
 impl DiagnosticSink {
+    /// No errors yet, about a scene file.
     pub fn new(source: Arc<SourceText>) -> Self {
         Self { source, list: Vec::new(), omitted: 0 }
     }
 
+    /// The scene file.
     pub fn source(&self) -> &Arc<SourceText> {
         &self.source
+    }
+
+    /// Whether there is none so far.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
     }
 
     /// Whether more errors are only counted.
@@ -149,6 +156,7 @@ impl DiagnosticSink {
         self.list.len() >= MAX_ERRORS
     }
 
+    /// Adds an error about the bytes `span`, with a remedy.
     pub fn error(
         &mut self,
         span: Range<usize>,

@@ -93,8 +93,8 @@ finding_codes! {
         "Heights in a file, or of models at stated elevations, are off the ground by nearly the same number of meters everywhere. \
          Most likely one of the two is counted from the ellipsoid and the other from a geoid. Bring both to one datum.";
     HeightsInFeet = "heights-in-feet", Warning,
-        "Heights are read as meters, and something says that they are feet: the vertical unit of a `.prj`, the name of a vertical \
-         datum or of a file; or the heights of a file are 3.28 times the ground's, or the other way round. Convert them, or let the \
+        "Heights are read as meters, and something says that they are feet: coordinates in feet beside elevations whose unit \
+         nothing states, the vertical unit of a `.prj`, the name of a vertical datum or of a file; or the heights of a file are 3.28 times the ground's, or the other way round. Convert them, or let the \
          file state its unit.";
     NoPlaceOnEarth = "no-place-on-earth", Warning,
         "The scene names no coordinate system, so that a grid, magnetic north or the sun of a date cannot be computed. State \

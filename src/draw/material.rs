@@ -38,6 +38,38 @@ pub enum Albedo {
     Hatching,
 }
 
+/// What a texture shows along one axis beyond its borders.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum TextureWrap {
+    /// The texture again and again.
+    #[default]
+    Repeat,
+    /// The same, every other time from the far end to the near one, so that equal colors meet.
+    Mirror,
+    /// The color of the nearest border.
+    Clamp,
+}
+
+impl TextureWrap {
+    /// The coordinate in 0..=1 at which the texture is read for `coordinate`; 0 where it is not finite.
+    pub fn fold(self, coordinate: f32) -> f32 {
+        let within = match self {
+            Self::Repeat => coordinate - coordinate.floor(),
+            Self::Mirror => {
+                let along = coordinate - 2.0 * (coordinate * 0.5).floor();
+                along.min(2.0 - along)
+            }
+            Self::Clamp => coordinate,
+        };
+        if within.is_nan() { 0.0 } else { within.clamp(0.0, 1.0) }
+    }
+
+    /// The texel of a row of `side`, at least 1, in which `coordinate` lies.
+    pub fn texel(self, coordinate: f32, side: u32) -> u32 {
+        ((self.fold(coordinate) * side as f32) as u32).min(side - 1)
+    }
+}
+
 /// A surface's color and how it is shaded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
@@ -45,8 +77,10 @@ pub struct Material {
     pub name: String,
     /// Multiplied with vertex color and texture.
     pub base_color: Srgba,
-    /// The base color texture, repeated in both directions, filtered bilinearly with mip levels.
+    /// The base color texture, filtered bilinearly with mip levels.
     pub texture: Option<TextureId>,
+    /// What the texture shows beyond its borders, along U and along V.
+    pub texture_wrap: [TextureWrap; 2],
     /// The meaning of alpha.
     pub alpha: AlphaMode,
     /// Whether the back of a triangle is drawn too, with its normal turned round.
@@ -79,6 +113,7 @@ impl Default for Material {
             name: String::new(),
             base_color: Srgba::WHITE,
             texture: None,
+            texture_wrap: [TextureWrap::Repeat; 2],
             alpha: AlphaMode::Opaque,
             two_sided: false,
             normals: NormalSource::Vertex,
@@ -87,6 +122,40 @@ impl Default for Material {
             receives_shadows: true,
             is_natural: false,
             shows_edges: false,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coordinates_beyond_the_border_are_folded_into_the_texture() {
+        use TextureWrap::{Clamp, Mirror, Repeat};
+        for (wrap, coordinate, expected) in [
+            (Repeat, 1.25, 0.25),
+            (Repeat, -0.25, 0.75),
+            (Mirror, 0.25, 0.25),
+            (Mirror, 1.25, 0.75),
+            (Mirror, -0.25, 0.25),
+            (Mirror, -1.25, 0.75),
+            (Mirror, 4.25, 0.25),
+            (Clamp, 1.25, 1.0),
+            (Clamp, -7.0, 0.0),
+        ] {
+            assert_eq!(wrap.fold(coordinate), expected, "{wrap:?} of {coordinate}");
+        }
+        assert_eq!([Repeat, Mirror, Clamp].map(|wrap| wrap.texel(1.1, 4)), [0, 3, 3]);
+    }
+
+    #[test]
+    fn coordinates_that_are_not_finite_are_within_the_texture() {
+        for wrap in [TextureWrap::Repeat, TextureWrap::Mirror, TextureWrap::Clamp] {
+            for coordinate in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN] {
+                assert!((0.0..=1.0).contains(&wrap.fold(coordinate)), "{wrap:?} of {coordinate}");
+                assert!(wrap.texel(coordinate, 3) < 3);
+            }
         }
     }
 }

@@ -44,8 +44,6 @@ pub enum EditValue {
     Text(String),
     /// A finite number.
     Number(f64),
-    /// `true` or `false`.
-    Switch(bool),
     /// A place in map coordinates of the scene's system; written in the system that the table states.
     Point([f64; 2]),
     /// Several such places.

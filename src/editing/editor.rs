@@ -388,7 +388,7 @@ fn placed(value: &EditValue, from: &Crs, to: &Crs) -> Result<EditValue, EditErro
         EditValue::Number(number) => EditValue::Number(rounded(*number, DEGREE_DECIMALS)?),
         EditValue::Point(at) => EditValue::Point(point(at)?),
         EditValue::Points(points) => EditValue::Points(points.iter().map(point).collect::<Result<_, _>>()?),
-        EditValue::Text(_) | EditValue::Switch(_) => value.clone(),
+        EditValue::Text(_) => value.clone(),
     })
 }
 

@@ -403,7 +403,6 @@ fn written(value: &EditValue) -> String {
     match value {
         EditValue::Text(text) => Value::from(text.as_str()).to_string().trim().to_owned(),
         EditValue::Number(number) => written_number(*number),
-        EditValue::Switch(value) => value.to_string(),
         EditValue::Point(point) => written_point(point),
         EditValue::Points(points) => {
             let all: Vec<String> = points.iter().map(written_point).collect();

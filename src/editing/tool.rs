@@ -199,9 +199,11 @@ impl DrawingTool {
             (ToolShape::Point, _) => "Click on the ground",
             (_, 0) => "Click where it begins",
             (ToolShape::Outline, _) if !enough => "Click along the outline",
-            (ToolShape::Outline, _) => "Click along the outline; Enter or a double click closes it",
+            (ToolShape::Outline, _) => {
+                "Click along the outline; Enter or a double click closes it, Backspace takes a point back"
+            }
             _ if !enough => "Click along the line",
-            _ => "Click along the line; Enter or a double click ends it",
+            _ => "Click along the line; Enter or a double click ends it, Backspace takes a point back",
         }
     }
 

@@ -10,10 +10,10 @@ use serde_json::{Value, json};
 use crate::SceneExport;
 use sandtable_draw::color::{Srgba, linear_from_srgb};
 use sandtable_draw::list::{DrawItem, DrawVertex, MaterialId, MeshId};
-use sandtable_draw::material::{AlphaMode, Material, TextureId};
+use sandtable_draw::material::{AlphaMode, Material, TextureId, TextureWrap};
 use sandtable_files::png::encode_png;
 use sandtable_mesh::numbering::Numbering;
-use sandtable_mesh::write::glb::{GlbNode, GlbPrimitive, GlbScene, GlbVertices};
+use sandtable_mesh::write::glb::{GlbNode, GlbPrimitive, GlbScene, GlbTexture, GlbVertices, GlbWrap};
 
 /// Writes the file.
 ///
@@ -44,6 +44,7 @@ struct GlbSceneBuilder {
     /// Vertices of a mesh, with or without texture coordinates.
     vertices: Numbering<(MeshId, bool)>,
     materials: Numbering<MaterialId>,
+    textures: Numbering<GlbTexture>,
     images: Numbering<TextureId>,
 }
 
@@ -96,10 +97,26 @@ impl GlbSceneBuilder {
         let number = self.materials.number(item.material);
         if number.is_new {
             let material = export.material(item);
-            let image = material.texture.and_then(|texture| self.add_image(export, texture));
-            self.scene.materials.push(object_of(material, image));
+            let texture = self.add_texture(export, material);
+            self.scene.materials.push(object_of(material, texture));
         }
         number.index as usize
+    }
+
+    /// The material's texture; `None` where it has none, or one without pixels.
+    fn add_texture(&mut self, export: &SceneExport<'_>, material: &Material) -> Option<usize> {
+        let image = self.add_image(export, material.texture?)?;
+        let wrap = material.texture_wrap.map(|wrap| match wrap {
+            TextureWrap::Repeat => GlbWrap::Repeat,
+            TextureWrap::Mirror => GlbWrap::MirroredRepeat,
+            TextureWrap::Clamp => GlbWrap::ClampToEdge,
+        });
+        let texture = GlbTexture { image, wrap };
+        let number = self.textures.number(texture);
+        if number.is_new {
+            self.scene.textures.push(texture);
+        }
+        Some(number.index as usize)
     }
 
     /// The texture's image; `None` where it has no pixels.
@@ -123,14 +140,14 @@ fn linear(color: Srgba) -> [u16; 4] {
     [light(red), light(green), light(blue), u16::from(alpha) * 257]
 }
 
-fn object_of(material: &Material, image: Option<usize>) -> Value {
+fn object_of(material: &Material, texture: Option<usize>) -> Value {
     let [red, green, blue] = material.base_color.linear().to_array();
     let alpha = if material.alpha == AlphaMode::Opaque { 1.0 } else { material.base_color.alpha() };
     let mut object = json!({"pbrMetallicRoughness": {
         "baseColorFactor": [red, green, blue, alpha], "metallicFactor": 0.0, "roughnessFactor": 1.0,
     }});
-    if let Some(image) = image {
-        object["pbrMetallicRoughness"]["baseColorTexture"] = json!({"index": image});
+    if let Some(texture) = texture {
+        object["pbrMetallicRoughness"]["baseColorTexture"] = json!({"index": texture});
     }
     if !material.name.is_empty() {
         object["name"] = json!(material.name);

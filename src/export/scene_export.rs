@@ -38,6 +38,8 @@ pub struct ExportedScene {
     pub list: DrawList,
     /// The triangles that they show.
     pub triangles: usize,
+    /// What the format cannot say of the content.
+    pub notes: Vec<String>,
 }
 
 /// Exports a scene that was opened true to scale to `path`. The ground is off by at most `max_error_m` at every post.
@@ -79,7 +81,15 @@ pub fn export(
     }
     let triangles = export.triangle_count();
     outputs.publish()?;
-    Ok(ExportedScene { files: written, triangles, list })
+    let half_clamped = if format == ExportFormat::Obj { obj::half_clamped(&list) } else { Vec::new() };
+    let note = |material: &String| {
+        format!(
+            "the texture of {material} ends at its borders along one axis alone, which an .obj cannot say; there it \
+             repeats along both: export a .glb"
+        )
+    };
+    let notes = half_clamped.iter().map(note).collect();
+    Ok(ExportedScene { files: written, triangles, notes, list })
 }
 
 fn remarks(scene: &SceneModel, max_error_m: f64) -> Remarks {

@@ -3,7 +3,7 @@
 //! ```text
 //!   table        one row of texels a material: color, flags, layer of its texture; row 0 is the bare ground's
 //!   array 0      no texture: white
-//!   array 1 …    textures of one size, layer by layer, each with its smaller levels
+//!   array 1 …    textures of one size that go on alike beyond their borders, layer by layer, each with its smaller levels
 //! ```
 //!
 //! A vertex names its material. So whatever has textures of one size is drawn with one call, in its order, however often
@@ -20,7 +20,7 @@ use crate::memory::{Loader, bind, texture, view};
 use crate::uniforms::SurfaceConstants;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DrawList, MaterialId};
-use sandtable_draw::material::{Albedo, AlphaMode, Material, NormalSource};
+use sandtable_draw::material::{Albedo, AlphaMode, Material, NormalSource, TextureWrap};
 use sandtable_draw::pixels::Pixels;
 use sandtable_render::mip_levels::smaller_levels;
 
@@ -46,11 +46,18 @@ pub struct TexturePlaces {
     arrays: Vec<TextureArray>,
 }
 
-/// Textures of one size, as stored or with colors multiplied by alpha.
+/// Textures that one sampler reads, as stored or with colors multiplied by alpha.
 #[derive(Debug)]
 struct TextureArray {
-    sides: [u32; 2],
+    kind: ArrayKind,
     layers: Vec<TextureForm>,
+}
+
+/// What the textures of an array have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct ArrayKind {
+    sides: [u32; 2],
+    wrap: [TextureWrap; 2],
 }
 
 /// A texture as opaque materials show it, or as all others do, with colors multiplied by alpha: filtering must not mix in
@@ -85,23 +92,24 @@ impl TexturePlaces {
         // Filled up by `padded_layers`.
         let most = most_layers.saturating_sub(1).max(1) as usize;
         let mut places = Self { by_material: vec![(ArrayId::NONE, 0); used.len()], ..Self::default() };
-        let mut known: BTreeMap<TextureForm, (ArrayId, u32)> = BTreeMap::new();
-        let mut open: BTreeMap<[u32; 2], usize> = BTreeMap::new();
+        let mut known: BTreeMap<(TextureForm, ArrayKind), (ArrayId, u32)> = BTreeMap::new();
+        let mut open: BTreeMap<ArrayKind, usize> = BTreeMap::new();
         for (index, material) in list.materials.iter().enumerate() {
             let Some(id) = material.texture.filter(|_| used[index]) else { continue };
             let pixels = &list.textures[id.0 as usize];
             let Some(&sides) = level_sides(pixels, largest).first() else { continue };
+            let kind = ArrayKind { sides, wrap: material.texture_wrap };
             let form = TextureForm { texture: id.0, multiplied: material.alpha != AlphaMode::Opaque };
-            places.by_material[index] = *known.entry(form).or_insert_with(|| {
+            places.by_material[index] = *known.entry((form, kind)).or_insert_with(|| {
                 let array = open
-                    .get(&sides)
+                    .get(&kind)
                     .copied()
                     .filter(|&array| places.arrays[array].layers.len() < most)
                     .unwrap_or_else(|| {
-                        places.arrays.push(TextureArray { sides, layers: Vec::new() });
+                        places.arrays.push(TextureArray { kind, layers: Vec::new() });
                         places.arrays.len() - 1
                     });
-                open.insert(sides, array);
+                open.insert(kind, array);
                 places.arrays[array].layers.push(form);
                 (ArrayId(array as u32 + 1), places.arrays[array].layers.len() as u32 - 1)
             });
@@ -124,9 +132,12 @@ impl GpuMaterials {
         places: &TexturePlaces,
     ) -> Result<Self, GpuError> {
         let table = view(&table(loader, list, places)?);
-        let sampler = &base_sampler(loader);
-        let white = TextureArray { sides: [1, 1], layers: Vec::new() };
+        let mut samplers = BTreeMap::new();
+        let white_kind = ArrayKind { sides: [1, 1], wrap: [TextureWrap::Repeat; 2] };
+        let white = TextureArray { kind: white_kind, layers: Vec::new() };
         let group = |array: &TextureArray| {
+            let wrap = array.kind.wrap;
+            let sampler = samplers.entry(wrap).or_insert_with(|| base_sampler(loader, wrap));
             let texture = upload_array(loader, array, list)?;
             let layers = texture.create_view(&wgpu::TextureViewDescriptor {
                 label: Some("textures of one size"),
@@ -180,7 +191,7 @@ fn upload_array(
     list: &DrawList,
 ) -> Result<wgpu::Texture, GpuError> {
     let gpu = loader.gpu;
-    let [width, height] = array.sides;
+    let [width, height] = array.kind.sides;
     let levels_of = |form: &TextureForm| -> Vec<Pixels> {
         let levels = levels(&list.textures[form.texture as usize], gpu.limits.max_texture_dimension_2d);
         if form.multiplied { levels.par_iter().map(premultiplied).collect() } else { levels }
@@ -215,12 +226,17 @@ fn padded_layers(layers: u32) -> u32 {
     if layers == 1 || layers.is_multiple_of(6) { layers + 1 } else { layers }
 }
 
-/// Repeats both ways and blends between the two nearest levels.
-fn base_sampler(loader: &Loader<'_>) -> wgpu::Sampler {
+/// Goes on beyond the borders as `wrap` says and blends between the two nearest levels.
+fn base_sampler(loader: &Loader<'_>, wrap: [TextureWrap; 2]) -> wgpu::Sampler {
+    let [across, down] = wrap.map(|wrap| match wrap {
+        TextureWrap::Repeat => wgpu::AddressMode::Repeat,
+        TextureWrap::Mirror => wgpu::AddressMode::MirrorRepeat,
+        TextureWrap::Clamp => wgpu::AddressMode::ClampToEdge,
+    });
     loader.gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("base color"),
-        address_mode_u: wgpu::AddressMode::Repeat,
-        address_mode_v: wgpu::AddressMode::Repeat,
+        address_mode_u: across,
+        address_mode_v: down,
         mag_filter: wgpu::FilterMode::Linear,
         min_filter: wgpu::FilterMode::Linear,
         mipmap_filter: wgpu::MipmapFilterMode::Linear,
@@ -299,10 +315,21 @@ mod tests {
         let none = (0, 0);
         let expected = [(1, 0), (1, 1), (2, 0), (2, 1), (1, 2), (3, 0), none, none, (4, 0), (4, 1)];
         assert_eq!(found, expected);
-        assert_eq!(places.arrays[3].sides, [32, 32]);
+        assert_eq!(places.arrays[3].kind.sides, [32, 32]);
         let unused = DrawList { items: Vec::new(), ..list };
         let arrays = |scope| TexturePlaces::new(&unused, scope, &limits(32, 4)).arrays.len();
         assert_eq!([TextureScope::Items, TextureScope::All].map(arrays), [0, 4]);
+    }
+
+    #[test]
+    fn a_texture_that_goes_on_in_two_ways_lies_in_two_arrays() {
+        let mut list = list(&[[8, 8], [8, 8]]);
+        list.materials[2].texture_wrap = [TextureWrap::Mirror, TextureWrap::Clamp];
+        let places = TexturePlaces::new(&list, TextureScope::Items, &limits(32, 4));
+        let found: Vec<(u32, u32)> =
+            places.by_material.iter().map(|(array, layer)| (array.0, *layer)).collect();
+        assert_eq!(found, [(1, 0), (1, 1), (2, 0), (1, 2)]);
+        assert_eq!(places.arrays[1].kind.wrap, [TextureWrap::Mirror, TextureWrap::Clamp]);
     }
 
     #[test]

@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use crate::context::LintContext;
 use crate::sink::FindingSink;
+use sandtable_base::message::numbers::fixed;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_raster::outliers::{OutlierKind, Outliers, outliers};
 use sandtable_raster::raster::Raster;
@@ -47,7 +48,10 @@ fn sentence(found: &Outliers) -> (FindingCode, String) {
         OutlierKind::Pit => (FindingCode::Pit, single("below")),
         OutlierKind::Hole => (
             FindingCode::UnmarkedVoid,
-            format!("{samples} samples of one value end in a step of {step_m:.0} m all around"),
+            match samples {
+                1 => format!("one sample ends in a step of {step_m:.0} m all around"),
+                _ => format!("{samples} samples of one value end in a step of {step_m:.0} m all around"),
+            },
         ),
     }
 }
@@ -57,5 +61,5 @@ fn place(raster: &Raster, (column, row): (u32, u32)) -> String {
     let grid = DVec2::new(f64::from(column), f64::from(row)) + 0.5;
     let at = raster.map_from_grid.transform_point2(grid);
     let decimals = if raster.crs.as_ref().is_some_and(|crs| crs.is_geographic()) { 5 } else { 0 };
-    format!("({:.decimals$}, {:.decimals$})", at.x, at.y)
+    format!("({}, {})", fixed(at.x, decimals), fixed(at.y, decimals))
 }

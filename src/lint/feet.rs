@@ -1,7 +1,8 @@
 //! Elevations that are read as meters although something states that they are feet.
 //!
 //! Nothing is guessed of the numbers alone: hills of 900 may be meters as well. Evidence is the vertical unit of the `.prj`
-//! beside a file, the name of its vertical datum, and its own name.
+//! beside a file, the name of its vertical datum, and its own name. That coordinates are in feet is found when a scene is
+//! built.
 
 use std::path::Path;
 
@@ -11,10 +12,8 @@ use sandtable_base::message::suggest::quoted;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_files::disk::file_stem;
 use sandtable_raster::raster::Raster;
+use sandtable_raster::unstated_unit::FEET_M;
 use sandtable_raster::vertical::{name_of_wkt, unit_of_wkt};
-
-/// What the units are in meters that are called a foot: the international one, that of US surveys, and older ones.
-const FEET_M: std::ops::Range<f64> = 0.3047..0.3049;
 
 /// Words for feet in the names of vertical datums.
 const WORDS: [&str; 6] = ["ft", "feet", "foot", "ftus", "usft", "sft"];
@@ -30,7 +29,12 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     if raster.meters_per_z != 1.0 || terrain.height_scale.is_some() {
         return;
     }
-    for file in terrain.dem.iter() {
+    let is_found = |file: &str| {
+        let named = format!("'{}'", quoted(file));
+        let found = &context.scene.findings;
+        found.iter().any(|found| found.code == FindingCode::HeightsInFeet && found.message.contains(&named))
+    };
+    for file in terrain.dem.iter().filter(|file| !is_found(file)) {
         let beside = ["prj", "PRJ"].into_iter().find_map(|extension| {
             let name = Path::new(file).with_extension(extension);
             Some(String::from_utf8_lossy(&context.sources.assets.read(name.to_str()?).ok()?).into_owned())

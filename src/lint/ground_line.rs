@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use sandtable_base::message::numbers::fixed;
 use sandtable_geom::polyline::Polyline;
 use sandtable_geom::profile::Profile;
 use sandtable_scene::scene_model::SceneModel;
@@ -20,5 +21,5 @@ pub fn ground_along(scene: &SceneModel, line: &Polyline) -> Option<Profile> {
 /// A place in world coordinates as a message states it: in the scene's system, to the meter.
 pub fn place(scene: &SceneModel, world: DVec2) -> String {
     let at = world + scene.lattice.origin();
-    format!("({:.0}, {:.0})", at.x, at.y)
+    format!("({}, {})", fixed(at.x, 0), fixed(at.y, 0))
 }

@@ -9,7 +9,7 @@ use crate::impostor::{INNER, ViewAxes};
 use crate::{Model, ModelPart};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DrawMesh, DrawVertex};
-use sandtable_draw::material::{AlphaMode, Material};
+use sandtable_draw::material::{AlphaMode, Material, TextureWrap};
 use sandtable_draw::pixels::Pixels;
 
 /// Samples along the side of a pixel.
@@ -178,6 +178,7 @@ fn shade(
         texel(
             source.textures.get(id.0 as usize)?,
             mean(&|vertex| Vec2::from(vertex.uv).extend(0.0)).truncate(),
+            material.texture_wrap,
         )
     });
     let texel = texel.unwrap_or(Srgba::WHITE);
@@ -193,14 +194,13 @@ fn shade(
     Some((color, normal.unwrap_or_else(|| (b - a).cross(c - a).normalize_or_zero())))
 }
 
-/// The nearest pixel of a texture that repeats; `None` where it is empty.
-fn texel(texture: &Pixels, uv: Vec2) -> Option<Srgba> {
+/// The nearest pixel of a texture; `None` where it is empty.
+fn texel(texture: &Pixels, uv: Vec2, wrap: [TextureWrap; 2]) -> Option<Srgba> {
     let size = [texture.width(), texture.height()];
     if size.contains(&0) {
         return None;
     }
-    let place = |uv: f32, side: u32| (((uv - uv.floor()) * side as f32) as u32).min(side - 1);
-    Some(texture.at(place(uv.x, size[0]), place(uv.y, size[1])))
+    Some(texture.at(wrap[0].texel(uv.x, size[0]), wrap[1].texel(uv.y, size[1])))
 }
 
 /// The texture with blocks of pixels averaged until no side is longer than [`MAX_TEXTURE_SIDE`].

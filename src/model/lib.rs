@@ -30,6 +30,7 @@ mod soup;
 mod texture;
 pub mod three_ds;
 mod triangulate;
+mod webp;
 
 use glam::Vec3;
 

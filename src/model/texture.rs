@@ -6,6 +6,8 @@ use std::io::Cursor;
 use image::{ImageFormat, ImageReader, Limits};
 
 use crate::error::CompanionError;
+use crate::material::{MapValues, ValueRange};
+use crate::webp;
 use crate::{Companions, Model};
 use sandtable_base::limits::TEXTURE_PIXELS;
 use sandtable_base::limits::TEXTURE_SIDE;
@@ -24,6 +26,8 @@ pub(super) struct Textures<'a> {
     by_name: BTreeMap<String, Option<TextureId>>,
     /// Textures made of a color map and an opacity map.
     masked: BTreeMap<(Option<TextureId>, TextureId), Option<TextureId>>,
+    /// Textures whose values were changed, by the texture and the bits of the range.
+    ranged: BTreeMap<(TextureId, [u32; 2], MapValues), TextureId>,
     pixels: Vec<Pixels>,
     /// How many more pixels there may be.
     pixels_left: u64,
@@ -32,7 +36,7 @@ pub(super) struct Textures<'a> {
 
 #[derive(Debug, thiserror::Error)]
 enum TextureError {
-    #[error("it is not PNG, JPEG, BMP or TGA")]
+    #[error("it is not PNG, JPEG, WebP, BMP or TGA")]
     UnknownFormat,
     #[error("it cannot be decoded")]
     Decode(#[from] image::ImageError),
@@ -40,6 +44,8 @@ enum TextureError {
         "it has {width} × {height} pixels; 1 to {TEXTURE_SIDE} a side are supported; shrink it: {TEXTURE_SIDE:#}"
     )]
     Size { width: u32, height: u32 },
+    #[error("it has {} × {} pixels, but holds a picture of {} × {}; export it again", stated[0], stated[1], frame[0], frame[1])]
+    WebpFrame { frame: [u32; 2], stated: [u32; 2] },
     #[error(
         "the model's textures would have more than {TEXTURE_PIXELS} pixels; shrink them, or {TEXTURE_PIXELS:#}"
     )]
@@ -50,11 +56,11 @@ enum TextureError {
 
 impl<'a> Textures<'a> {
     pub(super) fn new(companions: &'a dyn Companions) -> Self {
-        let (by_name, masked) = (BTreeMap::new(), BTreeMap::new());
         Self {
             companions,
-            by_name,
-            masked,
+            by_name: BTreeMap::new(),
+            masked: BTreeMap::new(),
+            ranged: BTreeMap::new(),
             pixels: Vec::new(),
             pixels_left: TEXTURE_PIXELS.get(),
             notes: Vec::new(),
@@ -95,10 +101,50 @@ impl<'a> Textures<'a> {
         None
     }
 
+    /// Notes something about the model's materials.
+    pub(super) fn note(&mut self, note: String) {
+        self.notes.push(note);
+    }
+
     fn add(&mut self, pixels: Pixels) -> TextureId {
         self.pixels_left -= pixels.data().len() as u64;
         self.pixels.push(pixels);
         TextureId(self.pixels.len() as u32 - 1)
+    }
+
+    /// The texture with these of its values changed; itself where nothing changes, and, with a note, where there would be too
+    /// many pixels.
+    pub(super) fn ranged(&mut self, id: TextureId, range: ValueRange, values: MapValues) -> TextureId {
+        if range == ValueRange::IDENTITY {
+            return id;
+        }
+        let key = (id, [range.base.to_bits(), range.gain.to_bits()], values);
+        if let Some(&known) = self.ranged.get(&key) {
+            return known;
+        }
+        let changed = self.with_range(id, range, values);
+        self.ranged.insert(key, changed);
+        changed
+    }
+
+    fn with_range(&mut self, id: TextureId, range: ValueRange, values: MapValues) -> TextureId {
+        let changes_alpha = values == MapValues::Opacity && self.has_holes(id);
+        let Some(pixels) = self.pixels.get(id.0 as usize) else { return id };
+        let (width, height) = (pixels.width(), pixels.height());
+        if let Err(error) = check_pixels(width, height, self.pixels_left) {
+            self.notes
+                .push(format!("the values of a map of {width} × {height} pixels stay as they are: {error}"));
+            return id;
+        }
+        let changed = Pixels::from_fn(width, height, |x, y| {
+            let Srgba([red, green, blue, alpha]) = pixels.at(x, y);
+            if changes_alpha {
+                return Srgba([red, green, blue, range.apply(alpha)]);
+            }
+            let [red, green, blue] = [red, green, blue].map(|value| range.apply(value));
+            Srgba([red, green, blue, alpha])
+        });
+        self.add(changed)
     }
 
     /// The texture with the colors of `color`, white where there is none, and the opacity of `mask`: its alpha where it
@@ -180,6 +226,14 @@ fn check_pixels(width: u32, height: u32, pixels_left: u64) -> Result<(), Texture
     Ok(check_memory(pixels * BYTES_PER_PIXEL, "the texture", "shrink it")?)
 }
 
+/// Checks that no picture in a WebP file is larger than the file says: the decoder makes room for it before it compares.
+fn check_webp_frames(bytes: &[u8], stated: [u32; 2]) -> Result<(), TextureError> {
+    match webp::frame_sizes(bytes).find(|frame| frame[0] > stated[0] || frame[1] > stated[1]) {
+        Some(frame) => Err(TextureError::WebpFrame { frame, stated }),
+        None => Ok(()),
+    }
+}
+
 fn decode(name: &str, bytes: &[u8], pixels_left: u64) -> Result<Pixels, TextureError> {
     // A TGA file has no signature.
     let is_tga = || ImageFormat::from_path(name).is_ok_and(|format| format == ImageFormat::Tga);
@@ -202,6 +256,9 @@ fn decode(name: &str, bytes: &[u8], pixels_left: u64) -> Result<Pixels, TextureE
         return Err(TextureError::Size { width, height });
     }
     check_pixels(width, height, pixels_left)?;
+    if format == ImageFormat::WebP {
+        check_webp_frames(bytes, [width, height])?;
+    }
     let data = reader().decode()?.into_rgba8().pixels().map(|pixel| Srgba(pixel.0)).collect();
     Pixels::from_data(width, height, data).ok_or(TextureError::Size { width, height })
 }
@@ -269,6 +326,45 @@ mod tests {
         assert_eq!([at(cut, 1), at(cut, 2)], [[10, 200, 30, 0], [10, 200, 30, 255]]);
         assert_eq!(by_alpha.map(|id| at(id, 0)), Some([10, 200, 30, 77]));
         assert_eq!(alone.map(|id| [at(id, 0), at(id, 1)]), Some([[255, 255, 255, 0], [255; 4]]));
+    }
+
+    #[test]
+    fn the_values_of_a_map_are_changed_once_and_alpha_only_where_it_is_the_mask() {
+        let folder = Folder("", Vec::new());
+        let mut textures = Textures::new(&folder);
+        let clear = Pixels::from_fn(1, 1, |_, _| Srgba([200, 100, 0, 77]));
+        textures.pixels = vec![Pixels::filled(1, 1, Srgba::opaque(200, 100, 0)), clear];
+        let [plain, clear] = [0, 1].map(TextureId);
+        let negative = ValueRange::NEGATIVE;
+        assert_eq!(textures.ranged(plain, ValueRange::IDENTITY, MapValues::Colors), plain);
+        let made = [
+            textures.ranged(plain, negative, MapValues::Colors),
+            textures.ranged(plain, negative, MapValues::Opacity),
+            textures.ranged(clear, negative, MapValues::Colors),
+            textures.ranged(clear, negative, MapValues::Opacity),
+        ];
+        assert_eq!(textures.ranged(plain, negative, MapValues::Colors), made[0], "made once");
+        let found = made.map(|id| textures.pixels[id.0 as usize].at(0, 0).0);
+        assert_eq!(found, [[55, 155, 255, 255], [55, 155, 255, 255], [55, 155, 255, 77], [200, 100, 0, 178]]);
+        textures.pixels_left = 0;
+        assert_eq!(textures.ranged(clear, ValueRange { base: 0.5, gain: 1.0 }, MapValues::Colors), clear);
+        assert!(textures.notes[0].contains("stay as they are"), "{:?}", textures.notes);
+    }
+
+    #[test]
+    fn a_webp_texture_is_read_and_one_that_hides_a_larger_picture_is_not() {
+        let bytes = webp::tests::lossless(3, 2, [200, 100, 50]);
+        let pixels = decode("wall.webp", &bytes, TEXTURE_PIXELS.get()).expect("sound");
+        assert_eq!((pixels.width(), pixels.height(), pixels.at(2, 1)), (3, 2, Srgba::opaque(200, 100, 50)));
+        let hidden = webp::tests::extended([3, 2], &webp::tests::lossy_header(16383, 16383));
+        let error = decode("wall.webp", &hidden, TEXTURE_PIXELS.get()).expect_err("refused").to_string();
+        assert!(error.contains("3 × 2 pixels, but holds a picture of 16383 × 16383"), "{error}");
+        let huge = webp::tests::extended([1 << 20, 1 << 20], &webp::tests::lossy_header(2, 2));
+        assert!(decode("wall.webp", &huge, TEXTURE_PIXELS.get()).is_err());
+        for end in 0..bytes.len() {
+            // What a cut file gives does not matter, only that it ends.
+            let _ = decode("wall.webp", &bytes[..end], TEXTURE_PIXELS.get());
+        }
     }
 
     #[test]

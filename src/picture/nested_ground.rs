@@ -13,6 +13,7 @@ use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::words::TableTop;
 use sandtable_geom::rect::Rect;
 use sandtable_scene::build::build_with;
+use sandtable_scene::build_errors::BuildErrors;
 use sandtable_scene::finer_elevation::{FinerElevation, part_document};
 use sandtable_scene::planned_pictures::ElevationNeed;
 use sandtable_scene::scene_label::SceneLabel;
@@ -87,7 +88,8 @@ fn nested_ground(
     let frame = WorldFrame::new(&finer.document, &outer.crs, &outer.stated_crs, outer.lattice.origin());
     let document = part_document(&frame, &plan.rect)?;
     let need = ElevationNeed::Nested { step: plan.step };
-    let mut scene = build_with(&document, &finer.assets, need, &|_| ())?;
+    let scene = build_with(&document, &finer.assets, need, &|_| ());
+    let mut scene = scene.map_err(BuildErrors::into_first)?;
     scene.table = TableTop::None;
     scene.scale = outer.scale;
     scene.latitude_deg = outer.latitude_deg;

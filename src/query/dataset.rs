@@ -51,6 +51,7 @@ impl Default for DatasetOptions {
 pub struct Dataset {
     name: String,
     content: DatasetContent,
+    warning: Option<String>,
 }
 
 enum DatasetContent {
@@ -58,7 +59,6 @@ enum DatasetContent {
     Raster {
         raster: Arc<Raster>,
         ground: OnceLock<Result<HeightService, Arc<GroundError>>>,
-        warning: Option<String>,
     },
     /// Too large to be kept.
     Windows(Box<WindowedElevation>),
@@ -130,33 +130,34 @@ impl Dataset {
         let name = path.display().to_string();
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
             let ground = open_scene_ground(path, &options.allowed)?;
-            return Ok(Self { name, content: DatasetContent::Scene(ground) });
+            return Ok(Self { name, content: DatasetContent::Scene(ground), warning: None });
         }
         // What is far away is read where it is needed, however small it is.
         let most_kept = if is_address_path(path) { 0 } else { options.most_kept };
-        let content = match dem::open_either(path, &options.dem, most_kept)? {
+        let (content, warning) = match dem::open_either(path, &options.dem, most_kept)? {
             OpenedDem::Kept(mosaic) => {
                 let warning = dem::warning(path, &mosaic);
                 let raster = Arc::new(mosaic.raster);
-                DatasetContent::Raster { raster, ground: OnceLock::new(), warning }
+                (DatasetContent::Raster { raster, ground: OnceLock::new() }, warning)
             }
-            OpenedDem::Windows(windows) => DatasetContent::Windows(Box::new(WindowedElevation::new(windows))),
+            OpenedDem::Windows(windows) => {
+                let elevation = WindowedElevation::new(windows);
+                let warning = dem::header_warning(path, elevation.header());
+                (DatasetContent::Windows(Box::new(elevation)), warning)
+            }
         };
-        Ok(Self { name, content })
+        Ok(Self { name, content, warning })
     }
 
     /// The dataset of a raster in memory, which messages call `name`.
     pub fn from_raster(name: &str, raster: Arc<Raster>) -> Self {
-        let content = DatasetContent::Raster { raster, ground: OnceLock::new(), warning: None };
-        Self { name: name.to_owned(), content }
+        let content = DatasetContent::Raster { raster, ground: OnceLock::new() };
+        Self { name: name.to_owned(), content, warning: None }
     }
 
     /// A warning for the user about the files, where there is one.
     pub fn warning(&self) -> Option<&str> {
-        match &self.content {
-            DatasetContent::Raster { warning, .. } => warning.as_deref(),
-            DatasetContent::Windows(_) | DatasetContent::Scene(_) => None,
-        }
+        self.warning.as_deref()
     }
 
     /// A note for the user where the ground lies in another system than [`Dataset::crs`] because lengths in that are not

@@ -14,6 +14,7 @@ use sandtable_raster::error::DemErrorKind;
 use sandtable_raster::mosaic::{Mosaic, MosaicError, Tiles};
 use sandtable_raster::mosaic_windows::MosaicWindows;
 use sandtable_raster::raster::Raster;
+use sandtable_raster::unstated_unit;
 use sandtable_raster::windows::{RasterWindow, WINDOW_CACHE_BYTES, Windows};
 use sandtable_remote::address::is_address_path;
 
@@ -263,7 +264,15 @@ fn open_file(path: &Path, options: &DemOptions) -> Result<Raster, OpenDemError> 
     Ok(raster.map_err(|error| FileError::<DemErrorKind>::new(path, error.kind))?)
 }
 
-/// A warning for the user where the tiles at `path` contradict each other.
+/// A warning for the user where the tiles at `path` contradict each other, or the unit of their elevations is taken for
+/// granted.
 pub fn warning(path: &Path, mosaic: &Mosaic) -> Option<String> {
-    (mosaic.differing > 0).then(|| format!("{}: {}", path.display(), mosaic.note()))
+    let differing = (mosaic.differing > 0).then(|| mosaic.note());
+    let notes: Vec<String> = differing.into_iter().chain(unstated_unit::note(&mosaic.raster)).collect();
+    (!notes.is_empty()).then(|| format!("{}: {}", path.display(), notes.join("; ")))
+}
+
+/// The same of a file that is read where queries need it; `raster` may lack its samples.
+pub fn header_warning(path: &Path, raster: &Raster) -> Option<String> {
+    unstated_unit::note(raster).map(|note| format!("{}: {note}", path.display()))
 }

@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use sandtable_base::message::numbers::fixed;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::rect::Rect;
 use sandtable_raster::answer::Answer;
@@ -39,8 +40,7 @@ pub fn outside_note(answers: &[Answer], at: &[DVec2], crs: &Crs, header: &Raster
         None => String::new(),
     };
     let Rect { min, max } = covered;
-    let written =
-        |value: f64| if own.is_geographic() { format!("{value:.4}") } else { format!("{value:.0}") };
+    let written = |value: f64| fixed(value, if own.is_geographic() { 4 } else { 0 });
     Some(format!(
         "{which} outside the elevation, which covers {} to {} and {} to {} in {}{advice}",
         written(min.x),

@@ -6,6 +6,7 @@ use std::str::FromStr;
 
 use glam::DVec2;
 
+use sandtable_base::message::numbers::fixed;
 use sandtable_files::csv::{LineError, fields, is_header, numbered_lines};
 use sandtable_files::disk::{self, ReadFileError};
 use sandtable_files::error::FileError;
@@ -171,7 +172,7 @@ fn first_line(path: &Path, stated: Option<Crs>) -> Result<InputLine, ReadLineErr
 /// `x, y` for a reader: degrees with five decimals (about a meter), meters without.
 pub fn format_position(crs: &Crs, at: DVec2) -> String {
     let decimals = if crs.is_geographic() { 5 } else { 0 };
-    format!("{:.decimals$}, {:.decimals$}", at.x, at.y)
+    format!("{}, {}", fixed(at.x, decimals), fixed(at.y, decimals))
 }
 
 #[cfg(test)]

@@ -25,6 +25,7 @@ pub mod stats;
 pub mod stored;
 pub mod undeclared;
 pub mod units;
+pub mod unstated_unit;
 pub mod vertical;
 pub mod void_counts;
 pub mod voids;

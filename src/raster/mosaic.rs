@@ -14,6 +14,7 @@ use crate::raster::{Raster, SampleFloat, Samples};
 use crate::units::FOOT_M;
 use sandtable_base::limits::RASTER_SAMPLES;
 use sandtable_base::limits::TILE_SAMPLES;
+use sandtable_base::message::numbers::counted;
 use sandtable_geom::crs::Crs;
 
 /// The greatest distance, in cells, of a tile's samples from the nodes of the first tile's grid.
@@ -43,15 +44,20 @@ pub struct Mosaic {
 impl Mosaic {
     /// The counts in one line, for the user.
     pub fn note(&self) -> String {
-        let mut note = format!("{} tiles joined; {} samples are shared", self.tiles, self.overlaps);
+        let mut note = format!(
+            "{} joined; {} shared",
+            counted(self.tiles, "tile", "tiles"),
+            counted(self.overlaps, "sample is", "samples are")
+        );
         if self.differing > 0 {
             note.push_str(&format!(
-                ", {} of them differ, by up to {} (the first tile's were kept)",
-                self.differing, self.greatest_difference
+                ", {}, by up to {} (the first tile's were kept)",
+                counted(self.differing, "of them differs", "of them differ"),
+                self.greatest_difference
             ));
         }
         if self.gaps > 0 {
-            note.push_str(&format!("; {} samples lie in no tile", self.gaps));
+            note.push_str(&format!("; {} in no tile", counted(self.gaps, "sample lies", "samples lie")));
         }
         if let Some(datum) = self.raster.vertical_datum.as_ref().filter(|_| self.without_datum > 0) {
             note.push_str(&format!(

@@ -30,6 +30,8 @@ pub struct Raster {
     pub samples: Samples,
     /// Meters in the vertical unit: 1, or 0.3048 and the like where the file states feet.
     pub meters_per_z: f64,
+    /// Whether the file, a companion or the format itself states that unit; where not, meters are taken.
+    pub states_z_unit: bool,
     /// Grid position (column, row) to map coordinates; can be inverted.
     pub map_from_grid: DAffine2,
     /// Whether the file, a companion or the caller stated `map_from_grid`; where not, samples are 1 apart and the
@@ -256,6 +258,7 @@ impl Raster {
             height,
             samples: Samples::F32(Vec::new()),
             meters_per_z: 1.0,
+            states_z_unit: false,
             map_from_grid: north_up_nodes(DVec2::new(0.0, f64::from(height - 1)), DVec2::ONE),
             georeferenced: false,
             crs: None,

@@ -12,6 +12,7 @@
 use glam::DVec2;
 
 use crate::raster::Raster;
+use sandtable_base::message::numbers::counted;
 use sandtable_geom::crs::Crs;
 
 /// Voids of more samples than this are not filled: across three hundred posts a membrane is unrelated to the ground.
@@ -40,12 +41,15 @@ pub struct Filled {
 impl Filled {
     /// The counts in one line.
     pub fn note(&self) -> String {
+        let samples = |count: u64| counted(count, "sample", "samples");
+        let voids = |count: u64| counted(count, "void", "voids");
         let mut note =
-            format!("{} samples in {} voids filled by a membrane from their rims", self.cells, self.voids);
+            format!("{} in {} filled by a membrane from their rims", samples(self.cells), voids(self.voids));
         if self.voids_left > 0 {
             note.push_str(&format!(
-                "; {} samples in {} voids of more than {MOST_CELLS} left",
-                self.cells_left, self.voids_left
+                "; {} in {} of more than {MOST_CELLS} left",
+                samples(self.cells_left),
+                voids(self.voids_left)
             ));
         }
         note
@@ -267,7 +271,7 @@ mod tests {
         let mut raster = plane(side, |column, row| (1..399).contains(&column) && (1..399).contains(&row));
         let filled = fill(&mut raster);
         assert_eq!(filled, Filled { voids_left: 1, cells_left: 398 * 398, ..Filled::default() });
-        assert!(filled.note().contains("158404 samples in 1 voids"), "{}", filled.note());
+        assert!(filled.note().contains("158404 samples in 1 void"), "{}", filled.note());
         assert!(raster.at(200, 200).is_nan());
     }
 }

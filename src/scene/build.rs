@@ -13,6 +13,7 @@ use glam::DVec2;
 
 use crate::assets::Assets;
 use crate::attributes;
+use crate::build_errors::BuildErrors;
 use crate::builder::SceneBuilder;
 use crate::buildings;
 use crate::exact_ground::ExactGround;
@@ -76,12 +77,13 @@ pub fn build_ground(document: &Document, assets: &Assets) -> Result<SceneGround,
 /// with the name of each pass as it begins.
 ///
 /// # Errors
-/// The first file that cannot be read or table that does not fit, at its place in the scene file.
+/// The files that cannot be read and the tables that do not fit, each at its place in the scene file; of tables that the
+/// ground needs, those without which nothing more can be told.
 pub fn build(
     document: &Document,
     assets: &Assets,
     progress: &dyn Fn(&'static str),
-) -> Result<SceneModel, Diagnostic> {
+) -> Result<SceneModel, BuildErrors> {
     build_with(document, assets, ElevationNeed::AllThatFit, progress)
 }
 
@@ -94,7 +96,7 @@ pub fn build_with(
     assets: &Assets,
     need: ElevationNeed<'_>,
     progress: &dyn Fn(&'static str),
-) -> Result<SceneModel, Diagnostic> {
+) -> Result<SceneModel, BuildErrors> {
     progress("reading elevation");
     let loaded = ground::load(document, assets, need)?;
     let (crs, stated_crs, mut lattice) = (loaded.crs, loaded.stated_crs, loaded.lattice);
@@ -103,34 +105,48 @@ pub fn build_with(
     progress("laying features");
     let sources = Sources::new(&frame, assets);
     let mut collected = SceneBuilder::new(loaded.findings);
-    let shaped = shape(document, &sources, &mut lattice, &mut collected)?;
-    network::lay(&shaped.roads, &lattice.extent(), &mut collected);
-    fences::set(&shaped.lines, frame.scale.ground(&lattice), &mut collected);
-    buildings::raise(document, &shaped.plots, frame.scale.ground(&lattice), &mut collected);
-    collected.resolve_overlaps();
+    let shaped = shape(document, &sources, &mut lattice, &mut collected);
+    // What is wrong so far keeps the scene from being built; what follows is done to tell what else is.
+    if collected.errors.is_empty() {
+        network::lay(&shaped.roads, &lattice.extent(), &mut collected);
+        fences::set(&shaped.lines, frame.scale.ground(&lattice), &mut collected);
+        buildings::raise(document, &shaped.plots, frame.scale.ground(&lattice), &mut collected);
+        collected.resolve_overlaps();
+    }
 
     progress("loading models");
-    let placed = models::place(&sources, &mut lattice, &mut collected)?;
+    let placed = models::place(&sources, &mut lattice, &mut collected);
     let models = placed.library.into_models();
     for sentence in attributes::notes(&collected.default_counts) {
         collected.findings.add(FindingCode::DefaultTaken, 0..0, sentence);
     }
 
-    graphics::lay(document, &sources, &lattice.extent(), &mut collected)?;
+    graphics::lay(document, &sources, &lattice.extent(), &mut collected);
     let exact = ExactGround::new(&frame, &lattice, assets, loaded.all_samples)?;
-    let sight = placed_sight::lay(&exact, &mut collected)?;
+    let sight = placed_sight::lay(&exact, &mut collected);
 
     progress("placing labels and cameras");
     let layout = layout(document, &lattice)?;
-    let mut labels = labels::labels(&sources, &exact, &mut collected.findings)?;
+    let mut labels = labels::labels(&sources, &exact, &mut collected);
     let most = document.style.spot_heights as usize;
-    labels.extend(spot_heights(most, &labels, &collected.lakes, &exact)?);
+    let spots = spot_heights(most, &labels, &collected.lakes, &exact);
+    labels.extend(collected.errors.keep(spots).into_iter().flatten());
     exact.report(&mut collected.findings);
     drop(exact);
     let (scale, height_range_m, lattice) = (frame.scale, lattice.height_range(), Arc::new(lattice));
     let bounds = scale.ground(&lattice).bounds(height_range_m);
-    let military = military::symbols(&sources, &lattice, &mut collected.findings)?;
-    let cameras = views::cameras(&frame, &lattice)?;
+    let military = military::symbols(&sources, &lattice, &mut collected);
+    let cameras = views::cameras(&frame, &lattice, &mut collected.errors);
+    let ramp = collected.errors.keep(RampSource::new(document));
+    let imagery = collected.errors.keep(imagery::load(document, assets, &crs, &lattice));
+    let sunlight = Sunlight::new(document, &crs, lattice.map_extent().center());
+    let sunlight = collected.errors.keep(sunlight);
+    let font = collected.errors.keep(font::load(document, assets));
+    let sheet_day = collected.errors.keep(style::sheet_day(document));
+    collected.errors.finish()?;
+    let (Some(ramp), Some(imagery), Some(sunlight)) = (ramp, imagery, sunlight) else {
+        unreachable!("each error was kept")
+    };
     let reaches = sources.reaches();
     reaches
         .iter()
@@ -150,15 +166,15 @@ pub fn build_with(
         subtitle: document.phase_title().map(str::to_owned).or_else(|| document.subtitle.clone()),
         phase: document.phase.clone(),
         heights,
-        ramp: RampSource::new(document)?,
+        ramp,
         latitude_deg: latitude_deg(&crs, lattice.map_extent().center()),
         land_cover: surroundings.land_cover,
         is_base_map: surroundings.is_base_map,
-        imagery: imagery::load(document, assets, &crs, &lattice)?.map(Arc::new),
+        imagery: imagery.map(Arc::new),
         contours: style::contours(document, height_range_m),
         preset: document.style.preset,
         grid: style::grid(document),
-        sunlight: Sunlight::new(document, &crs, lattice.map_extent().center())?,
+        sunlight,
         texture: document.style.light.texture as f32,
         haze_m: surroundings.haze_m,
         table: surroundings.table,
@@ -189,9 +205,9 @@ pub fn build_with(
         labels,
         military,
         cameras,
-        font: font::load(document, assets)?,
+        font: font.flatten(),
         furniture: document.furniture.clone(),
-        sheet_day: style::sheet_day(document)?,
+        sheet_day: sheet_day.flatten(),
         features: collected.features,
         findings: collected.findings.into_vec(),
         overlaps,

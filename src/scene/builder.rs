@@ -1,6 +1,7 @@
 //! The output of the passes over a document: features with their ids, ribbons, solids, findings and reports.
 
 use crate::attributes::DefaultCounts;
+use crate::build_errors::BuildErrorSink;
 use crate::feature::{FeatureKind, SceneFeature};
 use crate::feature_meshes::{FeatureSolid, Ribbon, Solid};
 use crate::feature_origin::FeatureOrigin;
@@ -37,6 +38,8 @@ pub struct SceneBuilder {
     pub lakes: Vec<LakeSurface>,
     /// The findings so far, for the user.
     pub findings: SceneFindings,
+    /// The errors so far, each of which keeps the scene from being built.
+    pub errors: BuildErrorSink,
     /// The number of expressions without a value, by key and default.
     pub default_counts: DefaultCounts,
     /// Measures of single features.
@@ -59,6 +62,7 @@ impl SceneBuilder {
             uprights: Vec::new(),
             decks: Vec::new(),
             lakes: Vec::new(),
+            errors: BuildErrorSink::new(findings.source()),
             findings,
             default_counts: DefaultCounts::new(),
             report: SceneReport::default(),

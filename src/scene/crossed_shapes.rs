@@ -7,6 +7,7 @@ use glam::DVec2;
 use crate::feature::described;
 use crate::scene_findings::SceneFindings;
 use crate::world_frame::WorldFrame;
+use sandtable_base::message::numbers::fixed;
 use sandtable_description::finding::Finding;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_geom::own_crossing::own_crossing;
@@ -51,7 +52,8 @@ impl CrossedShapes {
         let Some((name, at)) = self.first else { return };
         let (what, at, others) = (described(noun, &name), at + frame.origin, self.count - 1);
         let more = if others > 0 { format!("; {others} more of this table do") } else { String::new() };
-        let message = format!("{what} crosses itself at ({:.0}, {:.0}): {outcome}{more}", at.x, at.y);
+        let message =
+            format!("{what} crosses itself at ({}, {}): {outcome}{more}", fixed(at.x, 0), fixed(at.y, 0));
         let finding = Finding::new(FindingCode::CrossesItself, message).at(&frame.document.source, span);
         let help = "mend the order of its points, for example with: ogr2ogr -makevalid out.geojson IN";
         findings.push(finding.with_help(help).and_more(others));

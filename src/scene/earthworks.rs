@@ -13,6 +13,7 @@ use crate::report::EarthworkRow;
 use crate::sources::{Sourced, Sources};
 use sandtable_base::limits::EARTHWORK_STEPS;
 use sandtable_base::message::choice::Choice;
+use sandtable_base::message::numbers::fixed;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::earthworks::EarthworkTable;
@@ -124,7 +125,8 @@ fn note(unseen: usize, lattice: &Lattice, collected: &mut SceneBuilder) {
     if !rows.is_empty() {
         let (cut, fill) = rows.iter().fold((0.0, 0.0), |(cut, fill), row| (cut + row.cut, fill + row.fill));
         let count = rows.len();
-        let message = format!("{count} {}: {cut:.0} m³ cut, {fill:.0} m³ filled", works(count));
+        let message =
+            format!("{count} {}: {} m³ cut, {} m³ filled", works(count), fixed(cut, 0), fixed(fill, 0));
         collected.findings.add(FindingCode::EarthMoved, 0..0, message);
     }
     if unseen > 0 {

@@ -36,6 +36,7 @@ use sandtable_raster::mosaic::Tiles;
 use sandtable_raster::mosaic_windows::MosaicWindows;
 use sandtable_raster::raster::Raster;
 use sandtable_raster::reduced_windows::ReducedWindows;
+use sandtable_raster::unstated_unit;
 use sandtable_raster::warp::metric_crs::{OffScale, metric_crs, off_scale};
 use sandtable_raster::warp::metric_windows::MetricSystem;
 use sandtable_raster::windows::{
@@ -477,6 +478,15 @@ fn check_tile(
         let systems = OverriddenCrs { file: name, own: &own, stated };
         let found = systems.finding(tile.center(), document, span.clone());
         found.into_iter().for_each(|finding| findings.push(finding));
+    }
+    if let Some(note) = unstated_unit::note(tile).filter(|_| terrain.height_scale.is_none()) {
+        let message = format!("the elevations of '{}': {note}", quoted(name));
+        findings.add_with_help(
+            FindingCode::HeightsInFeet,
+            span.clone(),
+            message,
+            unstated_unit::remedy(tile),
+        );
     }
     let Some(stated) = &terrain.vertical_datum else { return };
     if let Some(own) = tile.vertical_datum.as_deref().filter(|own| !own.eq_ignore_ascii_case(stated)) {

@@ -9,6 +9,7 @@ use crate::scene_findings::FeatureTable;
 use crate::scene_graphic::SceneGraphic;
 use crate::sources::Sources;
 use sandtable_base::limits::SCENE_GRAPHICS;
+use sandtable_base::message::numbers::fixed;
 use sandtable_base::message::suggest::{nearest, quoted};
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
@@ -26,20 +27,15 @@ use sandtable_symbology::graphic::kind::GraphicKind;
 use sandtable_symbology::graphic::kind_table::GRAPHIC_KINDS;
 use sandtable_vector::feature::Geometry;
 
-/// Adds the document's graphics to `collected`; those of files that lie off the ground are left out with a note.
-///
-/// # Errors
-/// A source cannot be had, or a graphic does not fit its draw rule.
-pub fn lay(
-    document: &Document,
-    sources: &Sources<'_>,
-    extent: &Rect,
-    collected: &mut SceneBuilder,
-) -> Result<(), Diagnostic> {
+/// Adds the document's graphics to `collected`; those of files that lie off the ground are left out with a note. It keeps an
+/// error where a source cannot be had, or a graphic does not fit its draw rule.
+pub fn lay(document: &Document, sources: &Sources<'_>, extent: &Rect, collected: &mut SceneBuilder) {
     for table in &document.graphics {
         let mut off = 0;
-        for (attributes, points) in placed(table, sources)? {
-            let Some(graphic) = graphic(table, &attributes, points, document)? else { continue };
+        let placed = placed(table, sources);
+        for (attributes, points) in collected.errors.keep(placed).into_iter().flatten() {
+            let graphic = graphic(table, &attributes, points, document);
+            let Some(graphic) = collected.errors.keep(graphic).flatten() else { continue };
             let reach_m = graphic.fields.distances_m.iter().copied().fold(0.0, f64::max);
             if !Rect::around(graphic.points.iter().copied()).grown(reach_m).meets(extent) {
                 off += 1;
@@ -48,7 +44,9 @@ pub fn lay(
             if collected.graphics.len() == SCENE_GRAPHICS.count() {
                 let message = format!("the scene has more than {SCENE_GRAPHICS} graphics");
                 let help = format!("select fewer of them with `where`, or {SCENE_GRAPHICS:#}");
-                return Err(document.error_at(table.source.span(), message).with_help(help));
+                let error = document.error_at(table.source.span(), message).with_help(help);
+                collected.errors.keep::<()>(Err(error));
+                return;
             }
             let name = attributes.name(table.name.as_deref());
             let feature = collected.add(FeatureKind::Graphic, name, attributes.origin(&table.source));
@@ -58,7 +56,6 @@ pub fn lay(
         let named = FeatureTable { kind: FeatureKind::Graphic, name, source: &table.source };
         collected.findings.left_out(off, &named, "off the elevation model");
     }
-    Ok(())
 }
 
 /// The points of every graphic of a table, in world space, with the properties of its feature.
@@ -122,7 +119,7 @@ fn graphic(
     let echelon = text(&table.echelon, "echelon");
     let echelon =
         if echelon.is_empty() { code.map(|code| echelon_of(&code)).unwrap_or_default() } else { echelon };
-    let heights = table.elevations.map(|range| range.map(|meters| format!("{meters:.0} m")));
+    let heights = table.elevations.map(|range| range.map(|meters| format!("{} m", fixed(meters, 0))));
     let fields = GraphicFields {
         designation: text(&table.designation, "designation"),
         designation_2: text(&table.designation_2, "designation_2"),

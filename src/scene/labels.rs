@@ -3,33 +3,35 @@
 use glam::Vec3;
 
 use crate::attributes::Attributes;
+use crate::builder::SceneBuilder;
 use crate::exact_ground::ExactGround;
 use crate::feature_labels;
 use crate::label_course::LabelCourse;
-use crate::scene_findings::SceneFindings;
 use crate::scene_label::{SceneLabel, whole_meters};
 use crate::sources::Sources;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::LabelTable;
 use sandtable_description::stated::Stated;
 
-/// The document's labels, `{height}` filled in; those of files with findings on the features without a label.
-///
-/// # Errors
-/// A label with `at` lies off the ground, or a file cannot be read or holds no feature that matches.
+/// The document's labels, `{height}` filled in; those of files with findings on the features without a label. `collected` keeps
+/// an error where a label with `at` lies off the ground, or a file cannot be read or holds no feature that matches.
 pub(super) fn labels(
     sources: &Sources<'_>,
     exact: &ExactGround<'_>,
-    findings: &mut SceneFindings,
-) -> Result<Vec<SceneLabel>, Diagnostic> {
+    collected: &mut SceneBuilder,
+) -> Vec<SceneLabel> {
+    let SceneBuilder { findings, errors, .. } = collected;
     let mut labels = Vec::new();
     for table in &sources.frame.document.labels {
         match &table.at {
-            Some(at) => labels.push(label(table, at, exact)?),
-            None => labels.extend(feature_labels::labels(table, sources, exact, findings)?),
+            Some(at) => labels.extend(errors.keep(label(table, at, exact))),
+            None => {
+                let named = feature_labels::labels(table, sources, exact, findings);
+                labels.extend(errors.keep(named).into_iter().flatten());
+            }
         }
     }
-    Ok(labels)
+    labels
 }
 
 fn label(

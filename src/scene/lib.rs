@@ -13,6 +13,7 @@ pub mod assets;
 pub mod attributes;
 pub mod bridges;
 pub mod build;
+pub mod build_errors;
 pub mod builder;
 pub mod building_colors;
 pub mod buildings;

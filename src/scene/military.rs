@@ -3,11 +3,13 @@
 use glam::Vec3;
 
 use crate::attributes::{Attributes, written};
+use crate::builder::SceneBuilder;
 use crate::scene_findings::SceneFindings;
 use crate::shape_place::place;
 use crate::sources::Sources;
 use crate::world_frame::WorldFrame;
 use sandtable_base::limits::SCENE_SYMBOLS;
+use sandtable_base::message::numbers::counted;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::expression::Expression;
 use sandtable_description::finding_code::FindingCode;
@@ -49,21 +51,19 @@ pub enum SymbolSize {
     Ground(f32),
 }
 
-/// The symbols of the document; `findings` gets what is not drawn.
-///
-/// # Errors
-/// A code that the scene file states is none, or its place lies off the ground; a file cannot be read or holds no feature
-/// that matches.
-pub fn symbols(
-    sources: &Sources<'_>,
-    lattice: &Lattice,
-    findings: &mut SceneFindings,
-) -> Result<Vec<SceneSymbol>, Diagnostic> {
+/// The symbols of the document; `collected` gets what is not drawn, and keeps an error where a code that the scene file states
+/// is none, its place lies off the ground, or a file cannot be read or holds no feature that matches.
+pub fn symbols(sources: &Sources<'_>, lattice: &Lattice, collected: &mut SceneBuilder) -> Vec<SceneSymbol> {
     let (mut symbols, mut first_beyond) = (Vec::new(), None);
+    let SceneBuilder { findings, errors, .. } = collected;
     for table in &sources.frame.document.symbols {
         match &table.at {
-            Some(at) => symbols.push(symbol_at(table, at, sources.frame, lattice, findings)?),
-            None => read_features(table, sources, lattice, &mut symbols, findings)?,
+            Some(at) => {
+                symbols.extend(errors.keep(symbol_at(table, at, sources.frame, lattice, findings)));
+            }
+            None => {
+                errors.keep(read_features(table, sources, lattice, &mut symbols, findings));
+            }
         }
         if symbols.len() > SCENE_SYMBOLS.count() {
             first_beyond = first_beyond.or(Some(table));
@@ -71,14 +71,16 @@ pub fn symbols(
     }
     if let Some(table) = first_beyond {
         let more = symbols.len() - SCENE_SYMBOLS.count();
-        let message =
-            format!("{more} symbols beyond the first {SCENE_SYMBOLS} are left out; {SCENE_SYMBOLS:#}");
+        let message = format!(
+            "{} beyond the first {SCENE_SYMBOLS} left out: {SCENE_SYMBOLS:#}",
+            counted(more, "symbol", "symbols")
+        );
         let of_file = table.file.as_ref().and_then(Stated::span);
         let place = of_file.or_else(|| table.at.as_ref().and_then(Stated::span));
         findings.add(FindingCode::TooMany, place.unwrap_or_default(), message);
         symbols.truncate(SCENE_SYMBOLS.count());
     }
-    Ok(symbols)
+    symbols
 }
 
 fn symbol_at(

@@ -15,6 +15,7 @@ use sandtable_base::limits::RASTER_SAMPLES;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::finding_code::FindingCode;
+use sandtable_description::graphics::{RangeTable, SightTable, ViewshedTable};
 use sandtable_description::stated::Stated;
 use sandtable_description::words::{RangeExtent, ViewshedTint};
 use sandtable_geom::crs::Crs;
@@ -30,95 +31,123 @@ const MOST_OBSERVERS: usize = 64;
 /// More lines of sight of one observer cannot be told from each other.
 const MOST_TARGETS: usize = 256;
 
-/// Places the document's layers of sight.
-///
-/// # Errors
-/// An observer or a target lies off the ground, or there are more than a picture can show.
-pub(super) fn lay(exact: &ExactGround<'_>, collected: &mut SceneBuilder) -> Result<SightLayers, Diagnostic> {
-    let (frame, lattice) = (exact.frame, exact.lattice);
-    let document = frame.document;
+/// Places the document's layers of sight. `collected` keeps an error where an observer or a target lies off the ground, or
+/// there are more than a picture can show.
+pub(super) fn lay(exact: &ExactGround<'_>, collected: &mut SceneBuilder) -> SightLayers {
+    let document = exact.frame.document;
     let mut layers = SightLayers::default();
-    let sector =
-        |azimuths: Option<[f64; 2]>| azimuths.map_or(Sector::ALL, |[from, to]| Sector::between(from, to));
     for table in &document.viewsheds {
-        let observers = places(frame, lattice, &table.observers, table.crs.as_ref(), MOST_OBSERVERS)?;
-        let options = |at: &DVec2| ViewshedOptions {
-            target_above_m: table.target_height,
-            range_m: table.range.unwrap_or(f64::INFINITY),
-            sector: sector(table.azimuths),
-            ..ViewshedOptions::new(end(frame, *at, table.observer_height))
-        };
-        let name = table.name.clone().unwrap_or_default();
-        let feature =
-            collected.add(FeatureKind::Sight, name.clone(), FeatureOrigin::stated(table.observers.span()));
-        let observers = observers.iter().map(options).collect();
-        let layer = SceneViewshed::new(name, observers, table.tint, feature);
-        let help = if table.range.is_some() { "state a smaller `range`" } else { "state `range`, in meters" };
-        let part =
-            find_viewshed(&layer, exact).map_err(|error| failed(document, &table.observers, error, help))?;
-        if let Some(part) = part.filter(|_| table.range.is_none()) {
-            let (columns, rows) = (part.held().width(), part.held().height());
-            let message = format!(
-                "this viewshed has no `range`, and took all {columns} x {rows} samples of the elevation model"
-            );
-            let span = table.observers.span().unwrap_or_default();
-            collected.findings.add_with_help(FindingCode::RangeMissing, span, message, help);
-        }
-        layers.viewsheds.push(layer);
+        let layer = viewshed(table, exact, collected);
+        layers.viewsheds.extend(collected.errors.keep(layer));
     }
     for table in &document.sights {
-        let observer = place(frame, lattice, &table.observer, table.crs.as_ref())?;
-        let targets = places(frame, lattice, &table.targets, table.crs.as_ref(), MOST_TARGETS)?;
-        let name = table.name.clone().unwrap_or_default();
-        let mut layer = SceneSight {
-            feature: collected.add(
-                FeatureKind::Sight,
-                name.clone(),
-                FeatureOrigin::stated(table.observer.span()),
-            ),
-            name,
-            observer: end(frame, observer, table.observer_height),
-            targets: targets.into_iter().map(|at| end(frame, at, table.target_height)).collect(),
-            found: None,
-        };
-        let help = "look less far";
-        find_sight(&mut layer, exact).map_err(|error| failed(document, &table.targets, error, help))?;
-        layers.sights.push(layer);
+        let layer = sight(table, exact, collected);
+        layers.sights.extend(collected.errors.keep(layer));
     }
     for table in &document.ranges {
-        let at = place(frame, lattice, &table.at, table.crs.as_ref())?;
-        let distances_m = distances(document, &table.distances)?;
-        let farthest_m = distances_m.last().copied().unwrap_or(0.0);
-        let name = table.name.clone().unwrap_or_default();
-        let feature = collected.add(FeatureKind::Sight, name.clone(), FeatureOrigin::stated(table.at.span()));
-        let sector = sector(table.azimuths);
-        let options = ViewshedOptions {
-            target_above_m: table.target_height,
-            range_m: farthest_m,
-            sector,
-            ..ViewshedOptions::new(end(frame, at, table.height))
-        };
-        let sight = SceneViewshed::new(String::new(), vec![options], ViewshedTint::Seen, feature);
-        let mut layer = SceneRange {
-            name,
-            at,
-            distances_m,
-            sector,
-            side: table.side,
-            fill: table.fill,
-            sight,
-            feature,
-            found: None,
-        };
-        if table.fill == RangeExtent::Seen {
-            let help = "state smaller `distances`";
-            let part = find_viewshed(&layer.sight, exact)
-                .map_err(|error| failed(document, &table.at, error, help))?;
-            layer.found = part.map(|part| layer.seen_on(&part, frame.origin));
-        }
-        layers.ranges.push(layer);
+        let layer = range(table, exact, collected);
+        layers.ranges.extend(collected.errors.keep(layer));
     }
-    Ok(layers)
+    layers
+}
+
+fn sector(azimuths: Option<[f64; 2]>) -> Sector {
+    azimuths.map_or(Sector::ALL, |[from, to]| Sector::between(from, to))
+}
+
+fn viewshed(
+    table: &ViewshedTable,
+    exact: &ExactGround<'_>,
+    collected: &mut SceneBuilder,
+) -> Result<SceneViewshed, Diagnostic> {
+    let (frame, lattice) = (exact.frame, exact.lattice);
+    let document = frame.document;
+    let observers = places(frame, lattice, &table.observers, table.crs.as_ref(), MOST_OBSERVERS)?;
+    let options = |at: &DVec2| ViewshedOptions {
+        target_above_m: table.target_height,
+        range_m: table.range.unwrap_or(f64::INFINITY),
+        sector: sector(table.azimuths),
+        ..ViewshedOptions::new(end(frame, *at, table.observer_height))
+    };
+    let name = table.name.clone().unwrap_or_default();
+    let feature =
+        collected.add(FeatureKind::Sight, name.clone(), FeatureOrigin::stated(table.observers.span()));
+    let observers = observers.iter().map(options).collect();
+    let layer = SceneViewshed::new(name, observers, table.tint, feature);
+    let help = if table.range.is_some() { "state a smaller `range`" } else { "state `range`, in meters" };
+    let part =
+        find_viewshed(&layer, exact).map_err(|error| failed(document, &table.observers, error, help))?;
+    if let Some(part) = part.filter(|_| table.range.is_none()) {
+        let (columns, rows) = (part.held().width(), part.held().height());
+        let message = format!(
+            "this viewshed has no `range`, and took all {columns} x {rows} samples of the elevation model"
+        );
+        let span = table.observers.span().unwrap_or_default();
+        collected.findings.add_with_help(FindingCode::RangeMissing, span, message, help);
+    }
+    Ok(layer)
+}
+
+fn sight(
+    table: &SightTable,
+    exact: &ExactGround<'_>,
+    collected: &mut SceneBuilder,
+) -> Result<SceneSight, Diagnostic> {
+    let (frame, lattice) = (exact.frame, exact.lattice);
+    let observer = place(frame, lattice, &table.observer, table.crs.as_ref())?;
+    let targets = places(frame, lattice, &table.targets, table.crs.as_ref(), MOST_TARGETS)?;
+    let name = table.name.clone().unwrap_or_default();
+    let origin = FeatureOrigin::stated(table.observer.span());
+    let mut layer = SceneSight {
+        feature: collected.add(FeatureKind::Sight, name.clone(), origin),
+        name,
+        observer: end(frame, observer, table.observer_height),
+        targets: targets.into_iter().map(|at| end(frame, at, table.target_height)).collect(),
+        found: None,
+    };
+    let help = "look less far";
+    find_sight(&mut layer, exact).map_err(|error| failed(frame.document, &table.targets, error, help))?;
+    Ok(layer)
+}
+
+fn range(
+    table: &RangeTable,
+    exact: &ExactGround<'_>,
+    collected: &mut SceneBuilder,
+) -> Result<SceneRange, Diagnostic> {
+    let (frame, lattice) = (exact.frame, exact.lattice);
+    let document = frame.document;
+    let at = place(frame, lattice, &table.at, table.crs.as_ref())?;
+    let distances_m = distances(document, &table.distances)?;
+    let farthest_m = distances_m.last().copied().unwrap_or(0.0);
+    let name = table.name.clone().unwrap_or_default();
+    let feature = collected.add(FeatureKind::Sight, name.clone(), FeatureOrigin::stated(table.at.span()));
+    let sector = sector(table.azimuths);
+    let options = ViewshedOptions {
+        target_above_m: table.target_height,
+        range_m: farthest_m,
+        sector,
+        ..ViewshedOptions::new(end(frame, at, table.height))
+    };
+    let sight = SceneViewshed::new(String::new(), vec![options], ViewshedTint::Seen, feature);
+    let mut layer = SceneRange {
+        name,
+        at,
+        distances_m,
+        sector,
+        side: table.side,
+        fill: table.fill,
+        sight,
+        feature,
+        found: None,
+    };
+    if table.fill == RangeExtent::Seen {
+        let help = "state smaller `distances`";
+        let part =
+            find_viewshed(&layer.sight, exact).map_err(|error| failed(document, &table.at, error, help))?;
+        layer.found = part.map(|part| layer.seen_on(&part, frame.origin));
+    }
+    Ok(layer)
 }
 
 /// Finds what is in sight on all samples where the picture's ground is of means of them, and gives the ground that this

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::assets::{AssetError, Assets};
 use crate::build::{SceneGround, build, build_ground, build_with};
-use crate::cause_code::coded;
+use crate::build_errors::BuildErrors;
 use crate::planned_pictures::ElevationNeed;
 use crate::scene_model::SceneModel;
 use sandtable_base::message::chain::error_text;
@@ -27,7 +27,7 @@ pub enum OpenSceneError {
     #[error("the scene file is wrong")]
     Parse(#[from] Diagnostics),
     #[error("the scene cannot be built")]
-    Build(#[source] Diagnostic),
+    Build(#[from] BuildErrors),
     #[error("{}", no_phase(.name, .names))]
     NoPhase { name: String, names: Vec<String> },
     #[error("{}", no_flight(.name.as_deref(), .names))]
@@ -36,7 +36,7 @@ pub enum OpenSceneError {
 
 impl From<Diagnostic> for OpenSceneError {
     fn from(error: Diagnostic) -> Self {
-        Self::Build(coded(error))
+        Self::Build(error.into())
     }
 }
 
@@ -45,7 +45,7 @@ impl OpenSceneError {
     pub fn findings(&self) -> Vec<Finding> {
         match self {
             Self::Parse(errors) => errors.as_slice().iter().map(Finding::from).collect(),
-            Self::Build(error) => vec![Finding::from(error)],
+            Self::Build(errors) => errors.as_slice().iter().map(Finding::from).collect(),
             other => vec![other.finding()],
         }
     }
@@ -55,7 +55,7 @@ impl OpenSceneError {
         match self {
             Self::File(error) => Some(&error.path),
             Self::Parse(errors) => errors.as_slice().first().map(|error| Path::new(error.place().file())),
-            Self::Build(error) => Some(Path::new(error.place().file())),
+            Self::Build(errors) => errors.as_slice().first().map(|error| Path::new(error.place().file())),
             Self::Assets(_) | Self::NoPhase { .. } | Self::NoFlight { .. } => None,
         }
     }

@@ -35,6 +35,11 @@ impl SceneFindings {
         Self { source: Arc::clone(&document.source), list: Vec::new() }
     }
 
+    /// The scene file.
+    pub fn source(&self) -> &Arc<SourceText> {
+        &self.source
+    }
+
     /// Adds a finding about the bytes `span` of the scene file; about none in particular where `span` is `0..0`.
     pub fn add(&mut self, code: FindingCode, span: Range<usize>, message: impl Into<String>) {
         self.push(Finding::new(code, message).at(&self.source, span));

@@ -5,6 +5,7 @@
 use crate::areas;
 use crate::assets::Assets;
 use crate::bridges;
+use crate::build_errors::BuildErrors;
 use crate::builder::SceneBuilder;
 use crate::buildings::{self, Plot};
 use crate::earthworks;
@@ -44,7 +45,8 @@ pub(super) fn shape_loaded(
     let frame = WorldFrame::new(document, &loaded.crs, &loaded.stated_crs, loaded.lattice.origin());
     let sources = Sources::new(&frame, assets);
     let mut collected = SceneBuilder::new(loaded.findings.clone());
-    shape(document, &sources, &mut loaded.lattice, &mut collected)?;
+    shape(document, &sources, &mut loaded.lattice, &mut collected);
+    collected.errors.finish().map_err(BuildErrors::into_first)?;
     models::level_pads(&sources, &mut loaded.lattice)?;
     Ok(collected.decks)
 }
@@ -58,23 +60,49 @@ pub(super) struct ShapedFeatures {
     pub dug: Vec<Change>,
 }
 
-/// Shapes the ground for everything but models, and builds the decks over it.
+/// Shapes the ground for everything but models, and builds the decks over it. What an error keeps from that is left out of it,
+/// with all that needs it.
 pub(super) fn shape(
     document: &Document,
     sources: &Sources<'_>,
     lattice: &mut Lattice,
     collected: &mut SceneBuilder,
-) -> Result<ShapedFeatures, Diagnostic> {
+) -> ShapedFeatures {
     let extent = lattice.extent();
-    lakes::lay(document, sources, lattice, collected)?;
-    rivers::lay(document, sources, lattice, collected)?;
+    let lakes = lakes::lay(document, sources, lattice, collected);
+    if collected.errors.keep(lakes).is_some() {
+        let rivers = rivers::lay(document, sources, lattice, collected);
+        collected.errors.keep(rivers);
+    }
     let held = HeldPosts::pinned(lattice);
-    areas::lay(document, sources, &extent, collected)?;
-    let mut roads = centerline::collect(document, sources, &extent, collected)?;
+    let areas = areas::lay(document, sources, &extent, collected);
+    collected.errors.keep(areas);
+    let roads = conforming_roads(document, sources, lattice, collected);
+    let mut roads = collected.errors.keep(roads);
+    let plots = buildings::lay_out(document, sources, lattice, collected);
+    let plots = collected.errors.keep(plots).unwrap_or_default();
+    let lines = fences::lay_out(document, sources, lattice, collected);
+    let lines = collected.errors.keep(lines).unwrap_or_default();
+    if let Some(roads) = &mut roads {
+        let bridges = bridges::build(document, sources, lattice, roads, collected);
+        collected.errors.keep(bridges);
+    }
+    let dug = earthworks::build(document, sources, lattice, &held, collected);
+    let dug = collected.errors.keep(dug).unwrap_or_default();
+    ShapedFeatures { roads: roads.unwrap_or_default(), plots, lines, held, dug }
+}
+
+/// The roads of a document, after the ground was made to follow them where they say so.
+///
+/// # Errors
+/// A source cannot be had, or a road has no profile.
+fn conforming_roads(
+    document: &Document,
+    sources: &Sources<'_>,
+    lattice: &mut Lattice,
+    collected: &mut SceneBuilder,
+) -> Result<Vec<Centerline>, Diagnostic> {
+    let mut roads = centerline::collect(document, sources, &lattice.extent(), collected)?;
     conform::conform(document, lattice, &mut roads, collected)?;
-    let plots = buildings::lay_out(document, sources, lattice, collected)?;
-    let lines = fences::lay_out(document, sources, lattice, collected)?;
-    bridges::build(document, sources, lattice, &mut roads, collected)?;
-    let dug = earthworks::build(document, sources, lattice, &held, collected)?;
-    Ok(ShapedFeatures { roads, plots, lines, held, dug })
+    Ok(roads)
 }

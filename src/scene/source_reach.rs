@@ -9,6 +9,7 @@ use glam::DVec2;
 
 use crate::misplacement::{Misplacement, misplacement};
 use crate::world_frame::WorldFrame;
+use sandtable_base::message::numbers::fixed;
 use sandtable_base::message::suggest::quoted;
 use sandtable_description::finding::Finding;
 use sandtable_description::finding_code::FindingCode;
@@ -160,11 +161,11 @@ fn gap(one: &Rect, other: &Rect) -> f64 {
 
 fn help(map: &Rect, crs: &Crs) -> String {
     format!(
-        "the model covers {:.0} to {:.0} east and {:.0} to {:.0} north in {}",
-        map.min.x,
-        map.max.x,
-        map.min.y,
-        map.max.y,
+        "the model covers {} to {} east and {} to {} north in {}",
+        fixed(map.min.x, 0),
+        fixed(map.max.x, 0),
+        fixed(map.min.y, 0),
+        fixed(map.max.y, 0),
         crs.name()
     )
 }

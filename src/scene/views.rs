@@ -4,6 +4,7 @@ use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, SQRT_2};
 
 use glam::{DVec2, Vec3};
 
+use crate::build_errors::BuildErrorSink;
 use crate::paper_sheet::PaperSheet;
 use crate::scene_findings::SceneFindings;
 use crate::scene_view::{FittedView, ParallelView, SceneView, ViewAim};
@@ -18,15 +19,14 @@ use sandtable_geom::rect::Rect;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::query::{Interpolation, ground_height};
 
-/// The document's cameras; without any, one that is fitted to the whole ground.
-///
-/// # Errors
-/// The eye of a camera without `eye_elevation` lies off the ground, its target does, or the two coincide.
-pub fn cameras(frame: &WorldFrame<'_>, lattice: &Lattice) -> Result<Vec<SceneView>, Diagnostic> {
+/// The document's cameras; without any, one that is fitted to the whole ground. `errors` keeps one where the eye of a camera
+/// without `eye_elevation` lies off the ground, its target does, or the two coincide.
+pub fn cameras(frame: &WorldFrame<'_>, lattice: &Lattice, errors: &mut BuildErrorSink) -> Vec<SceneView> {
     if frame.document.cameras.is_empty() {
-        return Ok(vec![overview()]);
+        return vec![overview()];
     }
-    frame.document.cameras.iter().map(|table| camera(table, frame, lattice)).collect()
+    let tables = frame.document.cameras.iter();
+    tables.filter_map(|table| errors.keep(camera(table, frame, lattice))).collect()
 }
 
 /// The field of view of a camera with an eye, degrees.

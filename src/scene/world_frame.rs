@@ -3,6 +3,7 @@
 use glam::{DVec2, Vec3};
 
 use crate::vertical_scale::VerticalScale;
+use sandtable_base::message::numbers::fixed;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::finding_code::FindingCode;
@@ -84,11 +85,11 @@ impl<'a> WorldFrame<'a> {
         let (low, high) = (self.origin, self.origin + lattice.extent().max);
         let message = format!("the point ({x}, {y}) lies off the elevation model");
         let mut help = format!(
-            "the model covers {:.0} to {:.0} east and {:.0} to {:.0} north in {}",
-            low.x,
-            high.x,
-            low.y,
-            high.y,
+            "the model covers {} to {} east and {} to {} north in {}",
+            fixed(low.x, 0),
+            fixed(high.x, 0),
+            fixed(low.y, 0),
+            fixed(high.y, 0),
             self.crs.name()
         );
         if looks_like_degrees(x, y) && !self.points_crs.is_geographic() {

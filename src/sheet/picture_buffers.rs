@@ -160,6 +160,7 @@ impl PictureBuffers<'_> {
             height,
             samples,
             meters_per_z: 1.0,
+            states_z_unit: true,
             map_from_grid: frame.unwrap_or(DAffine2 {
                 matrix2: DMat2::from_diagonal(DVec2::new(1.0, -1.0)),
                 translation: DVec2::ZERO,

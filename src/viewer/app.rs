@@ -395,6 +395,7 @@ impl ViewerApp {
             ViewCommand::North => self.look(Some(0.0), None),
             ViewCommand::Down => self.look(None, Some(-FRAC_PI_2)),
             ViewCommand::Save => self.save(OnConflict::Refuse),
+            ViewCommand::TakeBackPoint => self.take_back_point(),
             ViewCommand::Undo => self.step_back(),
             ViewCommand::Redo => self.step_forward(),
             ViewCommand::Crater => {

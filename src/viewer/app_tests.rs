@@ -151,6 +151,24 @@ fn keys_and_the_wheel_move_the_camera_and_typing_does_not() {
 }
 
 #[test]
+fn backspace_takes_back_the_last_point_of_what_is_measured() {
+    let mut harness = window(Some(Path::new(concat!(env!("SANDTABLE_ROOT"), "scenes/road.toml"))));
+    let points = |harness: &AppHarness| match &app(harness).tool {
+        Some(crate::active_tool::ActiveTool::Measure(measuring)) => measuring.points.len(),
+        _ => usize::MAX,
+    };
+    key(&mut harness, Modifiers::NONE, Key::M);
+    click(&mut harness, IN_VIEW);
+    click(&mut harness, IN_VIEW - egui::vec2(60.0, 0.0));
+    assert_eq!(points(&harness), 2);
+    key(&mut harness, Modifiers::NONE, Key::Backspace);
+    assert_eq!(points(&harness), 1);
+    key(&mut harness, Modifiers::NONE, Key::Backspace);
+    key(&mut harness, Modifiers::NONE, Key::Backspace);
+    assert_eq!(points(&harness), 0, "the tool stays");
+}
+
+#[test]
 fn an_edit_is_undone_redone_saved_and_closing_with_one_asks() {
     let scene = TestScene::new("edits");
     let mut harness = window(Some(&scene.file));
@@ -342,4 +360,28 @@ fn a_file_that_breaks_leaves_the_scene_and_one_that_is_mended_is_read_again() {
         let opened = app.opened.as_ref().expect("the last good scene");
         opened.scene.title.as_deref() == Some("Three roads")
     });
+}
+
+#[test]
+fn a_script_that_moves_the_sun_ends_without_a_question() {
+    let scene = TestScene::new("script");
+    let mut harness = window(Some(&scene.file));
+    let commands = crate::script::parse_script("sun 120,30\nquit\n").expect("commands");
+    let mut run = crate::script_run::ScriptRun::new(commands, None, std::time::Instant::now());
+    let mut closes = false;
+    for _ in 0..600 {
+        harness.step();
+        let app = harness.state_mut().as_mut().expect("shown");
+        run.step(app);
+        closes |= app.take_requests().contains(&WindowRequest::Close);
+        if closes {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    assert!(closes, "the window is closed");
+    let report = run.report("none");
+    let quit = report["commands"].as_array().and_then(|done| done.last()).expect("told");
+    assert_eq!((&quit["command"], &quit["unsaved"]), (&"quit".into(), &true.into()));
+    assert!(!fs::read_to_string(&scene.file).expect("there").contains("azimuth = 120"), "not saved");
 }

@@ -53,6 +53,8 @@ pub enum ViewCommand {
     MeasureLine,
     /// Measures an area.
     MeasureArea,
+    /// Takes back the last point of what a tool draws or measures.
+    TakeBackPoint,
     /// Leaves what is being done: a tool, help, the list of files.
     Cancel,
     /// Shows the window on the whole screen, or not.
@@ -165,6 +167,7 @@ pub const KEYS: &[KeyBinding] = &[
     press(NONE, Key::Questionmark, ViewCommand::Help, "These keys"),
     press(NONE, Key::F1, ViewCommand::Help, ""),
     press(NONE, Key::F11, ViewCommand::FullScreen, "Whole screen"),
+    press(NONE, Key::Backspace, ViewCommand::TakeBackPoint, "Take back the last point of a line"),
     press(NONE, Key::Escape, ViewCommand::Cancel, "Leave a tool or a list"),
     press(CONTROL, Key::Q, ViewCommand::Quit, "Close the window"),
 ];

@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use sandtable_base::message::numbers::fixed;
 use sandtable_query::viewshed::ViewshedSummary;
 use sandtable_terrain::profile::ProfileStation;
 use sandtable_terrain::sight::line::{Sight, SightEnd};
@@ -82,6 +83,12 @@ impl Measuring {
         self.is_done = true;
     }
 
+    /// Takes the last place back, and goes on; `false` where there is none. What it comes to is still to be measured.
+    pub fn take_back(&mut self) -> bool {
+        self.is_done = false;
+        self.points.pop().is_some()
+    }
+
     /// Whether there are places enough to measure.
     pub fn has_enough(&self) -> bool {
         self.points.len() >= self.kind.least_points()
@@ -112,7 +119,11 @@ impl Measuring {
             format!("up {:.1} m, down {:.1} m", summary.ascent_m, summary.descent_m),
         ];
         if let (Some(lowest), Some(highest)) = (summary.lowest, summary.highest) {
-            facts.push(format!("from {:.1} to {:.1} m high", lowest.height_m, highest.height_m));
+            facts.push(format!(
+                "from {} to {} m high",
+                fixed(lowest.height_m, 1),
+                fixed(highest.height_m, 1)
+            ));
         }
         if summary.covered_m < summary.length_m * 0.999 {
             facts.push("a part has no ground".to_owned());
@@ -128,7 +139,12 @@ fn area(ring: &[DVec2], ground: &impl MeasurableGround) -> Vec<String> {
                 vec![area_text(measured.plan_m2), format!("{} round it", length_text(measured.perimeter_m))];
             if let Some(heights) = measured.zone.heights {
                 let (min, mean, max) = (heights.min_m, heights.mean_m, heights.max_m);
-                facts.push(format!("{min:.1} to {max:.1} m high, {mean:.1} m on average"));
+                facts.push(format!(
+                    "{} to {} m high, {} m on average",
+                    fixed(min, 1),
+                    fixed(max, 1),
+                    fixed(mean, 1)
+                ));
             }
             facts
         }
@@ -144,8 +160,8 @@ fn sight(from: DVec2, to: DVec2, ground: &impl MeasurableGround) -> Vec<String> 
         Sight::Blocked(blocker) => vec![
             format!("not in sight, {distance} away"),
             format!(
-                "ground {:.1} m high hides it, {} away",
-                blocker.height_m,
+                "ground {} m high hides it, {} away",
+                fixed(blocker.height_m, 1),
                 length_text(blocker.distance_m)
             ),
             heights_note(),
@@ -222,10 +238,15 @@ mod tests {
         line.measure(&walk);
         assert_eq!(line.facts[0], "300.0 m in plan");
         assert!(line.profile.len() > 5, "{:?}", line.profile);
+        line.click(corner + DVec2::X * 900.0);
+        assert!(line.take_back());
+        line.measure(&walk);
+        assert_eq!(line.facts[0], "300.0 m in plan", "the last place is taken back");
         line.finish();
         line.click(corner);
         line.measure(&walk);
         assert_eq!(line.points.len(), 1, "a new line");
+        assert!(line.take_back() && !line.take_back());
         let mut area = Measuring::new(MeasureKind::Area);
         for offset in [DVec2::ZERO, DVec2::X * 200.0, DVec2::new(200.0, 100.0), DVec2::Y * 100.0] {
             area.click(corner + offset);

@@ -1,5 +1,6 @@
 //! A place in words: coordinates of the scene, longitude and latitude, grid reference, height, slope.
 
+use sandtable_base::message::numbers::fixed;
 use sandtable_draw::list::FeatureId;
 use sandtable_query::positions::format_position;
 use sandtable_scene::scene_model::SceneModel;
@@ -30,12 +31,12 @@ const LYING_M: f64 = 0.05;
 impl PlaceText {
     /// The texts of a picked place in `scene`.
     pub fn of(scene: &SceneModel, pick: &WalkPick) -> Self {
-        let ground = pick.ground_m.map(|ground_m| format!("{ground_m:.1} m (ground)"));
+        let ground = pick.ground_m.map(|ground_m| format!("{} m (ground)", fixed(ground_m, 1)));
         // Ground of which no height is known is not in memory.
         let is_above = pick.ground_m.map_or(pick.place.feature != FeatureId::GROUND, |ground_m| {
             (pick.place.elevation_m - ground_m).abs() > LYING_M
         });
-        let top = is_above.then(|| format!("{:.1} m", pick.place.elevation_m));
+        let top = is_above.then(|| format!("{} m", fixed(pick.place.elevation_m, 1)));
         let slope = pick.slope_deg.map(|degrees| {
             let toward = pick.aspect_deg.map(|aspect| format!(" toward {}", compass(aspect)));
             format!("{degrees:.0}°{}", toward.unwrap_or_default())
@@ -44,7 +45,7 @@ impl PlaceText {
             map: format!("{} ({})", format_position(&scene.crs, pick.place.at), scene.crs.name()),
             geographic: pick
                 .lonlat
-                .map(|place| format!("{:.5}°, {:.5}°", place.x, place.y))
+                .map(|place| format!("{}°, {}°", fixed(place.x, 5), fixed(place.y, 5)))
                 .unwrap_or_default(),
             grid: pick.mgrs.clone().unwrap_or_default(),
             height: ground.unwrap_or_default(),

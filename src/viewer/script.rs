@@ -15,7 +15,8 @@
 //! | `hide KIND`, `show KIND` | hides or shows features of a kind, such as `roads` |
 //! | `viewshed X,Y` | tints what is seen from a place |
 //! | `edit crater X,Y RADIUS` | digs |
-//! | `undo`, `redo`, `save`, `snapshot`, `quit` | as the keys do |
+//! | `undo`, `redo`, `save`, `snapshot` | as the keys do |
+//! | `quit` | closes the window, without edits that are not saved: a moved sun is one |
 //! | `resize WxH` | gives the window a size in pixels |
 
 use glam::{DVec2, DVec3};

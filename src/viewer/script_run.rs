@@ -139,8 +139,12 @@ impl ScriptRun {
         match command {
             ScriptCommand::Wait(frames) => self.waits = frames,
             ScriptCommand::Run(ViewCommand::Quit) => {
+                // Nobody is there to answer whether edits are to be saved.
+                let unsaved = app.session.as_ref().is_some_and(|session| session.editor.is_changed());
+                self.done.push(json!({ "command": line, "unsaved": unsaved }));
                 self.is_over = true;
-                app.ask_to_close();
+                app.requests.push(WindowRequest::Close);
+                return;
             }
             ScriptCommand::Run(command) => app.run(command),
             ScriptCommand::Fly { eye, target, frames } => {

@@ -157,6 +157,19 @@ impl ViewerApp {
         }
     }
 
+    /// Takes back the last point of what is drawn or measured.
+    pub(super) fn take_back_point(&mut self) {
+        let is_taken = match &mut self.tool {
+            Some(ActiveTool::Draw(tool)) => tool.take_back(),
+            Some(ActiveTool::Measure(measuring)) => measuring.take_back(),
+            None => false,
+        };
+        if is_taken {
+            self.preview = None;
+            self.measure_again();
+        }
+    }
+
     /// What to do next with the tool; empty without one.
     pub(super) fn tool_hint(&self) -> &'static str {
         match &self.tool {

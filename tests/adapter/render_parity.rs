@@ -7,7 +7,7 @@
 
 use crate::adapters::gpus;
 use crate::common::forest::{forest, overlook};
-use crate::common::synthetic::{HOUSE, camera, material_of, scene, scene_with_contours};
+use crate::common::synthetic::{HOUSE, MASKED, camera, material_of, scene, scene_with_contours};
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, SQRT_2};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use sandtable_draw::backdrop::Backdrop;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::ground_imagery::GroundImagery;
 use sandtable_draw::list::{DrawList, FeatureId};
-use sandtable_draw::material::{Albedo, AlphaMode};
+use sandtable_draw::material::{Albedo, AlphaMode, TextureWrap};
 use sandtable_draw::pixels::Pixels;
 use sandtable_gpu::adapter::Gpu;
 use sandtable_gpu::render_on;
@@ -116,6 +116,31 @@ fn a_draped_picture_is_the_same_on_both_lit_and_unlit() {
         let pixels = Pixels::from_fn(128, 96, color);
         map.imagery = Some(Arc::new(GroundImagery { origin, size, pixels, is_shaded }));
         compare(&list, &camera(640, 480), "a draped picture");
+    }
+}
+
+#[test]
+fn textures_go_on_beyond_their_borders_alike_on_both() {
+    use TextureWrap::{Clamp, Mirror, Repeat};
+    for wrap in [[Mirror, Mirror], [Clamp, Repeat], [Mirror, Clamp]] {
+        let mut list = scene();
+        let repeated = list.clone();
+        for feature in [HOUSE, MASKED] {
+            let mesh = list.items.iter().find(|item| item.feature == feature).expect("in the scene").mesh;
+            let vertices = &mut list.meshes[mesh.0 as usize].vertices;
+            vertices.iter_mut().for_each(|vertex| vertex.uv = vertex.uv.map(|at| at * 2.5 - 0.7));
+            let material = material_of(&mut list, feature);
+            material.texture_wrap = wrap;
+            // Nothing in it is like its mirror image.
+            let texture = material.texture.expect("it has one").0 as usize;
+            let is_hole = |x: u32| feature == MASKED && x < 20;
+            list.textures[texture] = Pixels::from_fn(32, 32, |x, y| {
+                Srgba([x as u8 * 8, y as u8 * 8, 90, if is_hole(x) { 0 } else { 255 }])
+            });
+        }
+        compare(&list, &camera(640, 480), &format!("textures that go on as {wrap:?}"));
+        let on_cpu = |list| render(list, &camera(320, 240), &RenderQuality::default()).expect("sound");
+        assert!(mean_difference(&on_cpu(&repeated), &on_cpu(&list)) > 0.1, "{wrap:?} is seen");
     }
 }
 

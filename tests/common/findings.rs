@@ -11,8 +11,7 @@ use sandtable_scene::scene_file::OpenSceneError;
 pub fn findings(path: &Path, allowed: &[PathBuf]) -> Vec<Finding> {
     match open_linted(path, allowed, &|_| ()) {
         Ok((_, findings)) => findings,
-        Err(OpenSceneError::Parse(errors)) => errors.as_slice().iter().map(Finding::from).collect(),
-        Err(OpenSceneError::Build(error)) => vec![Finding::from(&error)],
+        Err(errors @ (OpenSceneError::Parse(_) | OpenSceneError::Build(_))) => errors.findings(),
         Err(other) => panic!("{}: {other}", path.display()),
     }
 }

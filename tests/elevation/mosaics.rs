@@ -158,15 +158,15 @@ fn a_scene_joins_tiles_fills_voids_and_states_a_datum_where_it_asks_for_it() {
                  vertical_datum = \"NAVD88\"\n";
     let (notes, filled, datum) = scene(&scratch, asked).expect("sound");
     let notes = notes.join("\n");
-    assert!(notes.contains("2 tiles joined; 3 samples are shared, 1 of them differ, by up to 1"), "{notes}");
-    assert!(notes.contains("1 samples in 1 voids filled"), "{notes}");
+    assert!(notes.contains("2 tiles joined; 3 samples are shared, 1 of them differs, by up to 1"), "{notes}");
+    assert!(notes.contains("1 sample in 1 void filled"), "{notes}");
     assert!((filled - 4.0).abs() < 1e-6, "{filled}");
     assert_eq!(datum.as_deref(), Some("NAVD88"));
 
     let plain = "[terrain]\ndem = \"b.asc\"\ncrs = \"EPSG:32633\"\n";
     let (notes, left, datum) = scene(&scratch, plain).expect("sound");
     assert!(left.is_nan() && datum.is_none(), "the source stays as it is read");
-    assert!(notes.join("\n").contains("1 samples in 1 voids filled"), "{notes:?}");
+    assert!(notes.join("\n").contains("1 sample in 1 void filled"), "{notes:?}");
     let (notes, left, _) = scene(&scratch, &format!("{plain}fill_voids = false\n")).expect("sound");
     assert!(left.is_nan() && !notes.join("\n").contains("filled"));
 }

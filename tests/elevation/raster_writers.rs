@@ -33,6 +33,7 @@ fn raster(width: u32, samples: Samples, crs: Option<&str>) -> Raster {
         height,
         samples,
         meters_per_z: 1.0,
+        states_z_unit: false,
         map_from_grid: DAffine2 {
             matrix2: DMat2::from_diagonal(DVec2::new(cell, -cell)),
             translation: corner,

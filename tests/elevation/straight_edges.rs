@@ -72,7 +72,7 @@ fn an_enclosed_void_is_filled_in_the_ground_and_not_in_the_source() {
         let (filled, all) = posts(&scene);
         assert_eq!(filled == all, ground_is_filled, "{terrain}: {filled} of {all}");
         assert!(all > 4300, "{terrain}: a void does not shrink the model, {all} posts");
-        assert_eq!(told(&scene, "15 samples in 1 voids filled"), ground_is_filled, "{terrain}");
+        assert_eq!(told(&scene, "15 samples in 1 void filled"), ground_is_filled, "{terrain}");
         let mut answer = [Answer::Outside];
         let snapshot = scene.heights.snapshot();
         source_heights(snapshot.source(), &Crs::wgs84(), Interpolation::Bilinear, &at, &mut answer);

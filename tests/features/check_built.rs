@@ -124,7 +124,7 @@ const SEEDED: &[(&str, &str, &[&str])] = &[
     (
         "river-uphill",
         "[[river]]\nname = \"Ay\"\npoints = [[400, 700], [990, 700]] # here\n",
-        &["rises downstream at 1 places", "in 'Ay'", "(700, 700)"],
+        &["rises downstream at 1 place of 1 river", "in 'Ay'", "(700, 700)"],
     ),
     (
         "road-in-water",

@@ -266,6 +266,46 @@ fn heights_from_different_zeros_are_found() {
     ]);
 }
 
+/// Philadelphia in US survey feet, and Arizona in feet.
+const IN_SURVEY_FEET: (u32, [f64; 2]) = (2272, [2_700_000.0, 250_000.0]);
+const IN_INTERNATIONAL_FEET: (u32, [f64; 2]) = (2223, [700_000.0, 900_000.0]);
+
+#[test]
+fn elevations_of_a_system_in_feet_whose_unit_nothing_states_are_found() {
+    for (epsg, corner) in [IN_SURVEY_FEET, IN_INTERNATIONAL_FEET] {
+        let heights = grid(corner, 33.0, |_, _, height| height);
+        let text = format!("[terrain]\ndem = \"state.asc\"\ncrs = \"EPSG:{epsg}\"\n");
+        each_is_found(vec![seed("heights-in-feet", 2, text).with("state.asc", heights)]);
+    }
+    let (epsg, corner) = IN_SURVEY_FEET;
+    // With the same place in meters nothing is wrong, and neither is it where the file states its unit.
+    let raster = |meters_per_z: f64, states_z_unit: bool| {
+        let height = |index: u32| 300.0 + f64::from(index % 20 + index / 20) * 3.0;
+        let samples = (0..400).map(|index| (height(index) / meters_per_z) as f32).collect();
+        Raster {
+            crs: Some(sandtable_geom::crs::Crs::from_epsg(epsg).expect("a zone")),
+            map_from_grid: DAffine2::from_cols(
+                DVec2::new(33.0, 0.0),
+                DVec2::new(0.0, -33.0),
+                DVec2::from(corner),
+            ),
+            georeferenced: true,
+            meters_per_z,
+            states_z_unit,
+            ..Raster::new(20, Samples::F32(samples))
+        }
+    };
+    let found = |raster: &Raster| {
+        let bytes =
+            write(raster, DemFormat::to_write("tif").expect("a GeoTIFF"), "a").expect("written").bytes;
+        let findings = seed("", 0, "[terrain]\ndem = \"state.tif\"\n").with("state.tif", bytes).findings();
+        grave(&findings).into_iter().map(|finding| finding.code.word()).collect::<Vec<_>>()
+    };
+    assert_eq!(found(&raster(1.0, false)), ["heights-in-feet"]);
+    assert_eq!(found(&raster(1.0, true)), Vec::<&str>::new(), "meters are stated, and written");
+    assert_eq!(found(&raster(1200.0 / 3937.0, true)), Vec::<&str>::new(), "feet are stated");
+}
+
 #[test]
 fn a_picture_of_few_pixels_is_found_where_it_is_stretched() {
     let pixels = Pixels::from_data(2, 2, vec![Srgba([90, 120, 80, 255]); 4]).expect("four pixels");

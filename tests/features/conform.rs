@@ -142,7 +142,7 @@ fn a_ravine_is_bridged_and_a_ridge_tunneled_by_rule() {
     assert!(ground(&scene, DVec2::new(320.0, 300.0)) < 61.0, "the ravine stays");
     assert!(ground(&scene, DVec2::new(600.0, 300.0)) > 159.0, "the ridge stays");
     assert!(
-        scene.notes().iter().any(|note| note.contains("on bridges 1 times and in tunnels 1 times")),
+        scene.notes().iter().any(|note| note.contains("on bridges 1 time and in tunnels 1 time")),
         "{:?}",
         scene.notes()
     );

@@ -61,6 +61,7 @@ fn raster_of(lattice: &Lattice) -> Raster {
         height: lattice.rows(),
         samples: Samples::F32(rows.flatten().copied().collect()),
         meters_per_z: 1.0,
+        states_z_unit: false,
         map_from_grid: DAffine2 {
             matrix2: DMat2::from_diagonal(DVec2::new(cell.x, -cell.y)),
             translation: corner,

@@ -285,6 +285,7 @@ fn raster_of(lattice: &Lattice) -> Raster {
         height: rows,
         samples: Samples::F32(samples.collect()),
         meters_per_z: 1.0,
+        states_z_unit: false,
         map_from_grid: DAffine2 { matrix2: axes, translation: DVec2::new(-5.0, f64::from(rows) * 8.0 - 4.0) },
         georeferenced: true,
         crs: None,

@@ -173,6 +173,7 @@ fn displayed_heights_lie_on_drawn_triangles_and_ground_heights_never_change() {
         nodata: None,
         vertical_datum: None,
         meters_per_z: 1.0,
+        states_z_unit: false,
         georeferenced: false,
     };
     let world = World::new(lattice);

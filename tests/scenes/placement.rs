@@ -2,7 +2,6 @@
 
 use crate::common::scratch::Scratch;
 use glam::{DVec2, Vec2, Vec3};
-use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::parse::parse_bytes;
 use sandtable_draw::list::DrawItem;
@@ -38,7 +37,10 @@ fn scene(text: &str) -> Result<SceneModel, String> {
 }
 
 /// What `build` makes of the scene file with `text` after its `[terrain]`.
-fn built<T>(text: &str, build: impl Fn(&Document, &Assets) -> Result<T, Diagnostic>) -> Result<T, String> {
+fn built<T, E: std::fmt::Display>(
+    text: &str,
+    build: impl Fn(&Document, &Assets) -> Result<T, E>,
+) -> Result<T, String> {
     let scratch = Scratch::new();
     scratch.write("s/hills.asc", hills());
     scratch.write("s/house.obj", HOUSE);

@@ -86,6 +86,7 @@ fn plain(file: &DemFile, size: FileSize) -> Result<PlainRaster, DemErrorKind> {
     let raster = Raster {
         driver: "BT",
         meters_per_z: header.meters_per_z,
+        states_z_unit: header.states_z_unit,
         crs,
         nodata: Some(NODATA),
         ..raster.placed(north_up_nodes(DVec2::new(min.x, max.y), cell))
@@ -109,6 +110,7 @@ struct BtHeader {
     min: DVec2,
     max: DVec2,
     meters_per_z: f64,
+    states_z_unit: bool,
 }
 
 impl BtHeader {
@@ -153,6 +155,7 @@ impl BtHeader {
             has_projection_file: version >= 2 && short(60) != 0,
             min: DVec2::new(left, bottom),
             max: DVec2::new(right, top),
+            states_z_unit: version >= 3 && narrow(62) != 0.0,
             meters_per_z: vertical_unit(if version >= 3 { narrow(62) } else { 1.0 })?,
         })
     }

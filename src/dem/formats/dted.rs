@@ -71,6 +71,7 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
     let code = if text(identification, 144, 5) == "WGS72" { 4322 } else { 4326 };
     Ok(Raster {
         driver: "DTED",
+        states_z_unit: true,
         data_type: "Int16",
         crs: file.crs_or(|| Ok(Some(Crs::from_epsg(code)?)))?,
         nodata: Some(f64::from(VOID)),

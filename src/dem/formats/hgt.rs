@@ -60,6 +60,7 @@ fn plain(file: &DemFile, size: FileSize) -> Result<PlainRaster, DemErrorKind> {
     let cell = (raster.grid_size() - 1.0).recip();
     let raster = Raster {
         driver: "SRTMHGT",
+        states_z_unit: true,
         crs: Some(file.hints.options.crs.clone().unwrap_or_else(Crs::wgs84)),
         nodata: Some(VOID.into()),
         vertical_datum: Some("EGM96 geoid".into()),

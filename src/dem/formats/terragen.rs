@@ -47,6 +47,7 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
     let axes = DMat2::from_diagonal(DVec2::new(scale.x, scale.y));
     Ok(Raster {
         driver: "Terragen",
+        states_z_unit: true,
         samples: raster.samples.scaled(scale.z * height_scale / 65_536.0, scale.z * base),
         map_from_grid: DAffine2::from_mat2(axes),
         georeferenced: true,

@@ -60,6 +60,7 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
         // As in GDAL, whole meters of a resolution of a meter or more are integers.
         data_type: if header.is_in_feet || header.resolution < 1.0 { "Float32" } else { "Int16" },
         meters_per_z: if header.is_in_feet { FOOT_M } else { 1.0 },
+        states_z_unit: true,
         crs: file.crs_or(|| header.system())?,
         nodata: Some(VOID as f64),
         vertical_datum: header.vertical_datum.map(str::to_owned),

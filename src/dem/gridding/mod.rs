@@ -104,6 +104,7 @@ pub fn grid(
     let raster = Raster {
         driver: "grid",
         meters_per_z: cloud.meters_per_z,
+        states_z_unit: cloud.meters_per_z != 1.0,
         crs: cloud.crs.clone(),
         vertical_datum: cloud.vertical_datum.clone(),
         ..Raster::new(cells.width(), Samples::F64(heights)).placed(cells.map_from_grid())

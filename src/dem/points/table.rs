@@ -7,6 +7,7 @@ use crate::point_text::PointText;
 use crate::points::cloud::{PointCloud, PointHints};
 use crate::points::error::PointsError;
 use sandtable_base::limits::GRID_POINTS;
+use sandtable_base::message::numbers::counted;
 
 /// Reads a table of points.
 ///
@@ -37,7 +38,10 @@ pub fn read(bytes: &[u8], hints: &PointHints) -> Result<PointCloud, PointsError>
     if points.is_empty() {
         return Err(PointsError::Empty(without_height));
     }
-    let left_out = format!("{without_height} points without a height were left out");
+    let left_out = format!(
+        "{} left out",
+        counted(without_height, "point without a height was", "points without a height were")
+    );
     let notes = if without_height > 0 { vec![left_out] } else { Vec::new() };
     Ok(PointCloud { crs: hints.crs.cloned(), notes, ..PointCloud::new(points) })
 }

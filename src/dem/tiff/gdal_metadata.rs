@@ -30,7 +30,7 @@ impl BandMetadata {
             match attribute(head, "role").unwrap_or_default() {
                 "scale" => band.scale = number("scale", text)?,
                 "offset" => band.offset = number("offset", text)?,
-                "unittype" => band.meters_per_z = Some(unit(text)?),
+                "unittype" if !text.is_empty() => band.meters_per_z = Some(unit(text)?),
                 _ => {}
             }
         }

@@ -8,6 +8,13 @@ use sandtable_raster::error::DemErrorKind;
 use sandtable_raster::units::{FOOT_M, US_SURVEY_FOOT_M, length_of_code};
 use sandtable_raster::vertical;
 
+/// EPSG's vertical systems in US survey feet: NGVD29, NAVD88, mean sea level.
+const IN_US_SURVEY_FEET: [u16; 3] = [5702, 6360, 8052];
+/// Those in feet: NAVD88, mean sea level, and of the Cayman Islands.
+const IN_FEET: [u16; 5] = [8228, 8050, 6130, 6131, 6132];
+/// The vertical datums and ellipsoids of GeoTIFF 1.0.
+const DATUMS: std::ops::RangeInclusive<u16> = 5001..=5106;
+
 /// The value of a key.
 #[derive(Clone, Debug)]
 pub(super) enum GeoKeyValue {
@@ -49,11 +56,19 @@ impl GeoKeys {
     pub fn meters_per_z(&self) -> Result<Option<f64>, DemErrorKind> {
         match (self.real_code(key::VERTICAL_UNITS), self.code(key::VERTICAL_TYPE)) {
             (Some(unit), _) => length(unit).map(Some),
-            // NAVD88 in US survey feet and in feet.
-            (_, Some(6360)) => Ok(Some(US_SURVEY_FOOT_M)),
-            (_, Some(8228)) => Ok(Some(FOOT_M)),
+            (_, Some(system)) if IN_US_SURVEY_FEET.contains(&system) => Ok(Some(US_SURVEY_FOOT_M)),
+            (_, Some(system)) if IN_FEET.contains(&system) => Ok(Some(FOOT_M)),
             _ => Ok(None),
         }
+    }
+
+    /// Whether the elevations are those of a vertical system in meters: EPSG's others are; the numbers of GeoTIFF 1.0 are of
+    /// datums alone.
+    pub fn names_system_in_meters(&self) -> bool {
+        let is_in_meters = |code: u16| {
+            ![&IN_US_SURVEY_FEET[..], &IN_FEET].concat().contains(&code) && !DATUMS.contains(&code)
+        };
+        self.real_code(key::VERTICAL_TYPE).is_some_and(is_in_meters)
     }
 
     /// The vertical datum by the code of the system or of the datum, else by the citation; `None` where not stated.
@@ -280,6 +295,19 @@ mod tests {
         assert!(keys(&[[4099, 0, 1, 9001]], &[]).meters_per_z().is_ok_and(|unit| unit == Some(1.0)));
         assert!(keys(&[[4099, 0, 1, 9099]], &[]).meters_per_z().is_err());
         assert!(keys(&[[3086, 34736, 9, 65535]], &[1.0]).crs().is_ok_and(|crs| crs.is_none()));
+    }
+
+    #[test]
+    fn the_unit_of_elevations_comes_from_its_key_else_from_the_vertical_system() {
+        let unit = |entries: &[[u16; 4]]| keys(entries, &[]).meters_per_z().expect("known");
+        let system = |code: u16| unit(&[[4096, 0, 1, code]]);
+        assert_eq!([6360, 5702].map(system), [Some(US_SURVEY_FOOT_M); 2]);
+        assert_eq!([8228, 8050].map(system), [Some(FOOT_M); 2]);
+        assert_eq!([5703, 5103, 5030, 32767, 0].map(system), [None; 5]);
+        let in_meters = |code: u16| keys(&[[4096, 0, 1, code]], &[]).names_system_in_meters();
+        assert!([5703, 3855].into_iter().all(in_meters));
+        assert!(![6360, 5702, 8228, 5103, 5030, 32767, 0].into_iter().any(in_meters));
+        assert_eq!(unit(&[[4096, 0, 1, 5702], [4099, 0, 1, 9001]]), Some(1.0));
     }
 
     #[test]

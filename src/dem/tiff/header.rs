@@ -55,13 +55,15 @@ impl GeoTiffHeader {
         };
         let nodata = text(decoder, Tag::GdalNodata).trim().trim_start_matches('+').parse().ok();
         let band = BandMetadata::first_band(&text(decoder, Tag::Unknown(GDAL_METADATA)))?;
+        let meters_per_z = band.meters_per_z.or(keys.meters_per_z()?);
         let raster = Raster {
             driver: "GTiff",
             data_type: storage.sample.map_or("Byte", |sample| sample.gdal_name()),
             width: storage.width,
             height: storage.height,
             samples: Samples::F32(Vec::new()),
-            meters_per_z: band.meters_per_z.or(keys.meters_per_z()?).unwrap_or(1.0),
+            meters_per_z: meters_per_z.unwrap_or(1.0),
+            states_z_unit: meters_per_z.is_some() || keys.names_system_in_meters(),
             map_from_grid: DAffine2::IDENTITY,
             georeferenced: false,
             crs: file.crs_or(|| keys.crs())?,

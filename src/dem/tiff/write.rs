@@ -26,6 +26,7 @@ use sandtable_raster::read_ahead::read_ahead;
 use sandtable_raster::sample_type::{NumberKind, SampleType};
 use sandtable_raster::stored::{SampleSurvey, StoredSamples};
 use sandtable_raster::units::name_of_length;
+use sandtable_raster::unstated_unit::foot_of_coordinates;
 use sandtable_raster::windows::{ByteRows, RasterWindow, Windows};
 
 /// Samples along a side of a tile, as GDAL writes them.
@@ -359,7 +360,9 @@ fn tags(raster: &Raster, stored: StoredSamples) -> Vec<(u16, TiffField)> {
     if !keys.text.is_empty() {
         tags.push((34737, TiffField::text(&keys.text)));
     }
-    if let Some(unit) = name_of_length(raster.meters_per_z).filter(|unit| *unit != "m") {
+    // Meters beside coordinates in feet would be doubted.
+    let is_doubted = raster.states_z_unit && foot_of_coordinates(raster).is_some();
+    if let Some(unit) = name_of_length(raster.meters_per_z).filter(|unit| *unit != "m" || is_doubted) {
         let xml = format!(
             "<GDALMetadata>\n  <Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">{unit}</Item>\n</GDALMetadata>\n"
         );

@@ -11,6 +11,7 @@ use sandtable_geom::projection::{Datum, Definition, MapProjection};
 use sandtable_raster::georef::crs_on_earth;
 use sandtable_raster::raster::Raster;
 use sandtable_raster::units::code_of_length;
+use sandtable_raster::unstated_unit;
 use sandtable_raster::vertical;
 
 /// The contents of the three tags of keys; the last two may be empty.
@@ -39,7 +40,9 @@ impl GeoKeyTags {
                     keys.text(key::VERTICAL_CITATION, name);
                 }
             }
-            if let Some(unit) = code_of_length(raster.meters_per_z) {
+            // What is taken for meters because nothing states its unit does not become a statement.
+            let unit = code_of_length(raster.meters_per_z).filter(|_| unstated_unit::note(raster).is_none());
+            if let Some(unit) = unit {
                 keys.code(key::VERTICAL_UNITS, unit);
             }
         }

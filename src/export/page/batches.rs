@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 use crate::page::container::PageSections;
 use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId, MaterialId};
-use sandtable_draw::material::{Albedo, AlphaMode, Material, NormalSource};
+use sandtable_draw::material::{Albedo, AlphaMode, Material, NormalSource, TextureWrap};
 use sandtable_mesh::sink::VertexId;
 use sandtable_picture::all_round::ItemShown;
 
@@ -183,6 +183,14 @@ fn repeated_batch(sections: &mut PageSections, list: &DrawList, items: &[DrawIte
     batch
 }
 
+fn wrap_word(wrap: TextureWrap) -> &'static str {
+    match wrap {
+        TextureWrap::Repeat => "repeat",
+        TextureWrap::Mirror => "mirror",
+        TextureWrap::Clamp => "clamp",
+    }
+}
+
 /// A material as the page's script reads it; colors in linear light.
 pub fn material(material: &Material) -> Value {
     let alpha = match material.alpha {
@@ -193,6 +201,7 @@ pub fn material(material: &Material) -> Value {
     json!({
         "color": material.base_color.linear().extend(material.base_color.alpha()).to_array(),
         "texture": material.texture.map(|texture| texture.0),
+        "wrap": material.texture_wrap.map(wrap_word),
         "alpha": alpha,
         "twoSided": material.two_sided,
         "onGround": material.normals == NormalSource::Ground,
@@ -210,6 +219,14 @@ mod tests {
     use crate::page::container::tests::words;
     use sandtable_draw::color::Srgba;
     use sandtable_mesh::sink::MeshSink;
+
+    #[test]
+    fn a_material_says_how_its_texture_goes_on_beyond_its_borders() {
+        let texture_wrap = [TextureWrap::Mirror, TextureWrap::Clamp];
+        let mirrored = material(&Material { texture_wrap, ..Material::default() });
+        assert_eq!(mirrored["wrap"], json!(["mirror", "clamp"]));
+        assert_eq!(material(&Material::default())["wrap"], json!(["repeat", "repeat"]));
+    }
 
     fn triangle(x: f32) -> DrawMesh {
         let mut mesh = DrawMesh::default();

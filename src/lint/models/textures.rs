@@ -22,6 +22,7 @@ use crate::models::StandingModel;
 use crate::sink::FindingSink;
 use crate::worst::WorstOfTables;
 use sandtable_description::finding_code::FindingCode;
+use sandtable_draw::material::TextureWrap;
 use sandtable_draw::pixels::Pixels;
 use sandtable_model::Model;
 
@@ -96,14 +97,16 @@ fn stretch(model: &Model, scale: f32, side_m: f32) -> Option<TextureStretch> {
     let (mut textured, mut stretched, mut largest) = (0.0f32, 0.0f32, (0.0f32, [0.0f32; 2], ""));
     let mut left = MOST_TRIANGLES;
     for part in &model.parts {
-        let texture = model.materials.get(part.material.0 as usize).and_then(|material| material.texture);
-        let Some(picture) = texture.and_then(|id| model.textures.get(id.0 as usize)) else { continue };
+        let Some(material) = model.materials.get(part.material.0 as usize) else { continue };
+        let texture = material.texture.and_then(|id| model.textures.get(id.0 as usize));
+        let Some(pixels) = texture else { continue };
+        let picture = WrappedPicture { pixels, wrap: material.texture_wrap };
         let count = part.mesh.triangles.len().min(left);
         left -= count;
         for corners in &part.mesh.triangles[..count] {
             let corners = corners.map(|id| part.mesh.vertices[id.index()]);
             let places = corners.map(|corner| Vec3::from(corner.position) * scale);
-            let size = Vec2::new(picture.width() as f32, picture.height() as f32);
+            let size = Vec2::new(pixels.width() as f32, pixels.height() as f32);
             let Some(face) = TexturedFace::new(places, corners.map(|corner| Vec2::from(corner.uv) * size))
             else {
                 continue;
@@ -120,6 +123,24 @@ fn stretch(model: &Model, scale: f32, side_m: f32) -> Option<TextureStretch> {
     let share = stretched / textured;
     let (_, pixel_m, part) = largest;
     (share > LEAST_SHARE).then(|| TextureStretch { share, pixel_m, part: part.to_owned() })
+}
+
+/// A picture, and what it shows beyond its borders.
+#[derive(Clone, Copy)]
+struct WrappedPicture<'a> {
+    pixels: &'a Pixels,
+    wrap: [TextureWrap; 2],
+}
+
+impl WrappedPicture<'_> {
+    /// The brightness at a place in pixels, 0 to 255.
+    fn brightness(&self, at: Vec2) -> f32 {
+        let sides = [self.pixels.width(), self.pixels.height()];
+        let [x, y] =
+            std::array::from_fn(|axis| self.wrap[axis].texel(at[axis] / sides[axis] as f32, sides[axis]));
+        let [red, green, blue, _] = self.pixels.at(x, y).0.map(f32::from);
+        (red + green + blue) / 3.0
+    }
 }
 
 /// A triangle that shows more than one pixel of a picture.
@@ -166,7 +187,7 @@ impl TexturedFace {
     }
 
     /// Whether it shows streaks or blots of `picture`, on a model whose largest side is `side_m`.
-    fn is_stretched(&self, picture: &Pixels, side_m: f32) -> bool {
+    fn is_stretched(&self, picture: WrappedPicture<'_>, side_m: f32) -> bool {
         let [dense, sparse] = self.px_per_m;
         let brightness = || self.brightness(picture);
         if dense > SMEARED * sparse {
@@ -178,19 +199,11 @@ impl TexturedFace {
     }
 
     /// The brightness of the picture from one end of the face to the other, 0 to 255.
-    fn brightness(&self, picture: &Pixels) -> Vec<f32> {
+    fn brightness(&self, picture: WrappedPicture<'_>) -> Vec<f32> {
         let [from, to] = self.along_px.map(|corner| corner.lerp(self.middle_px, 0.1));
         let count = (from.distance(to).ceil() as usize).clamp(2, MOST_SAMPLES);
         let place = |index: usize| from.lerp(to, index as f32 / (count - 1) as f32);
-        let sides = [picture.width(), picture.height()];
-        let pixel = |at: Vec2| [at.x, at.y].map(|at| at.floor() as i64);
-        let color = |at: Vec2| {
-            let [x, y] =
-                std::array::from_fn(|axis| pixel(at)[axis].rem_euclid(i64::from(sides[axis])) as u32);
-            let [red, green, blue, _] = picture.at(x, y).0.map(f32::from);
-            (red + green + blue) / 3.0
-        };
-        (0..count).map(|index| color(place(index))).collect()
+        (0..count).map(|index| picture.brightness(place(index))).collect()
     }
 }
 
@@ -237,7 +250,10 @@ mod tests {
 
     #[test]
     fn streaks_and_blots_are_stretched_and_gradients_and_even_pictures_are_not() {
-        let stretched = |px, picture: &Pixels| face(px).expect("many pixels").is_stretched(picture, 10.0);
+        let stretched = |px, pixels: &Pixels| {
+            let picture = WrappedPicture { pixels, wrap: [TextureWrap::Repeat; 2] };
+            face(px).expect("many pixels").is_stretched(picture, 10.0)
+        };
         let from_above = [[0.0, 7.0], [60.0, 7.0], [60.0, 7.0]];
         assert!(stretched(from_above, &striped()));
         let gradient = Pixels::from_fn(64, 64, |x, _| Srgba([x as u8 * 4, x as u8 * 4, x as u8 * 4, 255]));

@@ -11,6 +11,7 @@
 //! up becomes Y and north is −Z.
 
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 use std::io::{self, Write};
 
 use bytemuck::Pod;
@@ -41,8 +42,10 @@ pub struct GlbScene<'a> {
     pub meshes: Vec<Vec<GlbPrimitive<'a>>>,
     /// Meshes in their places.
     pub nodes: Vec<GlbNode>,
-    /// glTF material objects. Texture `i` shows image `i`.
+    /// glTF material objects, which name textures by their index.
     pub materials: Vec<Value>,
+    /// Textures.
+    pub textures: Vec<GlbTexture>,
     /// PNG files.
     pub images: Vec<Vec<u8>>,
 }
@@ -58,6 +61,27 @@ pub struct GlbVertices<'a> {
     pub uvs: Vec<Vec2>,
     /// Linear light and alpha; 65535 is 1.
     pub colors: Vec<[u16; 4]>,
+}
+
+/// An image as a material shows it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct GlbTexture {
+    /// Which of [`GlbScene::images`].
+    pub image: usize,
+    /// What it shows beyond its borders, along U and along V.
+    pub wrap: [GlbWrap; 2],
+}
+
+/// What a texture shows beyond its borders; the specification's numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[repr(u32)]
+pub enum GlbWrap {
+    /// The color of the nearest border.
+    ClampToEdge = 33071,
+    /// The image again and again, every other one turned round.
+    MirroredRepeat = 33648,
+    /// The image again and again.
+    Repeat = 10497,
 }
 
 /// Triangles in one material.
@@ -124,8 +148,12 @@ impl GlbScene<'_> {
         let attributes = self.add_vertices(data);
         let meshes = self.add_meshes(&attributes, data);
         let images: Vec<Value> = self.images.iter().map(|png| data.add_image(png)).collect();
-        let texture = |image: usize| json!({"source": image, "sampler": 0});
-        let sampler = json!({"magFilter": 9729, "minFilter": 9987});
+        let wraps: BTreeSet<[GlbWrap; 2]> = self.textures.iter().map(|texture| texture.wrap).collect();
+        let wraps: Vec<[GlbWrap; 2]> = wraps.into_iter().collect();
+        let texture = |texture: &GlbTexture| {
+            let sampler = wraps.iter().position(|wrap| *wrap == texture.wrap);
+            json!({"source": texture.image, "sampler": sampler})
+        };
         let mut document = json!({
             "asset": {"version": "2.0", "generator": "sandtable", "extras": {"remarks": remarks.lines}},
             "scene": 0,
@@ -135,8 +163,8 @@ impl GlbScene<'_> {
         let lists = [
             ("meshes", meshes),
             ("materials", self.materials.clone()),
-            ("textures", (0..images.len()).map(texture).collect()),
-            ("samplers", if images.is_empty() { Vec::new() } else { vec![sampler] }),
+            ("textures", self.textures.iter().map(texture).collect()),
+            ("samplers", wraps.iter().map(sampler).collect()),
             ("images", images),
             ("buffers", if data.length > 0 { vec![json!({"byteLength": data.length})] } else { Vec::new() }),
             ("accessors", std::mem::take(&mut data.accessors)),
@@ -267,6 +295,17 @@ impl<'s> GlbData<'s> {
         self.chunks.push(bytes);
         offset
     }
+}
+
+/// A sampler object: filtered between texels and levels; repeating is the format's default.
+fn sampler([across, down]: &[GlbWrap; 2]) -> Value {
+    let mut object = json!({"magFilter": 9729, "minFilter": 9987});
+    for (key, wrap) in [("wrapS", *across), ("wrapT", *down)] {
+        if wrap != GlbWrap::Repeat {
+            object[key] = json!(wrap as u32);
+        }
+    }
+    object
 }
 
 #[cfg(test)]

@@ -4,12 +4,13 @@ use ::gltf::Document;
 use ::gltf::json::validation::{Checked, Error, Validate};
 use ::gltf::json::{Path, Root};
 use ::gltf::mesh::Semantic;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use crate::error::ModelError;
 
 /// Supported extensions that change the place or the meaning of data.
-const SUPPORTED: [&str; 3] = ["KHR_texture_transform", "KHR_materials_unlit", "KHR_mesh_quantization"];
+const SUPPORTED: [&str; 4] =
+    ["KHR_texture_transform", "KHR_materials_unlit", "KHR_mesh_quantization", "EXT_texture_webp"];
 /// The start of extensions that refine how a material looks; it is drawn without them.
 const REFINEMENTS: &str = "KHR_materials_";
 
@@ -66,12 +67,44 @@ fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ModelError> {
 }
 
 /// Adds an optional field that `gltf-json` 1.4.1 requires: nodes of scenes. Removes `extras`, of which it accepts only
-/// objects.
+/// objects. Moves to where it looks for them the images and the colors that extensions name.
 fn complete(document: &mut Value) {
     remove_extras(document);
+    each_object(document, "textures", take_webp_source);
+    each_object(document, "materials", take_diffuse);
     for scene in document.get_mut("scenes").and_then(Value::as_array_mut).into_iter().flatten() {
         if let Some(scene) = scene.as_object_mut() {
             scene.entry("nodes").or_insert_with(|| json!([]));
+        }
+    }
+}
+
+fn each_object(document: &mut Value, list: &str, change: fn(&mut Map<String, Value>)) {
+    let values = document.get_mut(list).and_then(Value::as_array_mut).into_iter().flatten();
+    values.filter_map(Value::as_object_mut).for_each(change);
+}
+
+/// The WebP image of a texture counts, not the one for readers that know none.
+fn take_webp_source(texture: &mut Map<String, Value>) {
+    let source =
+        texture.get("extensions").and_then(|all| all.get("EXT_texture_webp")?.get("source")).cloned();
+    if let Some(source) = source {
+        texture.insert("source".into(), source);
+    }
+}
+
+/// The diffuse color and texture of the older way to describe materials, where the file has them in no other.
+fn take_diffuse(material: &mut Map<String, Value>) {
+    const OLDER: &str = "KHR_materials_pbrSpecularGlossiness";
+    let Some(older) = material.get("extensions").and_then(|all| all.get(OLDER)).cloned() else { return };
+    let newer = material.entry("pbrMetallicRoughness").or_insert_with(|| json!({}));
+    let Some(newer) = newer.as_object_mut() else { return };
+    if newer.contains_key("baseColorTexture") {
+        return;
+    }
+    for (key, older_key) in [("baseColorFactor", "diffuseFactor"), ("baseColorTexture", "diffuseTexture")] {
+        if let Some(value) = older.get(older_key) {
+            newer.insert(key.into(), value.clone());
         }
     }
 }
@@ -197,6 +230,25 @@ mod tests {
         for odd in [&b"[]"[..], b"3", br#"{"scenes":3}"#, br#"{"images":{},"textures":[{}]}"#] {
             assert!(GltfFile::open(odd).is_err());
         }
+    }
+
+    #[test]
+    fn images_and_colors_that_extensions_name_are_found() {
+        let json = br#"{"asset":{"version":"2.0"},"extensionsRequired":["EXT_texture_webp"],
+            "images":[{"uri":"a.png"},{"uri":"b.webp"}],
+            "textures":[{"source":0,"extensions":{"EXT_texture_webp":{"source":1}}},
+                {"extensions":{"EXT_texture_webp":{"source":1}}},{"source":0}],
+            "materials":[{"extensions":{"KHR_materials_pbrSpecularGlossiness":
+                {"diffuseFactor":[0.5,0,0,1],"diffuseTexture":{"index":2}}}}]}"#;
+        let GltfFile { document, .. } = GltfFile::open(json).expect("a sound file");
+        let sources = document.textures().map(|texture| texture.source().map(|image| image.index()));
+        assert_eq!(sources.collect::<Vec<_>>(), [Some(1), Some(1), Some(0)]);
+        let material = document.materials().next().expect("one").pbr_metallic_roughness();
+        assert_eq!(material.base_color_factor(), [0.5, 0.0, 0.0, 1.0]);
+        assert_eq!(material.base_color_texture().map(|info| info.texture().index()), Some(2));
+        let out_of_range = br#"{"asset":{"version":"2.0"},
+            "textures":[{"extensions":{"EXT_texture_webp":{"source":7}}}]}"#;
+        assert!(GltfFile::open(out_of_range).is_err());
     }
 
     #[test]

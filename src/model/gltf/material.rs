@@ -1,14 +1,15 @@
-//! Materials: base color and its texture, alpha, sides, and the transform of texture coordinates.
+//! Materials: base color and its texture, how that goes on beyond its borders, alpha, sides, and the transform of texture
+//! coordinates.
 
 use ::gltf::material::AlphaMode as GltfAlphaMode;
-use ::gltf::texture::Info;
+use ::gltf::texture::{Info, MagFilter, WrappingMode};
 use ::gltf::{Document, Image};
 use glam::{Mat2, Vec2, Vec3};
 
 use crate::error::{CompanionError, GltfDataError};
 use crate::texture::Textures;
 use sandtable_draw::color::Srgba;
-use sandtable_draw::material::{AlphaMode, Material, TextureId};
+use sandtable_draw::material::{AlphaMode, Material, TextureId, TextureWrap};
 
 use super::data::{GltfBuffers, decode_data_uri, file_name};
 
@@ -70,11 +71,29 @@ pub(super) fn load_materials(
             *images[image.index()].get_or_insert_with(|| load_image(document, &image, buffers, textures))
         });
         let uv = info.as_ref().map_or(GltfUvTransform::IDENTITY, GltfUvTransform::new);
-        materials.push(GltfMaterial { material: translate(&material, texture), uv });
+        let mut translated = translate(&material, texture);
+        if let (Some(info), Some(_)) = (&info, texture) {
+            let sampler = info.texture().sampler();
+            translated.texture_wrap = [sampler.wrap_s(), sampler.wrap_t()].map(wrap);
+            if sampler.mag_filter() == Some(MagFilter::Nearest) {
+                let index = info.texture().index();
+                textures
+                    .note(format!("texture {index} asks for hard texels (NEAREST); it is drawn filtered"));
+            }
+        }
+        materials.push(GltfMaterial { material: translated, uv });
     }
     let unnamed = Material { name: "(no material)".into(), ..Material::default() };
     materials.push(GltfMaterial { material: unnamed, uv: GltfUvTransform::IDENTITY });
     materials
+}
+
+fn wrap(mode: WrappingMode) -> TextureWrap {
+    match mode {
+        WrappingMode::Repeat => TextureWrap::Repeat,
+        WrappingMode::MirroredRepeat => TextureWrap::Mirror,
+        WrappingMode::ClampToEdge => TextureWrap::Clamp,
+    }
 }
 
 fn translate(material: &::gltf::Material<'_>, texture: Option<TextureId>) -> Material {

@@ -25,6 +25,7 @@ use crate::error::ModelError;
 use crate::part::PartBuilder;
 use crate::texture::Textures;
 use crate::{Companions, Model};
+use sandtable_base::message::numbers::counted;
 
 use accessor::AccessorReader;
 use container::GltfFile;
@@ -81,7 +82,10 @@ fn note_omissions(document: &Document, notes: &mut Vec<String>) {
     }
     let animations = document.animations().len();
     if animations > 0 {
-        notes.push(format!("{animations} animations are not played; the rest pose is drawn"));
+        notes.push(format!(
+            "{} not played; the rest pose is drawn",
+            counted(animations, "animation is", "animations are")
+        ));
     }
     let moves = |weights: Option<&[f32]>| weights.into_iter().flatten().any(|&weight| weight != 0.0);
     if document.meshes().any(|mesh| moves(mesh.weights()))
@@ -108,10 +112,14 @@ mod tests {
 
     /// A triangle with texture coordinates and colors, its material, and the nodes that place it.
     fn triangle(material: &str, nodes: &str, more: &str) -> Result<Model, ModelError> {
+        read(triangle_json(material, nodes, more).as_bytes(), &NoCompanions)
+    }
+
+    fn triangle_json(material: &str, nodes: &str, more: &str) -> String {
         let floats = [0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0];
         let bytes: Vec<String> =
             floats.iter().flat_map(|value| value.to_le_bytes()).map(|byte| format!("%{byte:02X}")).collect();
-        let json = format!(
+        format!(
             r#"{{"asset":{{"version":"2.0"}},{more}"nodes":[{nodes}],"materials":[{material}],
             "images":[{{"uri":"data:image/png;base64,AAAA"}}],"textures":[{{"source":0}}],
             "buffers":[{{"byteLength":60,"uri":"data:application/octet-stream,{}"}}],
@@ -121,8 +129,7 @@ mod tests {
             "meshes":[{{"primitives":[{{"material":0,
                 "attributes":{{"POSITION":0,"TEXCOORD_0":1,"COLOR_0":0}}}}]}}]}}"#,
             bytes.concat()
-        );
-        read(json.as_bytes(), &NoCompanions)
+        )
     }
 
     #[test]
@@ -145,6 +152,44 @@ mod tests {
             assert!((uv[0] - expected[0]).abs() < 1e-5 && (uv[1] - expected[1]).abs() < 1e-5, "{uvs:?}");
         }
         assert!(model.notes.iter().any(|note| note.contains("image 0")), "{:?}", model.notes);
+    }
+
+    /// A picture of one white pixel.
+    const PIXEL: &str = "data:image/png;base64,\
+        iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5ErkJggg==";
+
+    /// A triangle whose texture is read through a sampler and at a set of coordinates.
+    fn sampled(sampler: &str, set: u32) -> Model {
+        let json = triangle_json(
+            &format!(r#"{{"pbrMetallicRoughness":{{"baseColorTexture":{{"index":0,"texCoord":{set}}}}}}}"#),
+            r#"{"mesh":0}"#,
+            &format!(r#""samplers":[{sampler}],"#),
+        );
+        let json = json
+            .replace("data:image/png;base64,AAAA", PIXEL)
+            .replace(r#""textures":[{"source":0}]"#, r#""textures":[{"source":0,"sampler":0}]"#);
+        read(json.as_bytes(), &NoCompanions).expect("sound")
+    }
+
+    #[test]
+    fn a_texture_goes_on_beyond_its_borders_as_its_sampler_says() {
+        use sandtable_draw::material::TextureWrap::{Clamp, Mirror, Repeat};
+        for (sampler, wrap) in [
+            ("{}", [Repeat, Repeat]),
+            (r#"{"wrapS":33648}"#, [Mirror, Repeat]),
+            (r#"{"wrapS":10497,"wrapT":33071}"#, [Repeat, Clamp]),
+        ] {
+            let model = sampled(sampler, 0);
+            assert_eq!(model.materials[0].texture_wrap, wrap, "{sampler}");
+            assert_eq!(model.notes, Vec::<String>::new());
+        }
+    }
+
+    #[test]
+    fn coordinates_that_are_missing_and_hard_texels_are_noted() {
+        let notes = sampled(r#"{"magFilter":9728}"#, 1).notes;
+        assert!(notes.iter().any(|note| note.contains("TEXCOORD_1")), "{notes:?}");
+        assert!(notes.iter().any(|note| note.contains("NEAREST")), "{notes:?}");
     }
 
     #[test]

@@ -8,6 +8,7 @@ use crate::Census;
 use crate::error::ModelError;
 use crate::normals::{Smoothing, corner_normals};
 use crate::part::{ModelCorner, PartBuilder, TriangleBudget};
+use sandtable_base::message::numbers::counted;
 use sandtable_draw::color::{Srgba, srgb_from_linear};
 use sandtable_draw::list::MaterialId;
 
@@ -58,11 +59,20 @@ impl<'a> MeshReader<'a> {
                 self.notes.push(format!("{place} has no positions and is not drawn"));
                 continue;
             };
+            if vertices.uvs.is_none() && self.materials[material].material.texture.is_some() {
+                let set = uv.set;
+                self.notes.push(format!(
+                    "{place} has no TEXCOORD_{set}, which its texture needs; the texture's corner colors it"
+                ));
+            }
             let triangles = self.triangles(&primitive, &vertices, &place)?;
             let drawn = vertices.add_to(parts, &triangles, MaterialId(material as u32), uv);
             if drawn < triangles.len() {
                 let dropped = triangles.len() - drawn;
-                self.notes.push(format!("{place} has {dropped} triangles that are not finite"));
+                self.notes.push(format!(
+                    "{place} has {} not finite",
+                    counted(dropped, "triangle that is", "triangles that are")
+                ));
             }
             counts.vertices += vertices.positions.len();
             counts.faces += triangles.len();

@@ -5,17 +5,19 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::{Vec2, Vec3};
 
 use crate::error::{CompanionError, ModelError};
-use crate::material::{MappedMaterial, unnamed_material};
+use crate::material::unnamed_material;
 use crate::normals::{CREASE_COS, Smoothing, corner_normals};
 use crate::part::{ModelCorner, PartBuilder, TriangleBudget};
 use crate::texture::{Textures, load_any};
 use crate::triangulate::triangulate;
 use crate::{Census, Companions, Model};
 use sandtable_base::message::chain::error_text;
+use sandtable_base::message::numbers::counted;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::MaterialId;
 
-use super::mtl;
+use super::map_options::MtlUvTransform;
+use super::mtl::{self, MtlMaterial};
 use super::sound::{ObjFace, ObjFile, unmarked};
 use super::text;
 
@@ -40,26 +42,27 @@ pub(super) fn assemble(file: &ObjFile, companions: &dyn Companions) -> Result<Mo
         materials: model.materials.len(),
     };
     if dropped > 0 {
-        model.notes.push(format!("{dropped} faces have fewer than three corners or one that is not finite"));
+        model.notes.push(format!(
+            "{} fewer than three corners or one that is not finite",
+            counted(dropped, "face has", "faces have")
+        ));
     }
     if file.points_and_lines > 0 {
-        model.notes.push(format!("{} points and lines are not drawn", file.points_and_lines));
+        let drawn = counted(file.points_and_lines, "point or line is", "points and lines are");
+        model.notes.push(format!("{drawn} not drawn"));
     }
     Ok(model)
 }
 
 /// The materials of all libraries; the first of a name counts.
-fn load_libraries(
-    file: &ObjFile,
-    companions: &dyn Companions,
-    notes: &mut Vec<String>,
-) -> Vec<MappedMaterial> {
+fn load_libraries(file: &ObjFile, companions: &dyn Companions, notes: &mut Vec<String>) -> Vec<MtlMaterial> {
     let mut names = BTreeSet::new();
     let mut materials = Vec::new();
     for library in &file.libraries {
         match load_library(library, companions) {
             Ok(parsed) => {
-                materials.extend(parsed.into_iter().filter(|material| names.insert(material.name.clone())));
+                let is_first = |material: &MtlMaterial| names.insert(material.mapped.name.clone());
+                materials.extend(parsed.into_iter().filter(is_first));
             }
             Err(error) => {
                 notes.push(format!("material library '{library}' is missing: {}", error_text(&*error)));
@@ -70,7 +73,7 @@ fn load_libraries(
 }
 
 /// The materials in the files of an `mtllib` statement: one whose name has spaces, or several.
-fn load_library(library: &str, companions: &dyn Companions) -> Result<Vec<MappedMaterial>, CompanionError> {
+fn load_library(library: &str, companions: &dyn Companions) -> Result<Vec<MtlMaterial>, CompanionError> {
     let files = load_any(companions, library).map(|bytes| vec![bytes]).or_else(|error| {
         let names = library.split_whitespace();
         let files: Vec<_> = names.filter_map(|name| load_any(companions, name).ok()).collect();
@@ -88,20 +91,19 @@ struct FaceMaterials {
     named: Vec<MaterialId>,
     /// That of faces before the first `usemtl`.
     unnamed: MaterialId,
+    /// What the maps of each material do to texture coordinates; of those that libraries define.
+    uvs: Vec<MtlUvTransform>,
 }
 
 impl FaceMaterials {
-    fn new(
-        file: &ObjFile,
-        defined: &[MappedMaterial],
-        companions: &dyn Companions,
-        model: &mut Model,
-    ) -> Self {
+    fn new(file: &ObjFile, defined: &[MtlMaterial], companions: &dyn Companions, model: &mut Model) -> Self {
         let mut textures = Textures::new(companions);
-        model.materials = defined.iter().map(|material| material.load(&mut textures)).collect();
+        model.materials = defined.iter().map(|material| material.mapped.load(&mut textures)).collect();
+        model.notes.extend(defined.iter().flat_map(|material| material.notes.iter().cloned()));
         textures.move_to(model);
+        let named = defined.iter().enumerate();
         let by_name: BTreeMap<&str, usize> =
-            defined.iter().enumerate().map(|(index, material)| (material.name.as_str(), index)).collect();
+            named.map(|(index, material)| (material.mapped.name.as_str(), index)).collect();
         let mut named = Vec::new();
         for name in &file.materials {
             let index = by_name.get(name.as_str()).copied().unwrap_or_else(|| {
@@ -115,7 +117,11 @@ impl FaceMaterials {
         if file.faces.iter().flatten().any(|face| face.material.is_none()) {
             model.materials.push(unnamed_material("(no material)"));
         }
-        Self { named, unnamed }
+        Self { named, unnamed, uvs: defined.iter().map(|material| material.uv).collect() }
+    }
+
+    fn uv_transform(&self, material: MaterialId) -> MtlUvTransform {
+        self.uvs.get(material.0 as usize).copied().unwrap_or_default()
     }
 
     fn of(&self, face: &ObjFace) -> MaterialId {
@@ -177,11 +183,14 @@ impl<'a> ObjTriangles<'a> {
 
     fn add_to(&self, parts: &mut PartBuilder, materials: &FaceMaterials) {
         for ((triangle, face), computed) in self.indices.iter().zip(&self.normals) {
+            let material = materials.of(face);
+            let uv_transform = materials.uv_transform(material);
             let corners = std::array::from_fn(|place| {
                 let corner = self.corners[triangle[place] as usize];
-                ModelCorner { normal: corner.normal.try_normalize().unwrap_or(computed[place]), ..corner }
+                let normal = corner.normal.try_normalize().unwrap_or(computed[place]);
+                ModelCorner { normal, uv: uv_transform.apply(corner.uv), ..corner }
             });
-            parts.triangle(materials.of(face), corners);
+            parts.triangle(material, corners);
         }
     }
 }
@@ -206,7 +215,7 @@ pub(super) fn color_from_channels(channels: [f32; 3]) -> Srgba {
 mod tests {
     use super::*;
     use crate::obj::read;
-    use sandtable_draw::material::AlphaMode;
+    use sandtable_draw::material::{AlphaMode, TextureWrap};
 
     struct Library(&'static str);
 
@@ -238,6 +247,18 @@ mod tests {
         );
         assert_eq!(model.parts.iter().map(|part| part.material.0).collect::<Vec<_>>(), [0, 1]);
         assert_eq!(model.notes, ["material 'lost' is used but not defined"]);
+    }
+
+    #[test]
+    fn options_of_maps_place_them_and_end_them_at_their_borders() {
+        let library =
+            Library("newmtl wall\nmap_Kd -clamp on -s 2 4 1 -o 0.5 0.25 0 lost.png\nnewmtl plain\n");
+        let text = format!("{SQUARE}vt 0.25 0.5\nusemtl wall\nf 1/1 2/1 3/1\nusemtl plain\nf 1/1 3/1 4/1");
+        let model = read(text.as_bytes(), &library).expect("a sound file");
+        assert_eq!(model.materials[0].texture_wrap, [TextureWrap::Clamp; 2]);
+        // V runs downward: 1 − (0.5 · 4 + 0.25).
+        assert_eq!(model.parts[0].mesh.vertices[0].uv, [1.0, -1.25]);
+        assert_eq!(model.parts[1].mesh.vertices[0].uv, [0.25, 0.5]);
     }
 
     #[test]

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! bytes ─ text (encodings, continued lines) ─ sound (indices checked, repaired lines) ─ tobj ─ assemble ─► Model
-//!                                           └─ mtl (repaired material libraries) ────── tobj ──┘
+//!                                           └─ mtl (repaired material libraries) ────── tobj ──┤
+//!                                                                            map_options ──┘
 //! ```
 //!
 //! `tobj` 4.0.5 reads what is repaired before: left to itself it has no smoothing groups, drops the name of a material
@@ -10,6 +11,7 @@
 //! coordinates, takes lines for faces, and multiplies forged indices until they overflow.
 
 mod assemble;
+mod map_options;
 mod mtl;
 mod sound;
 mod text;

@@ -14,6 +14,7 @@ use crate::normals::{Smoothing, corner_normals};
 use crate::part::{ModelCorner, PartBuilder, TriangleBudget};
 use crate::texture::Textures;
 use crate::{Census, Companions, Model};
+use sandtable_base::message::numbers::counted;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::MaterialId;
 use sandtable_draw::material::Material;
@@ -72,7 +73,10 @@ pub(super) fn assemble(file: &ThreeDsFile, companions: &dyn Companions) -> Resul
         dropped += placed.add_to(&mut model, &palette);
     }
     if dropped > 0 {
-        model.notes.push(format!("{dropped} faces have a vertex that is missing or not finite"));
+        model.notes.push(format!(
+            "{} a vertex that is missing or not finite",
+            counted(dropped, "face has", "faces have")
+        ));
     }
     textures.move_to(&mut model);
     Ok(model)
@@ -89,6 +93,19 @@ fn census(file: &ThreeDsFile) -> Census {
 
 fn translate(stored: &MaterialChunk, textures: &mut Textures<'_>) -> Material {
     let file = |map: &Option<MapChunk>| map.as_ref().map(|map| map.file.clone());
+    let name = &stored.name;
+    if stored.map.as_ref().is_some_and(|map| map.is_decal) {
+        textures.note(format!(
+            "the picture of material '{name}' is a decal: beyond its borders its own border goes on, not the material's color"
+        ));
+    }
+    if let (Some(map), Some(mask)) = (&stored.map, &stored.opacity_map)
+        && (map.scale, map.offset, map.rotation_rad) != (mask.scale, mask.offset, mask.rotation_rad)
+    {
+        textures.note(format!(
+            "the opacity map of material '{name}' lies like its color map, not in its own place"
+        ));
+    }
     let mapped = MappedMaterial {
         name: stored.name.clone(),
         color: stored.diffuse,
@@ -208,11 +225,13 @@ fn default_material(model: &mut Model) -> MaterialId {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::material::MapFile;
 
     #[test]
     fn a_map_turned_by_a_right_angle_shows_its_lower_left_corner_at_the_lower_right() {
         let map = MapChunk {
-            file: String::new(),
+            file: MapFile::default(),
+            is_decal: false,
             scale: Vec2::ONE,
             offset: Vec2::ZERO,
             rotation_rad: std::f32::consts::FRAC_PI_2,

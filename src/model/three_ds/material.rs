@@ -3,7 +3,9 @@
 use glam::Vec2;
 
 use crate::error::ModelError;
+use crate::material::{MapFile, ValueRange};
 use sandtable_draw::color::Srgba;
+use sandtable_draw::material::TextureWrap;
 
 use super::chunk::Chunk;
 
@@ -21,7 +23,9 @@ pub(super) struct MaterialChunk {
 
 #[derive(Clone, Debug)]
 pub(super) struct MapChunk {
-    pub file: String,
+    pub file: MapFile,
+    /// Whether the material shows its own color beyond the picture's borders.
+    pub is_decal: bool,
     pub scale: Vec2,
     pub offset: Vec2,
     /// The rotation of the picture about the middle of the unit square, counter-clockwise.
@@ -97,17 +101,28 @@ fn percentage(chunk: &Chunk<'_>) -> Result<Option<f32>, ModelError> {
 /// A map; `None` where it names no file.
 fn map(chunk: &Chunk<'_>) -> Result<Option<MapChunk>, ModelError> {
     const FILE: u16 = 0xA300;
+    const TILING: u16 = 0xA351;
     const V_SCALE: u16 = 0xA354;
     const U_SCALE: u16 = 0xA356;
     const U_OFFSET: u16 = 0xA358;
     const V_OFFSET: u16 = 0xA35A;
     const ROTATION_DEG: u16 = 0xA35C;
-    let mut map = MapChunk { file: String::new(), scale: Vec2::ONE, offset: Vec2::ZERO, rotation_rad: 0.0 };
+    let mut map = MapChunk {
+        file: MapFile::default(),
+        is_decal: false,
+        scale: Vec2::ONE,
+        offset: Vec2::ZERO,
+        rotation_rad: 0.0,
+    };
     for part in chunk.children() {
         let part = part?;
         let target = match part.id {
             FILE => {
-                map.file = part.read().text()?;
+                map.file.name = part.read().text()?;
+                continue;
+            }
+            TILING => {
+                map.set_tiling(part.read().u16().unwrap_or(0));
                 continue;
             }
             U_SCALE => &mut map.scale.x,
@@ -122,7 +137,25 @@ fn map(chunk: &Chunk<'_>) -> Result<Option<MapChunk>, ModelError> {
             *target = if part.id == ROTATION_DEG { value.to_radians() } else { value };
         }
     }
-    Ok((!map.file.trim().is_empty()).then_some(map))
+    Ok((!map.file.name.trim().is_empty()).then_some(map))
+}
+
+impl MapChunk {
+    /// Reads the flags of a map.
+    fn set_tiling(&mut self, flags: u16) {
+        const MIRROR: u16 = 0x0002;
+        const NEGATIVE: u16 = 0x0004;
+        const NO_TILES: u16 = 0x0010;
+        if flags & NEGATIVE != 0 {
+            self.file.range = ValueRange::NEGATIVE;
+        }
+        self.is_decal = flags & NO_TILES != 0 && flags & MIRROR == 0;
+        self.file.wrap = match flags {
+            _ if flags & MIRROR != 0 => [TextureWrap::Mirror; 2],
+            _ if self.is_decal => [TextureWrap::Clamp; 2],
+            _ => [TextureWrap::Repeat; 2],
+        };
+    }
 }
 
 #[cfg(test)]
@@ -158,10 +191,30 @@ mod tests {
         assert!(leaf.two_sided);
         let map = leaf.map.expect("a map");
         assert_eq!(
-            (map.file.as_str(), map.scale, map.offset),
+            (map.file.name.as_str(), map.scale, map.offset),
             ("LEAF.TGA", Vec2::new(1.0, 2.0), Vec2::new(0.25, 0.0))
         );
         assert_eq!(map.rotation_rad, std::f32::consts::FRAC_PI_2);
-        assert_eq!(leaf.opacity_map.map(|map| map.file).as_deref(), Some("LEAF_O.TGA"));
+        assert_eq!(leaf.opacity_map.map(|map| map.file.name).as_deref(), Some("LEAF_O.TGA"));
+    }
+
+    #[test]
+    fn the_flags_of_a_map_say_how_it_goes_on_and_whether_it_is_a_negative() {
+        for (flags, wrap, is_decal, range) in [
+            (0, TextureWrap::Repeat, false, ValueRange::IDENTITY),
+            (2, TextureWrap::Mirror, false, ValueRange::IDENTITY),
+            (0x11, TextureWrap::Clamp, true, ValueRange::IDENTITY),
+            (0x06, TextureWrap::Mirror, false, ValueRange::NEGATIVE),
+        ] {
+            let tiling = chunk(0xA351, &u16::to_le_bytes(flags));
+            let body = chunk(0xA200, &[chunk(0xA300, b"A.TGA\0"), tiling].concat());
+            let bytes = chunk(0xAFFF, &body);
+            let map = parse(&Chunk::first(&bytes).expect("a chunk")).expect("sound").map.expect("a map");
+            assert_eq!(
+                (map.file.wrap, map.is_decal, map.file.range),
+                ([wrap; 2], is_decal, range),
+                "{flags:#x}"
+            );
+        }
     }
 }

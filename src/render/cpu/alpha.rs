@@ -8,6 +8,7 @@
 
 use glam::{UVec2, Vec2};
 
+use sandtable_draw::material::TextureWrap;
 use sandtable_draw::pixels::Pixels;
 
 #[derive(Debug)]
@@ -61,7 +62,7 @@ impl AlphaMask {
     }
 
     /// Bounds of [`AlphaMask::sample`] at all places up to `reach` around `uv`, each way; `None` where these are many, or the
-    /// texture repeats between them.
+    /// texture ends between them.
     pub fn bounds(&self, uv: Vec2, reach: Vec2, footprint: &MaskFootprint) -> Option<[f32; 2]> {
         let level = self.levels.get(footprint.level)?;
         let reach = if footprint.taps == 1 { reach } else { reach + footprint.axis.abs() * 0.5 };
@@ -70,15 +71,15 @@ impl AlphaMask {
         Some([(f32::from(least) - 0.5) / 255.0, (f32::from(greatest) + 0.5) / 255.0])
     }
 
-    /// The alpha around `uv`, 0..=1; the texture repeats in both directions.
-    pub fn sample(&self, uv: Vec2, footprint: &MaskFootprint) -> f32 {
+    /// The alpha around `uv`, 0..=1, of a texture that goes on beyond its borders as `wrap` says.
+    pub fn sample(&self, uv: Vec2, footprint: &MaskFootprint, wrap: [TextureWrap; 2]) -> f32 {
         let Some(level) = self.levels.get(footprint.level) else { return 1.0 };
         if footprint.taps == 1 {
-            return level.bilinear(uv);
+            return level.bilinear(uv, wrap);
         }
         let taps = footprint.taps as f32;
         let offset = |tap: u32| footprint.axis * ((tap as f32 + 0.5) / taps - 0.5);
-        (0..footprint.taps).map(|tap| level.bilinear(uv + offset(tap))).sum::<f32>() / taps
+        (0..footprint.taps).map(|tap| level.bilinear(uv + offset(tap), wrap)).sum::<f32>() / taps
     }
 }
 
@@ -131,16 +132,16 @@ impl AlphaLevel {
         Some([least.into_iter().min()?, greatest.into_iter().max()?])
     }
 
-    fn bilinear(&self, uv: Vec2) -> f32 {
+    fn bilinear(&self, uv: Vec2, wrap: [TextureWrap; 2]) -> f32 {
         let [width, height] = self.size;
         let [x, y] = (Vec2::new(uv.x * width as f32, uv.y * height as f32) - 0.5).to_array();
-        // Most readings are away from the border, where nothing repeats.
+        // Most readings are away from the border, where all textures are alike.
         if x >= 0.0 && y >= 0.0 && x < (width - 1) as f32 && y < (height - 1) as f32 {
             let (left, top) = (x as u32, y as u32);
             let columns = (left as usize, left as usize + 1, x - left as f32);
             return self.blend(columns, (top as usize, top as usize + 1, y - top as f32));
         }
-        self.blend(neighbors(uv.x, width), neighbors(uv.y, height))
+        self.blend(neighbors(uv.x, width, wrap[0]), neighbors(uv.y, height, wrap[1]))
     }
 
     fn blend(&self, (left, right, x): (usize, usize, f32), (top, bottom, y): (usize, usize, f32)) -> f32 {
@@ -151,10 +152,25 @@ impl AlphaLevel {
     }
 }
 
-/// The two texels around a repeating coordinate and its distance from the first toward the second, in texels. `size`
-/// must not be 0. Rounds by casting, which is much cheaper than `floor` and `rem_euclid`. Casts saturate and turn NaN
-/// to 0: coordinates that are not finite give some texel too.
-pub fn neighbors(coordinate: f32, size: u32) -> (usize, usize, f32) {
+/// The two texels around a coordinate and its distance from the first toward the second, in texels. `size` must not be 0.
+pub fn neighbors(coordinate: f32, size: u32, wrap: TextureWrap) -> (usize, usize, f32) {
+    match wrap {
+        TextureWrap::Repeat => neighbors_around(coordinate, size),
+        TextureWrap::Mirror | TextureWrap::Clamp => neighbors_within(wrap.fold(coordinate), size),
+    }
+}
+
+/// Those of a coordinate in 0..=1 in a row that ends at its borders.
+fn neighbors_within(coordinate: f32, size: u32) -> (usize, usize, f32) {
+    let last = (size - 1) as f32;
+    let position = (coordinate * size as f32 - 0.5).clamp(0.0, last);
+    let first = position as u32;
+    (first as usize, (first + 1).min(size - 1) as usize, position - first as f32)
+}
+
+/// Those of a coordinate in a row that repeats. Rounds by casting, which is much cheaper than `floor` and `rem_euclid`.
+/// Casts saturate and turn NaN to 0: coordinates that are not finite give some texel too.
+fn neighbors_around(coordinate: f32, size: u32) -> (usize, usize, f32) {
     let part = coordinate - coordinate as i64 as f32;
     let repeated = if part < 0.0 { part + 1.0 } else { part }.clamp(0.0, 1.0);
     let position = repeated * size as f32 - 0.5;
@@ -171,6 +187,8 @@ mod tests {
     use super::*;
     use crate::mip_levels::smaller_levels;
     use sandtable_draw::color::Srgba;
+
+    const REPEAT: [TextureWrap; 2] = [TextureWrap::Repeat; 2];
 
     /// A square whose left half is a hole.
     fn half(side: u32) -> AlphaMask {
@@ -200,10 +218,32 @@ mod tests {
         let alpha = half(8);
         let sharp = alpha.footprint(Vec2::ZERO, Vec2::ZERO, 8);
         for (u, there) in [(0.25, 0.0), (0.75, 1.0), (0.5, 0.5), (1.0, 0.5), (-0.25, 1.0), (7.25, 0.0)] {
-            assert_eq!(alpha.sample(Vec2::new(u, 0.3), &sharp), there, "at {u}");
+            assert_eq!(alpha.sample(Vec2::new(u, 0.3), &sharp, REPEAT), there, "at {u}");
         }
         let long = alpha.footprint(Vec2::X, Vec2::ZERO, 8);
-        assert_eq!(alpha.sample(Vec2::new(0.1, 0.3), &long), 0.5);
+        assert_eq!(alpha.sample(Vec2::new(0.1, 0.3), &long, REPEAT), 0.5);
+    }
+
+    #[test]
+    fn a_mirrored_texture_meets_itself_and_a_clamped_one_keeps_its_border() {
+        use TextureWrap::{Clamp, Mirror, Repeat};
+        let alpha = half(8);
+        let sharp = alpha.footprint(Vec2::ZERO, Vec2::ZERO, 8);
+        for (u, wrap, there) in [
+            (1.25, Repeat, 0.0),
+            (1.25, Mirror, 1.0),
+            (1.75, Mirror, 0.0),
+            (-0.25, Mirror, 0.0),
+            (1.75, Clamp, 1.0),
+            (-0.25, Clamp, 0.0),
+            // At the border nothing of the other side is mixed in.
+            (1.0, Mirror, 1.0),
+            (0.0, Mirror, 0.0),
+            (1.0, Clamp, 1.0),
+        ] {
+            let read = alpha.sample(Vec2::new(u, 0.3), &sharp, [wrap, Repeat]);
+            assert_eq!(read, there, "{wrap:?} at {u}");
+        }
     }
 
     #[test]
@@ -229,9 +269,10 @@ mod tests {
             };
             bounded += 1;
             decided += u32::from(least > 0.5 || greatest < 0.5);
+            let wrap = [REPEAT, [TextureWrap::Mirror, TextureWrap::Clamp]][step as usize % 2];
             for sample in 0..9_u32 {
                 let [x, y] = [(sample % 3) as f32 - 1.0, (sample / 3) as f32 - 1.0].map(|way| way * 0.44);
-                let read = mask.sample(uv + right * x + down * y, &footprint);
+                let read = mask.sample(uv + right * x + down * y, &footprint, wrap);
                 assert!(least <= read && read <= greatest, "{read} is not in {least}..={greatest}");
             }
         }
@@ -241,11 +282,13 @@ mod tests {
     #[test]
     fn opaque_textures_and_hostile_coordinates_give_an_answer() {
         let opaque = AlphaMask::new(&Pixels::filled(4, 4, Srgba::WHITE), &[]);
-        assert_eq!(opaque.sample(Vec2::ZERO, &opaque.footprint(Vec2::X, Vec2::Y, 8)), 1.0);
+        assert_eq!(opaque.sample(Vec2::ZERO, &opaque.footprint(Vec2::X, Vec2::Y, 8), REPEAT), 1.0);
         let alpha = half(4);
         for coordinate in [f32::NAN, f32::INFINITY, f32::MAX, -f32::MAX] {
             let footprint = alpha.footprint(Vec2::splat(coordinate), Vec2::ONE, 8);
-            alpha.sample(Vec2::splat(coordinate), &footprint);
+            for wrap in [TextureWrap::Repeat, TextureWrap::Mirror, TextureWrap::Clamp] {
+                alpha.sample(Vec2::splat(coordinate), &footprint, [wrap; 2]);
+            }
             alpha.bounds(Vec2::splat(coordinate), Vec2::splat(coordinate.abs()), &footprint);
         }
     }

@@ -11,6 +11,7 @@ use crate::cpu::geometry::ScreenFace;
 use crate::cpu::hit::Barycentric;
 use crate::cpu::pattern::{SampleMask, SamplePattern};
 use crate::cpu::texture::Texture;
+use sandtable_draw::material::TextureWrap;
 
 /// The part of a pixel's side that a sample reads the mask over: the square root of an eighth, as most pictures have
 /// eight samples per pixel.
@@ -27,6 +28,8 @@ pub struct Cutout<'a> {
     /// The alpha at the face's corners, without the texture's.
     pub alphas: [f32; 3],
     pub texture: Option<(&'a Texture<'a>, [[f32; 2]; 3])>,
+    /// What the texture shows beyond its borders.
+    pub wrap: [TextureWrap; 2],
     /// The most readings of the texture along a pixel.
     pub most_taps: u32,
 }
@@ -59,7 +62,7 @@ impl Cutout<'_> {
         for sample in (0..N).filter(|sample| samples & (1 << sample) != 0) {
             let offset = Vec2::from(pattern.offset(sample)) - center;
             let at = uv + across * offset.x + along * offset.y;
-            let is_hole = alpha * mask.sample(at, &footprint) < self.cutoff;
+            let is_hole = alpha * mask.sample(at, &footprint, self.wrap) < self.cutoff;
             solid |= SampleMask::from(!is_hole) << sample;
         }
         solid

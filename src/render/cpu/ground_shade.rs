@@ -6,13 +6,14 @@
 use glam::{Vec2, Vec3};
 
 use crate::cpu::hit::FacePoint;
-use crate::cpu::texture::{Texel, TexelFootprint, Texture, Weighting};
+use crate::cpu::texture::{Reading, Texel, TexelFootprint, Texture, Weighting};
 use sandtable_draw::ground::{GroundDetail, GroundMap, GroundPost, PixelChange};
 use sandtable_draw::ground_cover::cover_noise;
 use sandtable_draw::ground_grain::ground_grain;
 use sandtable_draw::ground_imagery::{DrapedColor, GroundImagery};
 use sandtable_draw::ground_levels::{GroundLevel, PostCount, add_weighted, coarser_levels};
 use sandtable_draw::lighting::{ReceivedLight, ReliefPoint, ReliefShading};
+use sandtable_draw::material::TextureWrap;
 use sandtable_draw::water::ShorePixel;
 
 #[derive(Debug)]
@@ -188,7 +189,8 @@ fn draped(imagery: &GroundImagery, texture: &Texture<'_>, hit: &FacePoint, most_
     let uv_per_m = Vec2::new(1.0, -1.0) / imagery.size;
     let [right, down] = [hit.right, hit.down].map(|side| side.truncate() * uv_per_m);
     let footprint = TexelFootprint::new(right, down, texture.size(), most_taps);
-    let Texel { color, alpha } = texture.sample(uv, &footprint, Weighting::ByAlpha);
+    let reading = Reading { weighting: Weighting::ByAlpha, wrap: [TextureWrap::Repeat; 2] };
+    let Texel { color, alpha } = texture.sample(uv, &footprint, reading);
     DrapedColor { color, share: alpha }
 }
 

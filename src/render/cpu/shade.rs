@@ -10,7 +10,7 @@ use crate::cpu::geometry::ScreenFace;
 use crate::cpu::ground_shade::GroundShader;
 use crate::cpu::hit::{Barycentric, FacePoint};
 use crate::cpu::screen::Screen;
-use crate::cpu::texture::{Texel, TexelFootprint, Texture, Weighting};
+use crate::cpu::texture::{Reading, Texel, TexelFootprint, Texture, Weighting};
 use crate::shadow::Shadows;
 use crate::shadow::filter::ShadowReceiver;
 use sandtable_draw::ground_inset::GroundInset;
@@ -201,6 +201,7 @@ impl<'a> Shader<'a> {
             cutoff: if let AlphaMode::Mask(cutoff) = material.alpha { cutoff } else { 0.0 },
             alphas: corners.map(|corner| material.base_color.alpha() * corner.color.alpha()),
             texture: texture.map(|texture| (texture, corners.map(|corner| corner.uv))),
+            wrap: material.texture_wrap,
             most_taps: self.most_taps,
         }
     }
@@ -236,7 +237,7 @@ impl<'a> Shader<'a> {
         let footprint = TexelFootprint::new(right, down, texture.size(), self.most_taps);
         let weighting =
             if material.alpha == AlphaMode::Opaque { Weighting::Even } else { Weighting::ByAlpha };
-        texture.sample(uv, &footprint, weighting)
+        texture.sample(uv, &footprint, Reading { weighting, wrap: material.texture_wrap })
     }
 }
 

@@ -8,6 +8,7 @@ use glam::{Vec2, Vec3};
 use crate::cpu::alpha::{AlphaMask, neighbors};
 use crate::mip_levels::smaller_levels;
 use sandtable_draw::color::{Srgba, linear_from_srgb};
+use sandtable_draw::material::TextureWrap;
 use sandtable_draw::pixels::Pixels;
 
 #[derive(Debug)]
@@ -17,6 +18,14 @@ pub struct Texture<'a> {
     /// For masks.
     pub alpha: AlphaMask,
     linear: [f32; 256],
+}
+
+/// How a texture is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reading {
+    pub weighting: Weighting,
+    /// What it shows beyond its borders, along U and along V.
+    pub wrap: [TextureWrap; 2],
 }
 
 /// The weight of the colors of transparent texels.
@@ -88,15 +97,14 @@ impl<'a> Texture<'a> {
         Vec2::new(self.base.width() as f32, self.base.height() as f32)
     }
 
-    /// The color over a footprint around `uv`, trilinear. (0, 0) is the upper left corner, (1, 1) the lower right; the
-    /// picture repeats in both directions.
-    pub fn sample(&self, uv: Vec2, footprint: &TexelFootprint, weighting: Weighting) -> Texel {
+    /// The color over a footprint around `uv`, trilinear. (0, 0) is the upper left corner, (1, 1) the lower right.
+    pub fn sample(&self, uv: Vec2, footprint: &TexelFootprint, reading: Reading) -> Texel {
         if self.base.data().is_empty() {
             return Texel::WHITE;
         }
         let level = footprint.level.min(self.smaller.len() as f32);
         let (larger, part) = (level as usize, level - (level as usize) as f32);
-        let mut sum = TexelSum { weighting, color: Vec3::ZERO, color_weight: 0.0, alpha: 0.0, weight: 0.0 };
+        let mut sum = TexelSum { reading, color: Vec3::ZERO, color_weight: 0.0, alpha: 0.0, weight: 0.0 };
         for offset in footprint.offsets() {
             let at = uv + offset;
             self.add_bilinear(&mut sum, at, larger, 1.0 - part);
@@ -109,8 +117,9 @@ impl<'a> Texture<'a> {
 
     fn add_bilinear(&self, sum: &mut TexelSum, uv: Vec2, level: usize, weight: f32) {
         let pixels = level.checked_sub(1).map_or(self.base, |index| &self.smaller[index]);
-        let (left, right, x) = neighbors(uv.x, pixels.width());
-        let (top, bottom, y) = neighbors(uv.y, pixels.height());
+        let [across, down] = sum.reading.wrap;
+        let (left, right, x) = neighbors(uv.x, pixels.width(), across);
+        let (top, bottom, y) = neighbors(uv.y, pixels.height(), down);
         let data = pixels.data();
         let mut add = |row: usize, column: usize, weight: f32| {
             let Srgba([red, green, blue, alpha]) = data[row * pixels.width() as usize + column];
@@ -125,7 +134,7 @@ impl<'a> Texture<'a> {
 }
 
 struct TexelSum {
-    weighting: Weighting,
+    reading: Reading,
     color: Vec3,
     color_weight: f32,
     alpha: f32,
@@ -134,7 +143,7 @@ struct TexelSum {
 
 impl TexelSum {
     fn add(&mut self, color: Vec3, alpha: f32, weight: f32) {
-        let color_weight = match self.weighting {
+        let color_weight = match self.reading.weighting {
             Weighting::Even => weight,
             Weighting::ByAlpha => weight * alpha,
         };
@@ -154,6 +163,8 @@ impl TexelSum {
 mod tests {
     use super::*;
 
+    const EVEN: Reading = Reading { weighting: Weighting::Even, wrap: [TextureWrap::Repeat; 2] };
+
     fn sharp() -> TexelFootprint {
         TexelFootprint { axis: Vec2::ZERO, taps: 1, level: 0.0 }
     }
@@ -168,8 +179,19 @@ mod tests {
         let pixels = Pixels::from_fn(4, 2, |x, y| Srgba::opaque(10 * x as u8, 100 * y as u8, 7));
         let texture = Texture::new(&pixels);
         for (u, v) in [(0.625, 0.75), (-0.375, 1.75), (5.625, -7.25)] {
-            let texel = texture.sample(Vec2::new(u, v), &sharp(), Weighting::Even);
+            let texel = texture.sample(Vec2::new(u, v), &sharp(), EVEN);
             assert!((texel.color - Srgba::opaque(20, 100, 7).linear()).length() < 1e-6, "{u}, {v}");
+        }
+    }
+
+    #[test]
+    fn each_axis_goes_on_beyond_the_border_in_its_own_way() {
+        let pixels = Pixels::from_fn(4, 2, |x, y| Srgba::opaque(10 * x as u8, 100 * y as u8, 7));
+        let texture = Texture::new(&pixels);
+        let wrap = [TextureWrap::Mirror, TextureWrap::Clamp];
+        for (u, v, [x, y]) in [(1.125, 0.25, [3, 0]), (1.625, 7.0, [1, 1]), (-0.375, -3.0, [1, 0])] {
+            let texel = texture.sample(Vec2::new(u, v), &sharp(), Reading { wrap, ..EVEN });
+            assert!((texel.color - pixels.at(x, y).linear()).length() < 1e-6, "{u}, {v}");
         }
     }
 
@@ -179,7 +201,7 @@ mod tests {
             let pixels = checker(side);
             let texture = Texture::new(&pixels);
             let blurred = TexelFootprint { level: 99.0, ..sharp() };
-            let texel = texture.sample(Vec2::new(0.3, 0.1), &blurred, Weighting::Even);
+            let texel = texture.sample(Vec2::new(0.3, 0.1), &blurred, EVEN);
             assert!((texel.color.x - 0.5).abs() < 0.02, "{side}: {}", texel.color.x);
         }
     }
@@ -188,7 +210,7 @@ mod tests {
     fn odd_sides_keep_their_mean_light_too() {
         let pixels = Pixels::from_fn(7, 5, |x, _| Srgba::opaque(if x < 2 { 255 } else { 0 }, 0, 0));
         let texture = Texture::new(&pixels);
-        let texel = texture.sample(Vec2::ZERO, &TexelFootprint { level: 99.0, ..sharp() }, Weighting::Even);
+        let texel = texture.sample(Vec2::ZERO, &TexelFootprint { level: 99.0, ..sharp() }, EVEN);
         assert!((texel.color.x - 2.0 / 7.0).abs() < 0.01, "{}", texel.color.x);
     }
 
@@ -196,7 +218,8 @@ mod tests {
     fn a_hole_s_color_does_not_bleed_when_weighted_by_alpha() {
         let pixels = Pixels::from_fn(2, 1, |x, _| if x == 0 { Srgba::WHITE } else { Srgba([0, 0, 0, 0]) });
         let texture = Texture::new(&pixels);
-        let texel = texture.sample(Vec2::new(0.5, 0.5), &sharp(), Weighting::ByAlpha);
+        let texel =
+            texture.sample(Vec2::new(0.5, 0.5), &sharp(), Reading { weighting: Weighting::ByAlpha, ..EVEN });
         assert!((texel.color - Vec3::ONE).length() < 1e-6 && (texel.alpha - 0.5).abs() < 1e-6);
     }
 
@@ -214,9 +237,9 @@ mod tests {
         let texture = Texture::new(&pixels);
         for coordinate in [f32::NAN, f32::INFINITY, f32::MAX, -f32::MAX] {
             let footprint = TexelFootprint::new(Vec2::splat(coordinate), Vec2::ONE, texture.size(), 8);
-            texture.sample(Vec2::splat(coordinate), &footprint, Weighting::Even);
+            texture.sample(Vec2::splat(coordinate), &footprint, EVEN);
         }
-        let white = Texture::new(&empty).sample(Vec2::ZERO, &sharp(), Weighting::Even);
+        let white = Texture::new(&empty).sample(Vec2::ZERO, &sharp(), EVEN);
         assert_eq!(white, Texel { color: Vec3::ONE, alpha: 1.0 });
     }
 }

@@ -12,7 +12,7 @@ use crate::shadow::casters::{CasterTriangle, LightTriangles};
 use crate::shadow::coverage::cover_centers;
 use crate::shadow::levels::{KeptPages, MapSource, PageRange};
 use crate::shadow::{NOTHING, PAGE, ShadowLevel, ShadowPage, ShadowPurpose, ShadowTexel};
-use sandtable_draw::material::AlphaMode;
+use sandtable_draw::material::{AlphaMode, TextureWrap};
 
 /// How far outside a level corners may lie, in texels; triangles that reach farther are cut.
 const GUARD_TEXELS: f32 = 8192.0;
@@ -77,6 +77,7 @@ struct TexelPlane<'a> {
 /// The alpha of a masked triangle over a level.
 struct TexelMask<'a> {
     mask: Option<&'a AlphaMask>,
+    wrap: [TextureWrap; 2],
     cutoff: f32,
     /// Texture coordinates and vertex alpha at the start, and their change per texel.
     start: Vec3,
@@ -233,6 +234,7 @@ impl Filling<'_> {
             let [start, second, third] = [values[0], values[1] - values[0], values[2] - values[0]];
             Some(TexelMask {
                 mask: material.texture.and_then(|id| self.source.triangles.masks.get(&id.0)),
+                wrap: material.texture_wrap,
                 cutoff,
                 start,
                 across: (second * ac.y - third * ab.y) / area,
@@ -271,7 +273,7 @@ impl TexelPlane<'_> {
         let here = mask.start + mask.across * offset.x + mask.along * offset.y;
         let alpha = mask.mask.map_or(1.0, |alphas| {
             let footprint = alphas.footprint(mask.across.xy(), mask.along.xy(), 1);
-            alphas.sample(here.xy(), &footprint)
+            alphas.sample(here.xy(), &footprint, mask.wrap)
         });
         alpha * here.z < mask.cutoff
     }

@@ -50,22 +50,21 @@ pub struct PlacedModels<'a> {
 }
 
 impl<'a> PlacedModels<'a> {
-    /// The models of some tables, each in its place.
-    ///
-    /// # Errors
-    /// A file or a source cannot be read, a model stands off the ground, or there are more than can be placed.
+    /// The models of some tables, each in its place. `collected` keeps an error where a file or a source cannot be read, a model
+    /// stands off the ground, or there are more than can be placed.
     pub(super) fn new(
         tables: impl Iterator<Item = &'a ModelPlacement>,
         sources: &Sources<'a>,
         lattice: &Lattice,
         collected: &mut SceneBuilder,
-    ) -> Result<Self, Diagnostic> {
+    ) -> Self {
         let library = Library::new(sources.frame.document, sources.assets);
         let mut placed = Self { library, groups: Vec::new(), placements: Vec::new() };
         for table in tables {
-            placed.add_table(table, sources, lattice, collected)?;
+            let added = placed.add_table(table, sources, lattice, collected);
+            collected.errors.keep(added);
         }
-        Ok(placed)
+        placed
     }
 
     fn add_table(

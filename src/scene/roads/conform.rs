@@ -16,6 +16,7 @@ use crate::roads::network_survey::{NetworkSurvey, Rules, conforms};
 use crate::roads::profiles::RoadProfile;
 use crate::roads::route::Route;
 use sandtable_base::limits::{GROUND_POSTS, ROAD_CROSSINGS, ROAD_PAIRS};
+use sandtable_base::message::numbers::{counted, fixed};
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::finding_code::FindingCode;
@@ -286,11 +287,18 @@ fn note_totals(
     for (table, (count, Volumes { cut_m3, fill_m3 }, [bridges, tunnels])) in tables {
         let name =
             document.roads[table].name.as_deref().map(|name| format!(" of '{name}'")).unwrap_or_default();
-        let roads = if count == 1 { "1 road".to_owned() } else { format!("{count} roads") };
-        let mut note =
-            format!("the ground follows {roads}{name}: {cut_m3:.0} m³ cut, {fill_m3:.0} m³ filled");
+        let roads = counted(count, "road", "roads");
+        let mut note = format!(
+            "the ground follows {roads}{name}: {} m³ cut, {} m³ filled",
+            fixed(cut_m3, 0),
+            fixed(fill_m3, 0)
+        );
         if bridges + tunnels > 0 {
-            note += &format!("; on bridges {bridges} times and in tunnels {tunnels} times");
+            note += &format!(
+                "; on bridges {} and in tunnels {}",
+                counted(bridges, "time", "times"),
+                counted(tunnels, "time", "times")
+            );
         }
         collected.findings.add(FindingCode::EarthMoved, document.roads[table].source.span(), note);
     }

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use sandtable_base::message::numbers::fixed;
 use sandtable_draw::list::FeatureId;
 use sandtable_earthworks::alignment::Support;
 use sandtable_geom::polyline::Polyline;
@@ -47,9 +48,9 @@ impl RoadProfile {
         let mut text = String::from("station_m,ground_m,design_m,carried\n");
         for (index, station_m) in self.design.stations().iter().enumerate() {
             let ground = Some(self.ground.values()[index]).filter(|ground| !ground.is_nan());
-            let ground = ground.map(|ground| format!("{ground:.3}")).unwrap_or_default();
-            let (design_m, support) = (self.design.values()[index], self.supports[index].word());
-            writeln!(text, "{station_m:.3},{ground},{design_m:.3},{support}")
+            let ground = ground.map(|ground| fixed(ground, 3)).unwrap_or_default();
+            let (design_m, support) = (fixed(self.design.values()[index], 3), self.supports[index].word());
+            writeln!(text, "{station_m:.3},{ground},{design_m},{support}")
                 .expect("text takes all that is written");
         }
         text

@@ -13,6 +13,7 @@ use crate::symbols::LineSymbol;
 use crate::water::lake_level::{FAR_OFF_HELP, LakeSurface, far_off_m, far_off_message};
 use sandtable_base::limits::GROUND_POSTS;
 use sandtable_base::message::choice::Choice;
+use sandtable_base::message::numbers::fixed;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::features::LakeTable;
@@ -129,10 +130,11 @@ impl Lake {
         let (level_m, volumes) = (self.level.level_m, flooded.volumes);
         let span = self.origin.span.clone();
         let message = format!(
-            "{} lies level at {level_m:.1} m: {:.0} m³ cut, {:.0} m³ filled",
+            "{} lies level at {} m: {} m³ cut, {} m³ filled",
             described("lake", &self.name),
-            volumes.cut_m3,
-            volumes.fill_m3
+            fixed(level_m, 1),
+            fixed(volumes.cut_m3, 0),
+            fixed(volumes.fill_m3, 0)
         );
         collected.findings.add(FindingCode::LakeLevel, span.clone(), message);
         if let (Some(lowest_m), Some(highest_m)) = (self.shore.lowest_m(), self.shore.highest_m())
@@ -149,8 +151,9 @@ impl Lake {
         }
         if let Some(lower_m) = flooded.lower_level_m {
             let message = format!(
-                "{} shares cells with a lake at {lower_m:.1} m, and the lower level holds there",
-                described("lake", &self.name)
+                "{} shares cells with a lake at {} m, and the lower level holds there",
+                described("lake", &self.name),
+                fixed(lower_m, 1)
             );
             collected.findings.add(FindingCode::LakesShareCells, span.clone(), message);
         }

@@ -17,6 +17,7 @@ use crate::report::RiverRow;
 use crate::sources::Sources;
 use crate::symbols::LineSymbol;
 use crate::water::network::{self, Stream};
+use sandtable_base::message::numbers::{counted, fixed};
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::finding_code::FindingCode;
@@ -78,10 +79,11 @@ fn report_cuts(streams: &[&Stream], cuts: &Cuts, collected: &mut SceneBuilder) {
     let sum = |of: fn(&Cut) -> f64| cuts.cuts.iter().map(of).sum::<f64>();
     let place = if stream.name.is_empty() { String::new() } else { format!(", in '{}'", stream.name) };
     let message = format!(
-        "the beds of {} rivers: {:.0} m³ cut, {:.0} m³ filled, {:.1} m deep at most{place}",
-        streams.len(),
-        sum(|cut| cut.volumes.cut_m3),
-        sum(|cut| cut.volumes.fill_m3),
+        "the {} of {}: {} m³ cut, {} m³ filled, {:.1} m deep at most{place}",
+        if streams.len() == 1 { "bed" } else { "beds" },
+        counted(streams.len(), "river", "rivers"),
+        fixed(sum(|cut| cut.volumes.cut_m3), 0),
+        fixed(sum(|cut| cut.volumes.fill_m3), 0),
         cut.deepest_m
     );
     collected.findings.add(FindingCode::EarthMoved, 0..0, message);
@@ -105,17 +107,18 @@ fn report_climbs(streams: &[&Stream], cuts: &Cuts, origin: DVec2, collected: &mu
         let [from, to] =
             [climb.from_m, climb.to_m].map(|station_m| stream.street.alignment.line.at(station_m) + origin);
         let message = format!(
-            "the ground rises downstream at {count} places of {} rivers, by {:.1} m at most ({name}{:.0} to {:.0} m from \
-             its source, ({:.0}, {:.0}) to ({:.0}, {:.0})): no cut as deep as `max_cut` lets water fall there, so the \
+            "the ground rises downstream at {} of {}, by {:.1} m at most ({name}{:.0} to {:.0} m from \
+             its source, ({}, {}) to ({}, {})): no cut as deep as `max_cut` lets water fall there, so the \
              ground stays as it is; the lines do not follow the model's valleys, or its cells are too wide for these",
-            rivers.len(),
+            counted(count, "place", "places"),
+            counted(rivers.len(), "river", "rivers"),
             climb.rise_m,
             climb.from_m,
             climb.to_m,
-            from.x,
-            from.y,
-            to.x,
-            to.y
+            fixed(from.x, 0),
+            fixed(from.y, 0),
+            fixed(to.x, 0),
+            fixed(to.y, 0)
         );
         collected.findings.add(FindingCode::RiverUphill, start..end, message);
     }

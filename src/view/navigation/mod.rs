@@ -44,6 +44,12 @@ const SETTLE_S: f64 = 0.06;
 /// The height of a walker's eye above the ground, meters.
 const EYE_HEIGHT_M: f64 = 1.7;
 
+/// How far within the border of the scene a walker stays, as a share of its sides: on it there may be no ground.
+const BORDER_SHARE: f64 = 1e-3;
+
+/// The places on the way to the middle of a scene at which ground is looked for where there is none at its border.
+const WAY_IN: u32 = 64;
+
 /// The seconds in which a named view is flown to.
 pub const TRANSITION_S: f64 = 1.2;
 
@@ -104,7 +110,8 @@ impl Navigator {
         self.mode
     }
 
-    /// Changes how steps move the eye. Who begins to walk stands on the ground below at the next step of time.
+    /// Changes how steps move the eye. Who begins to walk stands on the ground below at the next step of time; off the scene,
+    /// he is brought to its nearest ground.
     pub fn set_mode(&mut self, mode: NavigationMode) {
         self.mode = mode;
     }
@@ -189,6 +196,9 @@ impl Navigator {
             return self.pose != before;
         }
         self.pose.eye = self.within(self.pose.eye + way * self.speed_mps(ground) * seconds);
+        if self.mode == NavigationMode::OnFoot && self.holds(before.eye.truncate()) {
+            self.pose.eye = self.nearest_within(self.pose.eye.truncate()).extend(self.pose.eye.z);
+        }
         match self.mode {
             NavigationMode::OnFoot => self.settle(seconds, ground),
             NavigationMode::Orbit | NavigationMode::Flight => self.keep_above(ground),
@@ -225,14 +235,44 @@ impl Navigator {
         way.clamp_length_max(1.0)
     }
 
-    /// Brings a walker's eye nearer to its height above the ground.
+    /// Brings a walker's eye nearer to its height above the ground, or to the scene, where it is off that.
     fn settle(&mut self, seconds: f64, ground: GroundZ<'_>) {
-        if let Some(z) = ground(self.pose.eye.truncate()) {
-            let wanted = z + EYE_HEIGHT_M;
-            let left = libm::exp2(-seconds / SETTLE_S);
-            self.pose.eye.z = wanted + (self.pose.eye.z - wanted) * left;
+        let at = self.pose.eye.truncate();
+        match ground(at) {
+            Some(z) => {
+                let wanted = z + EYE_HEIGHT_M;
+                let left = libm::exp2(-seconds / SETTLE_S);
+                self.pose.eye.z = wanted + (self.pose.eye.z - wanted) * left;
+            }
+            None if !self.holds(at) => self.step_onto_the_scene(ground),
+            // A void, or ground that is still being read.
+            None => {}
         }
         self.keep_above(ground);
+    }
+
+    /// Begins the way to the ground nearest to the eye: at the border of the scene, else on the line to its middle.
+    fn step_onto_the_scene(&mut self, ground: GroundZ<'_>) {
+        let border = self.nearest_within(self.pose.eye.truncate());
+        let middle = self.space.min.midpoint(self.space.max).truncate();
+        let way_in = (0..=WAY_IN).map(|step| border.lerp(middle, f64::from(step) / f64::from(WAY_IN)));
+        let mut places = way_in.filter_map(|at| Some(at.extend(ground(at)?)));
+        if let Some(place) = places.next() {
+            let eye = place + DVec3::Z * EYE_HEIGHT_M;
+            self.go_to(ViewPose { eye, ..self.pose }, TRANSITION_S);
+        }
+    }
+
+    /// Whether a place lies on the scene, as far within its border as a walker stays.
+    fn holds(&self, at: DVec2) -> bool {
+        self.nearest_within(at) == at
+    }
+
+    /// The nearest place that a walker may stand at.
+    fn nearest_within(&self, at: DVec2) -> DVec2 {
+        let (min, max) = (self.space.min.truncate(), self.space.max.truncate());
+        let margin = (max - min) * BORDER_SHARE;
+        at.max(min + margin).min(max - margin)
     }
 
     fn keep_above(&mut self, ground: GroundZ<'_>) {
@@ -310,6 +350,45 @@ mod tests {
         let before = navigator.pose();
         navigator.drag(grabbed, DVec3::new(0.0, 1.0, 0.2), &|_| None);
         assert_eq!(navigator.pose(), before, "past the horizon");
+    }
+
+    /// Hills from -2000 to 2000 m both ways, and none beyond.
+    fn cut_hills(at: DVec2) -> Option<f64> {
+        hills(at).filter(|_| at.abs().max_element() < 2000.0)
+    }
+
+    #[test]
+    fn who_begins_to_walk_off_the_scene_comes_down_on_its_border_and_stays_on_it() {
+        for start in [DVec3::new(2600.0, 300.0, 900.0), DVec3::new(-9000.0, 9000.0, 50.0)] {
+            let mut navigator = navigator();
+            navigator.place(ViewPose { eye: start, ..navigator.pose() }, &cut_hills);
+            navigator.set_mode(NavigationMode::OnFoot);
+            navigator.advance(0.02, NavigationSteps::default(), &cut_hills);
+            assert!(navigator.is_on_its_way(), "frames follow");
+            for _ in 0..150 {
+                navigator.advance(0.02, NavigationSteps::default(), &cut_hills);
+            }
+            let eye = navigator.pose().eye;
+            let above = eye.z - cut_hills(eye.truncate()).expect("on the scene");
+            assert!((above - 1.7).abs() < 0.01, "{above} at {eye}");
+            let border = start.truncate().clamp(DVec2::splat(-2000.0), DVec2::splat(2000.0));
+            assert!(eye.truncate().distance(border) < 10.0, "{eye}");
+            // Backward and aside, over the border.
+            let steps = NavigationSteps { forward: -1.0, right: 1.0, up: 0.0 };
+            for _ in 0..900 {
+                navigator.advance(0.02, steps, &cut_hills);
+            }
+            assert!(cut_hills(navigator.pose().eye.truncate()).is_some(), "{:?}", navigator.pose());
+        }
+    }
+
+    #[test]
+    fn a_walker_waits_where_ground_within_the_scene_is_not_known_yet() {
+        let mut navigator = navigator();
+        navigator.set_mode(NavigationMode::OnFoot);
+        let before = navigator.pose();
+        navigator.advance(0.02, NavigationSteps::default(), &|_| None);
+        assert_eq!((navigator.pose(), navigator.is_on_its_way()), (before, false));
     }
 
     #[test]

@@ -199,6 +199,7 @@ impl Field {
             height: n,
             samples: Samples::F32(southward),
             meters_per_z: 1.0,
+            states_z_unit: false,
             map_from_grid: glam::DAffine2::from_scale_angle_translation(
                 DVec2::new(CELL_M, -CELL_M),
                 0.0,

@@ -49,6 +49,7 @@ impl Rolling {
             height: POSTS,
             samples: Samples::F32(Vec::new()),
             meters_per_z: 1.0,
+            states_z_unit: false,
             map_from_grid: DAffine2 { matrix2: axes, translation: DVec2::new(5e5, 4e6) },
             georeferenced: true,
             crs: None,

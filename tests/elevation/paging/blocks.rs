@@ -37,6 +37,7 @@ pub fn raster(width: u32, height: u32, seed: u64, holes: u32) -> Raster {
         height,
         samples: Samples::F32((0..width * height).map(sample).collect()),
         meters_per_z: 1.0,
+        states_z_unit: false,
         map_from_grid: DAffine2 { matrix2: axes, translation: DVec2::new(5e5, 4e6) },
         georeferenced: true,
         crs: None,

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 use sandtable_draw::color::{Srgba, linear_from_srgb};
 use sandtable_draw::ground::Contours;
 use sandtable_draw::list::{DepthLayer, DrawList, FeatureId};
-use sandtable_draw::material::Material;
+use sandtable_draw::material::{Material, TextureWrap};
 use sandtable_draw::pixels::Pixels;
 use sandtable_view::camera::Camera;
 
@@ -46,6 +46,53 @@ fn texture_coordinates_are_correct_in_perspective() {
         checked += 1;
     }
     assert!(checked > 100);
+}
+
+#[test]
+fn each_axis_of_a_texture_goes_on_beyond_its_border_in_its_own_way() {
+    use TextureWrap::{Clamp, Mirror, Repeat};
+    // Where a wall reads a texture of 64 steps from black to full: to the left of it, on it, to the right and farther.
+    let places = [-0.25f32, 0.25, 0.75, 1.25, 1.75, 2.25];
+    for (wrap, expected) in [
+        (Repeat, [0.75f32, 0.25, 0.75, 0.25, 0.75, 0.25]),
+        (Mirror, [0.25, 0.25, 0.75, 0.75, 0.25, 0.25]),
+        (Clamp, [0.0, 0.25, 0.75, 1.0, 1.0, 1.0]),
+    ] {
+        for axis in [0, 1] {
+            let mut list = DrawList::default();
+            plain_light(&mut list);
+            let ramp = Pixels::from_fn(64, 64, |x, y| Srgba::opaque([x, y][axis] as u8 * 4, 0, 0));
+            let mut texture_wrap = [Repeat; 2];
+            texture_wrap[axis] = wrap;
+            let material =
+                Material { texture: Some(list.add_texture(ramp)), texture_wrap, ..Material::default() };
+            // Coordinates from -0.5 to 2.5 over the wall.
+            let mut mesh = wall(10.0, [-3.0, 3.0], [-3.0, 3.0], Srgba::WHITE);
+            mesh.vertices.iter_mut().for_each(|vertex| vertex.uv = vertex.uv.map(|at| at * 3.0 - 0.5));
+            item(&mut list, mesh, material, DepthLayer::Solid, BOX);
+            let camera = northward((300, 300));
+            let picture = shot(&list, &camera);
+            for (place, share) in places.into_iter().zip(expected) {
+                let across = (place + 0.5) * 2.0 - 3.0;
+                // V runs downward.
+                let world =
+                    if axis == 0 { Vec3::new(across, 10.0, 0.9) } else { Vec3::new(0.9, 10.0, -across) };
+                let seen = (0..300 * 300).map(|at| (at % 300, at / 300)).min_by(|&a, &b| {
+                    let off = |(x, y): (u32, u32)| {
+                        let ray = camera.ray_through(Vec2::new(x as f32 + 0.5, y as f32 + 0.5));
+                        (ray * (10.0 / ray.y)).distance_squared(world)
+                    };
+                    off(a).total_cmp(&off(b))
+                });
+                let (x, y) = seen.expect("pixels");
+                let red = f32::from(picture.pixels.at(x, y).0[0]) / 252.0;
+                assert!(
+                    (red - share).abs() < 0.04,
+                    "{wrap:?} along axis {axis} at {place}: {red} for {share}"
+                );
+            }
+        }
+    }
 }
 
 #[test]

@@ -138,7 +138,7 @@ fn a_folder_of_tiles_is_one_raster() {
     let about: Value = serde_json::from_str(&out).expect("JSON");
     assert_eq!((&about["width"], &about["max"]), (&Value::from(3), &Value::from(3.0)));
     assert!(
-        about["notes"][0].as_str().expect("a note").contains("1 of them differ, by up to 0.5"),
+        about["notes"][0].as_str().expect("a note").contains("1 of them differs, by up to 0.5"),
         "{about}"
     );
 
@@ -160,10 +160,24 @@ fn dem_info_tells_type_datum_unit_and_voids() {
     assert_eq!((&about["type"], &about["enclosed_voids"]), (&Value::from("Int32"), &Value::from(1)));
     assert_eq!((&about["vertical_datum"], &about["meters_per_z"]), (&Value::Null, &Value::from(1.0)));
     let table = run_in(scratch.folder(), &["dem", "info", "a.asc"]).ok();
-    for wanted in ["type     Int32", "1 samples, 1 of them enclosed", "datum    none stated", "unit     1 m"]
+    for wanted in
+        ["type     Int32", "1 sample, 1 of them enclosed, in 1 void", "datum    none stated", "unit     1 m"]
     {
         assert!(table.contains(wanted), "{wanted} in\n{table}");
     }
+}
+
+#[test]
+fn elevations_beside_coordinates_in_feet_are_told_to_be_taken_for_meters() {
+    let scratch = Scratch::new();
+    let at = "ncols 2\nnrows 2\nxllcorner 2700000\nyllcorner 250000\ncellsize 10\n";
+    scratch.write("a.asc", format!("{at}1053 1100\n1200 1664\n"));
+    scratch.write("a.prj", "EPSG:2272");
+    let info = run_in(scratch.folder(), &["dem", "info", "a.asc"]).ok();
+    let told = "coordinates are in US survey feet, and nothing states the unit of elevations";
+    assert!(info.contains(told), "{info}");
+    let heights = run_in(scratch.folder(), &["height", "a.asc", "--at", "2700010,250010"]);
+    assert!(heights.err.contains(told), "{}", heights.err);
 }
 
 #[test]

@@ -36,9 +36,12 @@ fn a_scene_with_nothing_to_tell_says_so() {
 }
 
 #[test]
-fn a_folder_that_is_not_there_is_told() {
+fn a_folder_that_is_not_there_is_made_and_a_file_in_its_place_is_told() {
     let scratch = Scratch::new();
-    let said = run_in(scratch.folder(), &["report", &project("scenes/earthworks.toml"), "--csv", "nowhere"])
-        .failed(1);
-    assert!(said.contains("nowhere"), "{said}");
+    let scene = project("scenes/earthworks.toml");
+    let said = run_in(scratch.folder(), &["report", &scene, "--csv", "new/of_scene"]).ok();
+    assert!(said.lines().count() > 1 && said.lines().all(|path| scratch.at(path).is_file()), "{said}");
+    scratch.write("taken", "a file");
+    let said = run_in(scratch.folder(), &["report", &scene, "--csv", "taken"]).failed(1);
+    assert!(said.contains("taken"), "{said}");
 }

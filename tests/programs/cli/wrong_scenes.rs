@@ -63,6 +63,58 @@ fn what_turns_out_wrong_while_building_points_into_the_file_too() {
 }
 
 #[test]
+fn one_check_tells_every_table_that_keeps_the_scene_from_being_built() {
+    let tables = [
+        ("[[symbol]]\nsidc = \"nonsense\"\nat = [750500, 4018883]\n", "wrong-value"),
+        ("[[symbol]]\nsidc = \"10031000161211020000\"\nat = [1, 2]\n", "off-terrain"),
+        ("[[graphic]]\nkind = \"boundry\"\npoints = [[750500, 4018883], [751000, 4019000]]\n", "wrong-value"),
+        ("[[graphic]]\nkind = \"boundary\"\npoints = [[750500, 4018883]]\n", "wrong-value"),
+        ("[[label]]\ntext = \"off\"\nat = [1, 2]\n", "off-terrain"),
+        ("[[label]]\ntext = \"off too\"\nat = [3, 4]\n", "off-terrain"),
+        ("[[model]]\nfile = \"none.glb\"\nat = [750500, 4018883]\n", "missing-file"),
+        ("[[model]]\nfile = \"conifer\"\nat = [1, 2]\n", "off-terrain"),
+        ("[[sight]]\nobserver = [1, 2]\ntargets = [[750500, 4018883]]\n", "off-terrain"),
+        ("[[road]]\nfile = \"none.geojson\"\n", "missing-file"),
+        ("[[area]]\ncover = \"forest\"\nfile = \"none.geojson\"\n", "missing-file"),
+        ("[[camera]]\nname = \"a\"\neye = [0, 0]\nlook_at = [750500, 4018883]\n", "off-terrain"),
+        ("[[camera]]\nname = \"b\"\neye = [750500, 4018883]\nlook_at = [0, 0]\n", "off-terrain"),
+    ];
+    let text: String = tables.iter().map(|(table, _)| *table).collect();
+    let scratch = valley(&text);
+    let refused = check(&scratch).failed(1);
+    // Each in its own lines of the file, which has three before.
+    let mut line = 4;
+    for (table, code) in tables {
+        let lines = line..line + table.lines().count();
+        let is_told = refused.lines().any(|told| {
+            let place = told.strip_prefix("scenes/a.toml:").or_else(|| told.split("a.toml:").nth(1));
+            let at = place.and_then(|place| place.split(':').next()?.parse::<usize>().ok());
+            at.is_some_and(|at| lines.contains(&at)) && told.contains(&format!("error[{code}]"))
+        });
+        assert!(is_told, "{code} in lines {lines:?} of\n{text}\nin\n{refused}");
+        line = lines.end;
+    }
+    let json = run_in(&scratch.at("project"), &["check", "scenes/a.toml", "--json"]);
+    let told: serde_json::Value = serde_json::from_str(&json.out).expect("JSON");
+    assert_eq!(told["errors"], 13, "{told:#}");
+}
+
+#[test]
+fn labels_over_voids_are_all_told() {
+    let scratch = Scratch::new();
+    let grid = "ncols 4\nnrows 4\nxllcorner 0\nyllcorner 0\ncellsize 10\nnodata_value -9\n";
+    let rows = "1 2 3 -9\n1 2 3 -9\n1 2 3 -9\n1 2 3 -9\n";
+    scratch.write("project/data/valley.asc", format!("{grid}{rows}"));
+    let label = |y: f64| format!("[[label]]\ntext = \"void\"\nat = [35, {y}]\n");
+    let head = "[terrain]\ndem = \"../data/valley.asc\"\ncrs = \"EPSG:32616\"\nfill_voids = false\n";
+    scratch.write("project/scenes/a.toml", format!("{head}{}{}", label(15.0), label(25.0)));
+    let refused = check(&scratch).failed(1);
+    for line in [7, 10] {
+        assert!(refused.contains(&format!("a.toml:{line}:6: error[nodata-under]")), "{line} in\n{refused}");
+    }
+}
+
+#[test]
 fn a_missing_elevation_file_is_told_with_the_name_that_is_there() {
     let scratch = Scratch::new();
     scratch.write("project/data/valley.asc", "");

@@ -326,6 +326,7 @@ fn raster(world: &World) -> Raster {
         height: rows,
         samples: Samples::F32(from_north.collect()),
         meters_per_z: 1.0,
+        states_z_unit: false,
         map_from_grid: DAffine2 {
             matrix2: axes,
             translation: DVec2::new(-5.0, f64::from(rows) * 10.0 - 5.0),

@@ -198,6 +198,7 @@ class Renderer {
       : [bands[batch.band], batch.band === 0 ? 1e30 : bands[batch.band], bands[batch.band + 1] ?? 0, frame.pixel]));
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, material.texture === null ? this.scene.white : this.scene.textures[material.texture]);
+    if (material.texture !== null) this.scene.setWrap(material.wrap);
     if (material.twoSided || frame.isShadow) gl.disable(gl.CULL_FACE);
     else gl.enable(gl.CULL_FACE);
     gl.bindVertexArray(batch.array);

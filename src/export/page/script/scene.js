@@ -161,6 +161,14 @@ class AdapterScene {
     return made;
   }
 
+  // What the bound texture shows beyond its borders: two materials may show one texture in two ways.
+  setWrap(wrap) {
+    const { gl } = this;
+    const ways = { repeat: gl.REPEAT, mirror: gl.MIRRORED_REPEAT, clamp: gl.CLAMP_TO_EDGE };
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, ways[wrap[0]]);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, ways[wrap[1]]);
+  }
+
   sharpen() {
     if (this.sharp) this.gl.texParameteri(this.gl.TEXTURE_2D, this.sharp.TEXTURE_MAX_ANISOTROPY_EXT, 8);
   }
