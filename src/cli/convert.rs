@@ -116,8 +116,8 @@ fn copied(
     let written = raster_file::write_windows(&mut *windows, format, out, input)?;
     let raster = windows.metadata().without_samples();
     Ok(written.map(|WrittenWindows { stored, valid, notes }| {
-        let converted =
-            Converted { raster, resampling: Resampling::Kept, datum_shift: None, notes: Vec::new() };
+        let own = raster.notes.clone();
+        let converted = Converted { raster, resampling: Resampling::Kept, datum_shift: None, notes: own };
         (converted, WrittenDem { bytes: Vec::new(), companions: Vec::new(), stored, notes }, valid)
     }))
 }
@@ -164,7 +164,7 @@ fn with_remedy(file: &Path, error: &ConvertError) -> CliError {
     let remedy = match error {
         ConvertError::NoCrs(_) => "; name its own, for example --source-crs EPSG:4326".to_owned(),
         ConvertError::CellInDegrees { cell, zone: Some(zone) } => {
-            format!("; for cells of {cell} m bring it to its UTM zone, --crs {zone}")
+            format!("; for cells of {cell} m bring it to meters, --crs {zone}")
         }
         ConvertError::CellInDegrees { cell, zone: None } => {
             format!("; for cells of {cell} m bring it to a projected system")
@@ -207,6 +207,7 @@ fn summary(
         Resampling::Kept => "no, the samples are the file's",
         Resampling::Bilinear => "bilinear, between the four samples around each cell's center",
         Resampling::Average => "average of the samples in each cell",
+        Resampling::OfTiles => "tiles of other cells, as the notes say",
     };
     let row = |name: &str, value: &str| row(12, name, value);
     let mut lines = vec![

@@ -13,8 +13,10 @@ use sandtable_base::message::numbers::counted;
 use sandtable_files::error::FileError;
 use sandtable_query::dem::{self, OpenedDem};
 use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::odd_values::written;
 use sandtable_raster::raster::Raster;
-use sandtable_raster::stats::Stats;
+use sandtable_raster::stats::{RasterSurvey, Stats};
+use sandtable_raster::undeclared::undeclared_nodata;
 use sandtable_raster::unstated_unit;
 use sandtable_raster::void_counts::VoidCounts;
 
@@ -41,12 +43,13 @@ pub fn run(arguments: &DemInfoArguments) -> Result<(), CliError> {
         OpenedDem::Kept(mosaic) => {
             let joined = arguments.file.is_dir().then(|| mosaic.note());
             let (stats, voids) = (Stats::new(&mosaic.raster), VoidCounts::of(&mosaic.raster));
-            DemInfo::new(mosaic.raster, stats, voids, joined)
+            let undeclared = undeclared_nodata(&mosaic.raster);
+            DemInfo::new(mosaic.raster, RasterSurvey { stats, voids, undeclared }, joined)
         }
         OpenedDem::Windows(mut windows) => {
             let measured = Stats::of_windows(&mut *windows);
-            let (stats, voids) = measured.map_err(FileError::<DemErrorKind>::at(&arguments.file))?;
-            DemInfo::new(windows.metadata().without_samples(), stats, voids, None)
+            let surveyed = measured.map_err(FileError::<DemErrorKind>::at(&arguments.file))?;
+            DemInfo::new(windows.metadata().without_samples(), surveyed, None)
         }
     };
     if arguments.json { print(&format!("{}\n", info.json())) } else { print_lines(&info.table()) }
@@ -65,10 +68,16 @@ struct DemInfo {
 }
 
 impl DemInfo {
-    fn new(raster: Raster, stats: Stats, enclosed_voids: VoidCounts, joined: Option<String>) -> Self {
-        let own = format_note(&raster).map(str::to_owned).into_iter().chain(unstated_unit::note(&raster));
-        let notes = joined.into_iter().chain(own).collect();
-        Self { raster, stats, enclosed_voids, notes }
+    fn new(raster: Raster, surveyed: RasterSurvey, joined: Option<String>) -> Self {
+        let RasterSurvey { stats, voids, undeclared } = surveyed;
+        let of_format = format_note(&raster).map(str::to_owned);
+        let undeclared = undeclared.iter().map(|found| {
+            let (evidence, value) = (&found.evidence, found.written());
+            format!("{evidence}: if that means no data, say --nodata {value}")
+        });
+        let of_reading = raster.notes.iter().cloned().chain(unstated_unit::note(&raster));
+        let notes = joined.into_iter().chain(of_format).chain(of_reading).chain(undeclared).collect();
+        Self { raster, stats, enclosed_voids: voids, notes }
     }
 
     /// One JSON object; a missing number is null.
@@ -82,6 +91,8 @@ impl DemInfo {
             "crs": raster.crs.as_ref().map(|crs| crs.name()),
             "transform": raster.geotransform(),
             "georeferenced": raster.georeferenced,
+            "bands": raster.bands.count,
+            "mask_band": raster.bands.mask,
             "nodata": json_nodata(raster.nodata),
             "vertical_datum": raster.vertical_datum,
             "meters_per_z": raster.meters_per_z,
@@ -110,10 +121,11 @@ impl DemInfo {
             ("driver", raster.driver.to_owned()),
             ("size", format!("{} columns, {} rows", raster.width, raster.height)),
             ("type", raster.data_type.to_owned()),
+            ("bands", raster.bands.text()),
             ("crs", raster.crs.as_ref().map_or("none stated", |crs| crs.name()).to_owned()),
             ("corner", format!("({}, {}), outer corner of the first sample", corner.x, corner.y)),
             ("sample", format!("({}, {}) a column, ({}, {}) a row", east.x, east.y, south.x, south.y)),
-            ("nodata", raster.nodata.map_or("none stated".to_owned(), |value| value.to_string())),
+            ("nodata", raster.nodata.map_or("none stated".to_owned(), written)),
             ("valid", format!("{} of {all} samples", stats.valid)),
             ("voids", {
                 let (samples_s, voids_s) =

@@ -19,7 +19,8 @@ pub struct DemOptions {
     pub raw: Option<RawLayout>,
     /// The vertical datum, in place of the file's.
     pub vertical_datum: Option<String>,
-    /// Meters between samples of a file without georeference, whose south-west sample is then at (0, 0).
+    /// The distance between samples of a file without georeference, whose south-west sample is then at (0, 0); and of tiles
+    /// whose cells do not nest when they are joined.
     pub cell: Option<f64>,
     /// The coordinate system, in place of the file's.
     pub crs: Option<Crs>,

@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use crate::formats::text::{number, quote};
+use crate::formats::text::{is_missing, number, quote};
 
 /// Column names of x, y and z, in lower case.
 const NAMES: [&[&str]; 3] = [
@@ -54,7 +54,7 @@ fn lines(text: &str) -> impl Iterator<Item = PointLine<'_>> {
 }
 
 impl<'a> PointLine<'a> {
-    /// The point in three columns, with a height of NaN where the field is empty; `None` where a field is not a number
+    /// The point in three columns, with a height of NaN where the field is empty or a word for that; `None` where a field is not a number
     /// or x or y is not finite.
     pub fn point(&self, columns: [usize; 3]) -> Option<DVec3> {
         let mut found = [None; 3];
@@ -67,7 +67,7 @@ impl<'a> PointLine<'a> {
         }
         let [x, y, z] = found;
         let z = match z? {
-            "" => f64::NAN,
+            field if field.is_empty() || is_missing(field.as_bytes()) => f64::NAN,
             field => number(field.as_bytes())?,
         };
         let point = DVec3::new(number(x?.as_bytes())?, number(y?.as_bytes())?, z);

@@ -19,6 +19,7 @@ use quick_xml::XmlVersion;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
 
+use crate::formats::text::number;
 use crate::vrt_fault::{PLACE, broken, shortened, unsupported};
 use crate::vrt_frame::VrtFrame;
 use crate::vrt_source::{VrtRect, VrtSource};
@@ -301,7 +302,8 @@ impl VrtReader {
 
 /// A value that means no data; `None` of one that is not a number, which all samples that are none declare.
 fn no_data(text: &str) -> Result<Option<f64>, DemErrorKind> {
-    let value: f64 = text.parse().map_err(|_| broken("its no-data value is no number".to_owned()))?;
+    let value = number(text.trim().as_bytes());
+    let value = value.ok_or_else(|| broken("its no-data value is no number".to_owned()))?;
     Ok(Some(value).filter(|value| !value.is_nan()))
 }
 

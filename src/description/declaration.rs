@@ -55,6 +55,8 @@ pub enum KeyKind {
     FilledText,
     /// Text that is not empty, or a list of such texts.
     TextList,
+    /// The name of a file, a table of one with other keys, or a list of them.
+    FilesOrTables(&'static [KeyDeclaration]),
     /// A table of texts under names that the user chooses.
     TextTable,
     /// An expression over a feature's properties.

@@ -40,6 +40,7 @@ use crate::color::{Color, RampChoice};
 use crate::declaration::{KeyDeclaration, Presence};
 use crate::diagnostic::Diagnostic;
 use crate::earthworks::EarthworkTable;
+use crate::elevation_file::{ElevationFile, elevation_files};
 use crate::feature_source::FeatureSource;
 use crate::feature_value::DefaultedValue;
 use crate::features::{
@@ -76,7 +77,7 @@ table! {
         /// Second line under the title.
         subtitle: Option<String> = key::text(), otherwise "none";
         /// Coordinate system of the scene, `EPSG:n` or a proj string, in meters.
-        crs: Option<Crs> = key::metric_crs(), otherwise "the DEM's, or the UTM zone of its center where it is in degrees or its lengths are off by more than 1 %";
+        crs: Option<Crs> = key::metric_crs(), otherwise "the DEM's, or the UTM zone of its center, near a pole UPS, where it is in degrees or its lengths are off by more than 1 %";
         /// Coordinate system of inline points, unless a table has its own `crs`.
         points_crs: Option<Crs> = key::crs(), otherwise "`crs`, or the DEM's where that is in meters, or the scene's";
         /// A TTF or OTF file, or a collection (TTC): the font of characters that the built-in one lacks. That one has Latin,
@@ -141,9 +142,11 @@ table! {
     /// `[terrain]`: the elevation model.
     struct TerrainTable {
         /// The elevation file, or a list of up to 256 that are tiles of one raster; the first tile with a
-        /// value wins. A folder stands for those in it, a GDAL virtual raster (`.vrt`) for those that it
-        /// lists. An address (`https://`, `s3://`, `gs://`, `az://`) is read with `--allow-remote HOST`.
-        dem: Stated<Vec<String>> = key::files(&[]), required;
+        /// value wins, and tiles of larger cells that nest in the finest ones' fill what these leave. A folder
+        /// stands for those in it, a GDAL virtual raster (`.vrt`) for those that it lists. A table
+        /// `{ file = "b.tif", offset = 1.5 }` adds `offset`, in meters, to the heights of a tile that is counted
+        /// from another zero. An address (`https://`, `s3://`, `gs://`, `az://`) is read with `--allow-remote HOST`.
+        dem: Stated<Vec<ElevationFile>> = elevation_files(), required;
         /// Coordinate system of the DEM where the file names none or a wrong one.
         crs: Option<Crs> = key::crs(), otherwise "what the file names";
         /// Meters per unit of a sample's value, of gray PNG and RAW files.
@@ -167,7 +170,8 @@ table! {
         /// model only that part is read.
         extent: Option<Stated<Vec<[f64; 2]>>> = key::points(2),
             otherwise "the whole model; of one in degrees or turned against north, the largest part with straight edges";
-        /// Distance between samples of a file without georeference; its south-west sample is at (0, 0).
+        /// Distance between samples of a file without georeference; its south-west sample is at (0, 0). Of tiles whose
+        /// cells do not nest: the cell that all are resampled to, in units of their system.
         cell: Option<f64> = key::number(Above(0.0, 1e6), "m"), otherwise "what the file states";
         /// Factor by which heights are stretched when they are drawn.
         vertical_exaggeration: f64 = key::number(Above(0.0, 1000.0), ""), default 1;

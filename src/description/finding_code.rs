@@ -64,7 +64,7 @@ finding_codes! {
         "A coordinate system is not known here. Write `EPSG:n`, a proj string, or the WKT of a `.prj` file.";
     CrsInDegrees = "crs-in-degrees", Error,
         "The scene's own system must be in meters: heights are, and slopes and distances are computed from both. Name a metric \
-         system, such as the UTM zone, or leave `crs` out, which takes the UTM zone of the model's center.";
+         system, such as the UTM zone, or leave `crs` out, which takes the UTM zone of the model's center, near a pole UPS.";
     CrsMissing = "crs-missing", Error,
         "A file names no coordinate system, and its place cannot be told without. State it with the key `crs` of its table.";
     CrsMismatch = "crs-mismatch", Error,
@@ -78,7 +78,7 @@ finding_codes! {
          Earth, so that data in other systems cannot be added.";
     LengthsNotTrue = "lengths-not-true", Warning,
         "Lengths in the system of the elevation differ from those on the ground by more than 1 %, as in Web Mercator. The scene is \
-         made in the UTM zone of its center instead, so that slopes, distances, volumes and lines of sight are in true meters; \
+         made in the UTM zone of its center, near a pole in UPS, instead, so that slopes, distances, volumes and lines of sight are in true meters; \
          positions are still read in the system that is stated. State a system with true lengths to choose another.";
     FarFromZone = "far-from-zone", Warning,
         "The scene lies far from the zone of its coordinate system. Lengths are off by more than 0.1 % there, or the zone is \
@@ -105,8 +105,12 @@ finding_codes! {
         "A value occurs in the elevation model as no ground does: far apart from all others, or round and repeated. It most \
          likely means no data, but the file does not say so, and it is drawn as ground. State it as `nodata`.";
     FlatMargin = "flat-margin", Warning,
-        "Along a side of the elevation model all samples have one value and end in a step: most likely a margin without data \
-         that the file does not declare. State the value as `nodata`, or cut the margin off with `extent`.";
+        "Along a side or in a corner of the elevation model all samples have one value and end in a step: most likely a margin \
+         without data that the file does not declare. State the value as `nodata`, or cut the margin off with `extent`.";
+    ElevationGuessed = "elevation-guessed", Note,
+        "What an elevation file holds was guessed, or a part of it is not read: a band of opacity was taken as a mask, other bands \
+         are not read, words stand in place of heights, or a no-data value is no number. The message says which. Write the file \
+         again with one band and a number for no data where that is wrong.";
     UnmarkedVoid = "unmarked-void", Warning,
         "Inside the elevation model a region of one value ends in a step all around, as holes do that were filled with a number. \
          It is drawn as ground. State the value as `nodata` where no ground has it, so that the hole is filled.";
@@ -120,8 +124,8 @@ finding_codes! {
         "Samples without data were filled by a membrane from their rims, so that the ground has no holes. Heights there are \
          guesses. `fill_voids` under `[terrain]` switches it.";
     TilesDiffer = "tiles-differ", Error,
-        "Several elevation files are not tiles of one raster: their cells, systems or vertical datums differ. Bring them to one \
-         with `sandtable dem convert`.";
+        "Several elevation files are not tiles of one raster: their cells do not nest, or their systems or vertical datums differ. \
+         State the cell that all are resampled to as `cell`, or bring them to one with `sandtable dem convert`.";
     TilesJoined = "tiles-joined", Note,
         "Several files were joined to one elevation model.";
     BorderCut = "border-cut", Note,

@@ -10,6 +10,7 @@ mod decode_context;
 pub mod diagnostic;
 pub mod document;
 pub mod earthworks;
+pub mod elevation_file;
 pub mod expression;
 pub mod feature_source;
 pub mod feature_value;

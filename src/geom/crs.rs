@@ -15,8 +15,11 @@ use glam::DVec2;
 use crate::crs_fault::CrsFault;
 use crate::datum_shift::DatumShift;
 use crate::proj_string::ProjString;
-use crate::projection::{Datum, Definition, Ellipsoid};
+use crate::projection::{Datum, Definition, Ellipsoid, utm_code};
 use crate::wkt::{self, WktSystem};
+
+/// The southernmost and the northernmost latitude of UTM.
+pub const UTM_LATITUDES_DEG: (f64, f64) = (-80.0, 84.0);
 
 /// The longest text that is parsed, in bytes; real WKT has a tenth of it.
 const LONGEST_TEXT: usize = 65_536;
@@ -197,6 +200,42 @@ impl Crs {
         let zone = (((longitude + 180.0).rem_euclid(360.0)) / 6.0).floor().min(59.0) as u32 + 1;
         let base = if latitude < 0.0 { 32700 } else { 32600 };
         Self::from_epsg(base + zone).expect("all UTM zones are in the table")
+    }
+
+    /// UTM in a zone, negative in the south, on the geographic system with an EPSG code: EPSG's own where it has one.
+    ///
+    /// # Errors
+    /// [`CrsError::Unknown`] where there is no such zone, the code is not in the table, or the unit is not a positive length.
+    ///
+    /// ```
+    /// use sandtable_geom::crs::Crs;
+    /// assert_eq!(Crs::utm_on(4267, 10, 1.0).unwrap().name(), "EPSG:26710");
+    /// assert!(Crs::utm_on(4267, 48, 1.0).unwrap().name().contains("+lon_0=105 "));
+    /// ```
+    pub fn utm_on(geographic: u32, zone: i64, meters_per_unit: f64) -> Result<Self, CrsError> {
+        if let Some(code) = utm_code(geographic, zone) {
+            return Self::from_epsg_in(code, meters_per_unit);
+        }
+        if !(1..=60).contains(&zone.unsigned_abs()) {
+            return Err(unknown(&format!("UTM zone {zone}"), CrsFault::NoSuchZone));
+        }
+        Self::from_definition(&Definition::utm(geographic, zone, meters_per_unit))
+    }
+
+    /// Universal Polar Stereographic on WGS 84 around the pole of a latitude in degrees, eastings first.
+    pub fn ups_at(latitude: f64) -> Self {
+        let code = if latitude < 0.0 { 5042 } else { 5041 };
+        Self::from_epsg(code).expect("both poles are in the table")
+    }
+
+    /// The UTM zone of a longitude and latitude in degrees, and UPS where UTM ends: beyond 84° north and 80° south.
+    pub fn utm_or_ups_at(longitude: f64, latitude: f64) -> Self {
+        let (south, north) = UTM_LATITUDES_DEG;
+        if (south..=north).contains(&latitude) {
+            Self::utm_at(longitude, latitude)
+        } else {
+            Self::ups_at(latitude)
+        }
     }
 
     /// `EPSG:n`, or the proj string it was made from.
@@ -397,6 +436,40 @@ mod tests {
         let moved = Crs::wgs84().transform(&utm, DVec2::new(-87.0, 0.0)).expect("inside");
         close(moved, DVec2::new(500_000.0, 0.0), 1e-4);
         assert_eq!(Crs::utm_at(-85.3, 34.9), utm);
+    }
+
+    #[test]
+    fn a_zone_without_a_code_is_the_zone_on_its_datum() {
+        let far = Crs::utm_on(4267, 48, 1.0).expect("a zone");
+        assert_eq!((far.epsg(), far.is_metric()), (None, true));
+        let degrees = Crs::from_epsg(4267).expect("NAD27 can be named");
+        let origin = degrees.transform(&far, DVec2::new(105.0, 0.0)).expect("same datum");
+        close(origin, DVec2::new(500_000.0, 0.0), 1e-4);
+        assert!(matches!(far.transform(&Crs::wgs84(), origin), Err(CrsError::Datum { .. })));
+        assert_eq!(Crs::parse(far.name()), Ok(far));
+        let south = Crs::utm_on(4267, -48, 1.0).expect("a zone");
+        let origin = degrees.transform(&south, DVec2::new(105.0, 0.0)).expect("same datum");
+        close(origin, DVec2::new(500_000.0, 1e7), 1e-4);
+        for zone in [0, 61, -61, i64::MIN] {
+            assert!(Crs::utm_on(4267, zone, 1.0).expect_err("no zone").to_string().contains("1 to 60"));
+        }
+    }
+
+    #[test]
+    fn polar_stereographic_has_its_pole_at_2000_km() {
+        // The distance from the pole is that of Snyder 1987, equations 21-33 and 21-34.
+        for (latitude, x, apart) in
+            [(90.0, 0.0, 0.0), (-90.0, 0.0, 0.0), (84.0, 90.0, 666_727.704), (-80.0, 45.0, 1_112_951.137)]
+        {
+            let (ups, pole) = (Crs::ups_at(latitude), DVec2::splat(2e6));
+            let at = Crs::wgs84().transform(&ups, DVec2::new(x, latitude)).expect("inside");
+            assert!((at.distance(pole) - apart).abs() < 0.01, "{at}");
+            let back = ups.transform(&Crs::wgs84(), at).expect("inside");
+            assert!((back.y - latitude).abs() < 1e-7, "{back}");
+        }
+        let codes = [(0.0, 84.0), (0.0, 84.1), (15.0, -80.0), (15.0, -80.1)];
+        let codes = codes.map(|(longitude, latitude)| Crs::utm_or_ups_at(longitude, latitude).epsg());
+        assert_eq!(codes, [Some(32631), Some(5041), Some(32733), Some(5042)]);
     }
 
     #[test]

@@ -11,6 +11,9 @@ pub enum CrsFault {
     /// The EPSG code is unknown.
     #[error("no such code in the EPSG table")]
     NoSuchCode,
+    /// The zone is not one of UTM.
+    #[error("the zones of UTM are 1 to 60")]
+    NoSuchZone,
     /// The EPSG code is not a number.
     #[error("the code is not a number")]
     CodeNotANumber,

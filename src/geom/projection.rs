@@ -186,22 +186,36 @@ impl Definition {
         }
     }
 
+    /// UTM in a zone, negative in the south, on the geographic system with an EPSG code.
+    pub fn utm(geographic: u32, zone: i64, meters_per_unit: f64) -> Self {
+        let name = format!("UTM zone {zone} on EPSG:{geographic}");
+        Self::geographic(name, None, Datum::OfEpsg(geographic)).in_utm(zone, meters_per_unit)
+    }
+
+    /// UTM in a zone, negative in the south, on this geographic system.
+    pub fn in_utm(self, zone: i64, meters_per_unit: f64) -> Self {
+        Self {
+            method: MapProjection::TransverseMercator,
+            longitude_deg: zone.unsigned_abs() as f64 * 6.0 - 183.0,
+            scale: 0.9996,
+            false_easting_m: 5e5,
+            false_northing_m: if zone < 0 { 1e7 } else { 0.0 },
+            meters_per_unit,
+            ..self
+        }
+    }
+
     fn utm_code(&self, base: u32) -> Option<u32> {
         let zone = (self.longitude_deg + 183.0) / 6.0;
         if zone.fract() != 0.0 || !(1.0..=60.0).contains(&zone) {
             return None;
         }
-        let north = self.is_at([0.0, self.longitude_deg, 0.9996, 5e5, 0.0]);
-        let south = self.is_at([0.0, self.longitude_deg, 0.9996, 5e5, 1e7]);
-        let series = match (base, north, south) {
-            (4326, true, _) => 32600,
-            (4326, _, true) => 32700,
-            (4269, true, _) => 26900,
-            (4267, true, _) => 26700,
-            _ => return None,
-        };
-        let code = series + zone as u32;
-        epsg_text(code).is_some().then_some(code)
+        let zone = zone as i64;
+        if self.is_at([0.0, self.longitude_deg, 0.9996, 5e5, 0.0]) {
+            return utm_code(base, zone);
+        }
+        let is_south = self.is_at([0.0, self.longitude_deg, 0.9996, 5e5, 1e7]);
+        is_south.then(|| utm_code(base, -zone)).flatten()
     }
 
     /// Whether latitude, longitude, scale, easting and northing are `wanted`, to the last digit that files keep.
@@ -280,6 +294,50 @@ impl Definition {
     }
 }
 
+/// A series of EPSG codes of UTM zones.
+struct UtmSeries {
+    geographic: u32,
+    is_south: bool,
+    /// The code before that of zone 1, which need not be in the series.
+    base: u32,
+    first: u32,
+    last: u32,
+}
+
+const fn utm_series(geographic: u32, is_south: bool, base: u32, [first, last]: [u32; 2]) -> UtmSeries {
+    UtmSeries { geographic, is_south, base, first, last }
+}
+
+/// Codes behind the last zone of a series are other systems: those behind NAD27's and NAD83's are state plane zones.
+const UTM_SERIES: [UtmSeries; 9] = [
+    utm_series(4326, false, 32600, [1, 60]),
+    utm_series(4326, true, 32700, [1, 60]),
+    utm_series(4322, false, 32200, [1, 60]),
+    utm_series(4322, true, 32300, [1, 60]),
+    utm_series(4269, false, 26900, [1, 23]),
+    utm_series(4269, false, 3313, [59, 60]),
+    utm_series(4267, false, 26700, [1, 22]),
+    utm_series(4267, false, 3311, [59, 60]),
+    utm_series(4258, false, 25800, [28, 38]),
+];
+
+/// EPSG's code of a UTM zone, negative in the south, on a geographic system; `None` where EPSG has none.
+///
+/// ```
+/// use sandtable_geom::projection::utm_code;
+/// assert_eq!(utm_code(4267, 10), Some(26710));
+/// assert_eq!(utm_code(4267, 48), None, "EPSG:26748 is a state plane zone of Arizona");
+/// ```
+pub fn utm_code(geographic: u32, zone: i64) -> Option<u32> {
+    let number = u32::try_from(zone.unsigned_abs()).ok()?;
+    let is_of = |series: &&UtmSeries| {
+        series.geographic == geographic
+            && series.is_south == (zone < 0)
+            && (series.first..=series.last).contains(&number)
+    };
+    UTM_SERIES.iter().find(is_of).map(|series| series.base + number)
+}
+
 impl Ellipsoid {
     fn proj_text(self) -> Result<String, DefinitionError> {
         let major = finite("semi-major axis", self.major_m)?;
@@ -334,6 +392,30 @@ mod tests {
         assert_eq!(utm(4269).epsg(), Some(26912));
         assert_eq!(Definition { longitude_deg: -111.5, ..utm(4326) }.epsg(), None);
         assert_eq!(Definition { false_northing_m: 1e7, ..utm(4326) }.epsg(), Some(32712));
+    }
+
+    #[test]
+    fn every_code_of_a_utm_zone_is_that_zone_and_others_have_none() {
+        for geographic in [4326, 4322, 4269, 4267, 4258, 4277] {
+            for zone in (-60..=60).filter(|zone| *zone != 0) {
+                let code = utm_code(geographic, zone);
+                assert_eq!(Definition::utm(geographic, zone, 1.0).epsg(), code, "{geographic} {zone}");
+                let Some(code) = code else { continue };
+                let text = epsg_text(code).expect("in the table");
+                assert_eq!(text.value("proj"), Some("utm"), "EPSG:{code}");
+                assert_eq!(text.number("zone"), Some(zone.abs() as f64), "EPSG:{code}");
+                assert_eq!(text.has_flag("south"), zone < 0, "EPSG:{code}");
+                let datum = |text: ProjString<'_>| text.only(&["datum", "ellps", "towgs84"]);
+                let own = epsg_text(geographic).expect("in the table");
+                assert_eq!(datum(text), datum(own), "EPSG:{code}");
+            }
+            assert_eq!((utm_code(geographic, 0), utm_code(geographic, 61)), (None, None));
+        }
+        let found: Vec<Option<u32>> =
+            [(4267, 23), (4267, 48), (4267, 60), (4269, 59), (4267, -10), (4258, 27)]
+                .map(|(geographic, zone)| utm_code(geographic, zone))
+                .to_vec();
+        assert_eq!(found, [None, None, Some(3371), Some(3372), None, None]);
     }
 
     #[test]

@@ -5,7 +5,7 @@
 //! Professional Paper 1395, pages 20 to 27). They are measured here, for any projection: the inverse projection of four
 //! points around the place gives the derivative of the ground by the map.
 
-use glam::{DMat2, DVec2};
+use glam::{DMat2, DVec2, DVec3};
 
 use crate::crs::Crs;
 
@@ -39,17 +39,17 @@ impl ScaleFactors {
     pub fn at(crs: &Crs, at: DVec2) -> Option<Self> {
         let degrees = crs.geographic_base()?;
         let step = MEASURED_M / crs.meters_per_unit();
-        let center = crs.transform(&degrees, at).ok()?;
-        let (north_m, east_m) = meters_per_radian(degrees.ellipsoid(), center.y.to_radians());
-        // The ground's meters east and north by one meter of the map along an axis.
+        let ellipsoid = degrees.ellipsoid();
+        // What a meter of the map along an axis is on the ground, in space: at a pole it has no direction.
         let column = |axis: DVec2| {
-            let [behind, ahead] = [-step, step].map(|by| crs.transform(&degrees, at + axis * by));
-            let turned = ahead.ok()? - behind.ok()?;
-            let east = (turned.x + 540.0).rem_euclid(360.0) - 180.0;
-            let radians = DVec2::new(east, turned.y) * 1f64.to_radians();
-            Some(radians * DVec2::new(east_m, north_m) / (2.0 * MEASURED_M))
+            let place = |by: f64| Some(in_space(ellipsoid, crs.transform(&degrees, at + axis * by).ok()?));
+            Some((place(step)? - place(-step)?) / (2.0 * MEASURED_M))
         };
-        let (largest, smallest) = singular_values(DMat2::from_cols(column(DVec2::X)?, column(DVec2::Y)?));
+        let (x, y) = (column(DVec2::X)?, column(DVec2::Y)?);
+        let along = x.try_normalize()?;
+        let across = (y - along * y.dot(along)).length();
+        let matrix = DMat2::from_cols(DVec2::new(x.length(), 0.0), DVec2::new(y.dot(along), across));
+        let (largest, smallest) = singular_values(matrix);
         let scale = Self { least: 1.0 / largest, most: 1.0 / smallest };
         (scale.least > 0.0 && scale.most.is_finite()).then_some(scale)
     }
@@ -60,12 +60,13 @@ impl ScaleFactors {
     }
 }
 
-/// Meters on an ellipsoid for a radian of latitude and of longitude, at a latitude in radians.
-fn meters_per_radian((major_m, minor_m): (f64, f64), latitude: f64) -> (f64, f64) {
-    let eccentricity2 = 1.0 - (minor_m / major_m).powi(2);
-    let shrunk = 1.0 - eccentricity2 * libm::sin(latitude).powi(2);
-    let across_m = major_m / shrunk.sqrt();
-    (across_m * (1.0 - eccentricity2) / shrunk, across_m * libm::cos(latitude))
+/// Where a longitude and a latitude in degrees lie on an ellipsoid: meters from its center.
+fn in_space((major_m, minor_m): (f64, f64), at: DVec2) -> DVec3 {
+    let (longitude, latitude) = (at.x.to_radians(), at.y.to_radians());
+    let flat2 = (minor_m / major_m).powi(2);
+    let (sin, cos) = (libm::sin(latitude), libm::cos(latitude));
+    let across_m = major_m / (cos * cos + flat2 * sin * sin).sqrt();
+    DVec3::new(cos * libm::cos(longitude), cos * libm::sin(longitude), flat2 * sin) * across_m
 }
 
 /// The larger and the smaller singular value.
@@ -132,6 +133,19 @@ mod tests {
         let old = Crs::from_epsg(26711).expect("known");
         let found = ScaleFactors::at(&old, DVec2::new(500_000.0, 4_000_000.0)).expect("inside");
         assert!((found.most - 0.9996).abs() < 1e-5, "{found:?}");
+    }
+
+    #[test]
+    fn a_pole_has_a_scale_though_it_has_no_direction() {
+        // Of UPS by its definition; of EPSG:3413 the ratio of Snyder 1987, equations 21-33 and 21-34.
+        for (code, at, published) in [(5041, 2e6, 0.994), (5042, 2e6, 0.994), (3413, 0.0, 0.969_858)] {
+            let crs = Crs::from_epsg(code).expect("known");
+            for beside in [0.0, 30.0, 5000.0] {
+                let found = ScaleFactors::at(&crs, DVec2::new(at + beside, at)).expect("on Earth");
+                let off = (found.least - published).abs().max((found.most - published).abs());
+                assert!(off < 2e-5, "EPSG:{code} {beside}: {found:?}");
+            }
+        }
     }
 
     #[test]

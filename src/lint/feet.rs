@@ -34,7 +34,7 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
         let found = &context.scene.findings;
         found.iter().any(|found| found.code == FindingCode::HeightsInFeet && found.message.contains(&named))
     };
-    for file in terrain.dem.iter().filter(|file| !is_found(file)) {
+    for file in terrain.dem.iter().map(|tile| tile.file.as_str()).filter(|file| !is_found(file)) {
         let beside = ["prj", "PRJ"].into_iter().find_map(|extension| {
             let name = Path::new(file).with_extension(extension);
             Some(String::from_utf8_lossy(&context.sources.assets.read(name.to_str()?).ok()?).into_owned())

@@ -28,7 +28,7 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
         );
         return;
     };
-    let fitting = Crs::utm_at(place.x, place.y);
+    let fitting = Crs::utm_or_ups_at(place.x, place.y);
     let meridian = zone_meridian_deg(&scene.crs);
     let off_deg =
         meridian.map_or(0.0, |meridian| ((place.x - meridian + 540.0).rem_euclid(360.0) - 180.0).abs());

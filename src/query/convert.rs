@@ -67,7 +67,7 @@ pub enum ConvertError {
     )]
     CellInDegrees {
         cell: f64,
-        /// The UTM zone of the elevation, where it is known.
+        /// The UTM zone, or UPS, of the elevation, where it is known.
         zone: Option<String>,
     },
     #[error(transparent)]
@@ -96,12 +96,17 @@ pub fn convert(source: Mosaic, options: &ConvertOptions) -> Result<Converted, Co
     if source.tiles > 1 {
         notes.push(source.note());
     }
+    let of_other_cells = source.of_other_cells;
     let mut source = source.raster;
+    notes.append(&mut source.notes);
     if options.voids == VoidHandling::Fill {
         notes.push(voids::fill(&mut source).note());
     }
     let own = source.crs.clone();
-    let (raster, resampling) = resample(source, options)?;
+    let (raster, resampling) = match resample(source, options)? {
+        (raster, Resampling::Kept) if of_other_cells > 0 => (raster, Resampling::OfTiles),
+        resampled => resampled,
+    };
     let datum_shift = datum_shift(own.as_ref(), raster.crs.as_ref())?;
     Ok(Converted { raster, resampling, datum_shift, notes })
 }
@@ -123,9 +128,9 @@ pub fn convert_windows(
     check(&header, options)?;
     let warped = reproject_windows(source, options.crs.as_ref(), options.cell)?;
     let Some(Warped { raster, method }) = warped else { return Ok(None) };
-    let raster = raster.into_owned();
+    let (raster, notes) = (raster.into_owned(), header.notes);
     let datum_shift = datum_shift(header.crs.as_ref(), raster.crs.as_ref())?;
-    Ok(Some(Converted { raster, resampling: method, datum_shift, notes: Vec::new() }))
+    Ok(Some(Converted { raster, resampling: method, datum_shift, notes }))
 }
 
 /// How positions are moved from a system to another; `None` where it stays.
@@ -159,8 +164,8 @@ fn check(source: &Raster, options: &ConvertOptions) -> Result<(), ConvertError> 
     }
 }
 
-/// The name of the UTM zone of the raster's center.
+/// The name of the UTM zone, or of UPS, at the raster's center.
 fn zone(source: &Raster) -> Option<String> {
     let center = source.crs.as_ref()?.transform(&Crs::wgs84(), source.center()).ok()?;
-    Some(Crs::utm_at(center.x, center.y).name().to_owned())
+    Some(Crs::utm_or_ups_at(center.x, center.y).name().to_owned())
 }

@@ -51,8 +51,9 @@ impl OpenDemError {
 /// See [`OpenDemError`].
 pub fn open(path: &Path, options: &DemOptions) -> Result<Mosaic, OpenDemError> {
     let Some(tiles) = TileFiles::of(path, options)? else { return open_tiles(&[path], options) };
-    let mut mosaic =
-        join(tiles.paths.iter().enumerate().map(|(index, path)| (path, tiles.open_whole(index, options))))?;
+    let opened = tiles.paths.iter().enumerate().map(|(index, path)| (path, tiles.open_whole(index, options)));
+    // A virtual raster states its own grid.
+    let mut mosaic = join(opened, options.cell.filter(|_| tiles.vrt.is_none()))?;
     if let Some(vrt) = &tiles.vrt {
         let joined = mosaic.raster.size();
         mosaic.raster = vrt.filled(mosaic.raster).map_err(FileError::at(path))?;
@@ -159,7 +160,7 @@ pub fn open_either(path: &Path, options: &DemOptions, most_kept: u64) -> Result<
         Ok(Some(windows))
             if tiles.is_none() && is_address_path(path) && samples(&*windows) <= RASTER_SAMPLES.get() =>
         {
-            let whole = join([(path, whole(path, windows))].into_iter())?;
+            let whole = join([(path, whole(path, windows))].into_iter(), None)?;
             return Ok(OpenedDem::Kept(Box::new(whole)));
         }
         // It would be the same again, and a server may take half a minute for it.
@@ -229,23 +230,25 @@ fn open_windows(path: &Path, options: &DemOptions) -> Result<Option<Box<dyn Wind
     Ok(windows.map_err(|error| FileError::<DemErrorKind>::new(path, error.kind))?)
 }
 
-/// Joins the elevation files at `paths`, tiles of one raster; of samples that tiles share the first tile's is kept.
+/// Joins the elevation files at `paths`, tiles of one raster; of samples that tiles share the first tile's is kept. Tiles whose
+/// cells do not nest are resampled to the stated `cell`, if any.
 ///
 /// # Errors
 /// See [`OpenDemError`].
 pub fn open_tiles<P: AsRef<Path>>(paths: &[P], options: &DemOptions) -> Result<Mosaic, OpenDemError> {
-    join(paths.iter().map(|path| (path, open_file(path.as_ref(), options))))
+    join(paths.iter().map(|path| (path, open_file(path.as_ref(), options))), options.cell)
 }
 
-/// Joins tiles, each opened when the ones before it are.
+/// Joins tiles, each opened when the ones before it are, in cells of `cell` where they do not fit.
 fn join<P: AsRef<Path>>(
     opened: impl Iterator<Item = (P, Result<Raster, OpenDemError>)>,
+    cell: Option<f64>,
 ) -> Result<Mosaic, OpenDemError> {
     let mut tiles = Tiles::default();
     for (path, raster) in opened {
         tiles.push(disk::file_name(path.as_ref()), raster?)?;
     }
-    Ok(tiles.join()?)
+    Ok(tiles.join_in_cells(cell)?)
 }
 
 /// The name of the format of an elevation file, by its head; `None` where it seems to be no elevation or cannot be read.

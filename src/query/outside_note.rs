@@ -51,10 +51,10 @@ pub fn outside_note(answers: &[Answer], at: &[DVec2], crs: &Crs, header: &Raster
     ))
 }
 
-/// The UTM zone of the middle of elevation in degrees.
+/// The UTM zone, or UPS, at the middle of elevation in degrees.
 fn zone_of(covered: &Rect, own: &Crs) -> Option<Crs> {
     let middle = Some(covered.center()).filter(|_| own.is_geographic())?;
-    Some(Crs::utm_at(middle.x, middle.y))
+    Some(Crs::utm_or_ups_at(middle.x, middle.y))
 }
 
 #[cfg(test)]

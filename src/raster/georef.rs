@@ -28,20 +28,3 @@ pub fn checked(map_from_grid: DAffine2) -> Result<DAffine2, DemErrorKind> {
         remedy: "write the georeference again, for example with: gdal_edit.py -a_ullr",
     })
 }
-
-/// EPSG's code of a UTM zone, negative in the south, on a geographic system; `None` where there is none.
-pub fn utm_code(geographic: u32, zone: i64) -> Option<u32> {
-    let (north, south) =
-        UTM_BASES.iter().find(|(known, ..)| *known == geographic).map(|(_, n, s)| (*n, *s))?;
-    let base = if zone > 0 { Some(north) } else { south }?;
-    (1..=60).contains(&zone.abs()).then_some(base + zone.unsigned_abs() as u32)
-}
-
-/// Geographic systems with the EPSG codes before their first UTM zones north and south.
-const UTM_BASES: [(u32, u32, Option<u32>); 5] = [
-    (4326, 32600, Some(32700)),
-    (4322, 32200, Some(32300)),
-    (4269, 26900, None),
-    (4267, 26700, None),
-    (4258, 25800, None),
-];

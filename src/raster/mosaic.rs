@@ -1,17 +1,24 @@
 //! Joins the tiles of one raster.
 //!
 //! Tiles of one raster have one coordinate system, one vertical unit and one grid: their cells are alike and their
-//! samples coincide, within a thousandth of a cell. Other tiles are refused by name, never resampled.
+//! samples coincide, within a thousandth of a cell. Tiles of larger cells that nest in the finest ones' are
+//! brought to their grid (`nested_tile`), and fill what these leave. Other tiles are refused by name, unless the caller
+//! states the cell that all are resampled to.
 //!
 //! Where tiles share samples (SRTM tiles share their border rows and columns), **the first tile with a value wins**;
 //! the others are compared with it, and how many differ and by how much is reported. Samples of the mosaic's rectangle
 //! that no tile covers are gaps: no data, and counted. Longitudes may continue across ±180°: the mosaic starts east of
 //! the widest gap.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use glam::{DVec2, I64Vec2, U64Vec2};
 
-use crate::raster::{Raster, SampleFloat, Samples};
-use crate::units::FOOT_M;
+use crate::joined_samples::{MosaicFrame, PlacedTile, join};
+use crate::nested_tile::Refinement;
+use crate::raster::{Raster, Samples};
+use crate::warp::error::WarpError;
+use crate::windows::{RasterWindow, Windows};
 use sandtable_base::limits::RASTER_SAMPLES;
 use sandtable_base::limits::TILE_SAMPLES;
 use sandtable_base::message::numbers::counted;
@@ -39,6 +46,8 @@ pub struct Mosaic {
     pub gaps: u64,
     /// How many tiles state no vertical datum where others do.
     pub without_datum: usize,
+    /// How many tiles had other cells: a note of the raster says how they were brought to its own.
+    pub of_other_cells: usize,
 }
 
 impl Mosaic {
@@ -83,7 +92,12 @@ pub enum MosaicError {
     )]
     Differ { first: String, other: String, what: &'static str, found: [String; 2] },
     #[error(
-        "{first} and {other} are not tiles of one raster: the second's samples lie ({:.4}, {:.4}) cells off the first's; bring them to one grid, for example with: gdalwarp -tap",
+        "{first} and {other} are not tiles of one raster: their cells are {} and {}, which do not nest; state the cell that both are resampled to: `cell` under [terrain], or --cell of sandtable dem convert",
+        .found[0], .found[1]
+    )]
+    Cells { first: String, other: String, found: [String; 2] },
+    #[error(
+        "{first} and {other} are not tiles of one raster: the second's samples lie ({:.4}, {:.4}) cells off the first's; state the cell that both are resampled to: `cell` under [terrain], or --cell of sandtable dem convert",
         .off.x, .off.y
     )]
     Misaligned {
@@ -92,6 +106,8 @@ pub enum MosaicError {
         /// In cells, from −0.5 to 0.5.
         off: DVec2,
     },
+    #[error("{name} cannot be resampled to cells of {cell}")]
+    Resample { name: String, cell: f64, source: Box<WarpError> },
     /// The tiles hold more samples together than are joined; those up to the tile that is too many.
     #[error(
         "the tiles hold {0} samples, more than the {TILE_SAMPLES} that are joined; join fewer, or {TILE_SAMPLES:#}"
@@ -142,14 +158,105 @@ impl Tiles {
                 in_feet: 0,
                 gaps: 0,
                 without_datum: 0,
+                of_other_cells: 0,
             });
         }
-        let corners = self.corners()?;
-        let frame = MosaicFrame::around(&self.rasters, &corners, RASTER_SAMPLES.get())?;
-        Ok(if self.rasters.iter().any(|tile| matches!(tile.samples, Samples::F64(_))) {
-            join::<f64>(&self.rasters, &corners, frame)
+        let nested = self.nested();
+        let headers = self.in_one_grid(&nested);
+        let corners = headers.corners()?;
+        let frame = MosaicFrame::around(&headers.rasters, &corners, RASTER_SAMPLES.get())?;
+        let placed = nested.iter().zip(&headers.rasters).zip(&corners);
+        let tiles: Vec<PlacedTile<'_>> = placed
+            .map(|((nested, header), corner)| PlacedTile {
+                raster: &self.rasters[nested.index],
+                refinement: nested.refinement,
+                size: header.size(),
+                at: *corner - frame.min,
+            })
+            .collect();
+        let header = header(&headers.rasters, frame, Samples::F32(Vec::new()));
+        let mut mosaic = if self.rasters.iter().any(|tile| matches!(tile.samples, Samples::F64(_))) {
+            join::<f64>(&tiles, frame, header)
         } else {
-            join::<f32>(&self.rasters, &corners, frame)
+            join::<f32>(&tiles, frame, header)
+        };
+        mosaic.raster.notes = headers.notes(&nested);
+        Ok(mosaic)
+    }
+
+    /// Why the tiles are not of one grid, where their cells neither are alike nor nest, or their samples lie off each other's.
+    pub(crate) fn misfit(&self) -> Option<MosaicError> {
+        let tiles = Some(self).filter(|tiles| tiles.rasters.len() > 1)?;
+        let fault = tiles.in_one_grid(&tiles.nested()).corners().err();
+        fault.filter(|fault| matches!(fault, MosaicError::Cells { .. } | MosaicError::Misaligned { .. }))
+    }
+
+    /// The first tile.
+    pub(crate) fn first(&self) -> Option<&Raster> {
+        self.rasters.first()
+    }
+
+    /// The tiles with their names.
+    pub(crate) fn into_named(self) -> Vec<(String, Raster)> {
+        self.names.into_iter().zip(self.rasters).collect()
+    }
+
+    /// The tiles in the order in which they win, with what brings them to the finest one's grid: those of its cells, then
+    /// those of larger ones that nest.
+    pub(crate) fn nested(&self) -> Vec<NestedTile> {
+        let area = |tile: &Raster| tile.spacing().element_product();
+        let finest = self.rasters.iter().min_by(|a, b| area(a).total_cmp(&area(b)));
+        let refinement = |tile: &Raster| Refinement::new(tile, finest?);
+        let tiles = self.rasters.iter().enumerate();
+        let mut nested: Vec<NestedTile> =
+            tiles.map(|(index, tile)| NestedTile { index, refinement: refinement(tile) }).collect();
+        nested.sort_by_key(|tile| {
+            tile.refinement.map_or(1, |finer| finer.times[0].saturating_mul(finer.times[1]))
+        });
+        nested
+    }
+
+    /// The tiles in order, in the finest one's grid, without their samples.
+    fn in_one_grid(&self, nested: &[NestedTile]) -> Self {
+        let header = |tile: &NestedTile| {
+            let own = &self.rasters[tile.index];
+            tile.refinement.map_or_else(|| own.without_samples(), |finer| finer.header(own))
+        };
+        let names = nested.iter().map(|tile| self.names[tile.index].clone()).collect();
+        Self { names, rasters: nested.iter().map(header).collect(), samples: 0 }
+    }
+
+    /// The notes of all tiles, each once, with the name of the tile or the number of those that it is true of; and one on
+    /// those of larger cells.
+    fn notes(&self, nested: &[NestedTile]) -> Vec<String> {
+        let mut all: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
+        for (index, tile) in self.rasters.iter().enumerate() {
+            for note in &tile.notes {
+                all.entry(note).or_insert((index, 0)).1 += 1;
+            }
+        }
+        let mut all: Vec<(&str, (usize, usize))> = all.into_iter().collect();
+        all.sort_by_key(|(_, (first, _))| *first);
+        let told = all.into_iter().map(|(note, (first, count))| match count {
+            1 => format!("{}: {note}", self.names[first]),
+            _ => format!("{} and {} more tiles: {note}", self.names[first], count - 1),
+        });
+        told.chain(self.note_on_cells(nested)).collect()
+    }
+
+    fn note_on_cells(&self, nested: &[NestedTile]) -> Option<String> {
+        let all: BTreeSet<[u32; 2]> = nested.iter().filter_map(|tile| Some(tile.refinement?.times)).collect();
+        let larger = nested.iter().filter(|tile| tile.refinement.is_some()).count();
+        let times = |[x, y]: [u32; 2]| if x == y { format!("{x}") } else { format!("{x} by {y}") };
+        let times: Vec<String> = all.into_iter().map(times).collect();
+        (larger > 0).then(|| {
+            format!(
+                "{larger} of {} tiles have cells {} times as large as the finest, {}: they are interpolated between their \
+                 samples, and count where no finer tile has a value",
+                nested.len(),
+                times.join(" or "),
+                cells(&self.rasters[0])
+            )
         })
     }
 
@@ -159,22 +266,28 @@ impl Tiles {
         Self { names, rasters, samples: 0 }
     }
 
-    /// The tiles with their names.
-    pub(crate) fn into_named(self) -> Vec<(String, Raster)> {
-        self.names.into_iter().zip(self.rasters).collect()
-    }
-
-    /// The mosaic of tiles whose samples are not in memory, without its own, and the place of each tile's first sample in it:
-    /// columns and rows. It may hold `most` samples.
+    /// The mosaic of tiles whose samples are not in memory, without its own, and its tiles in the order in which they win. It
+    /// may hold `most` samples.
     ///
     /// # Errors
     /// [`MosaicError`].
-    pub(crate) fn placed(&self, most: u64) -> Result<(Raster, Vec<U64Vec2>), MosaicError> {
-        let corners = self.corners()?;
-        let frame = MosaicFrame::around(&self.rasters, &corners, most)?;
-        let is_wide = self.rasters.iter().any(|tile| tile.samples.is_wide());
-        let header = header(&self.rasters, frame, Samples::absent(0, is_wide));
-        Ok((header, corners.into_iter().map(|corner| (corner - frame.min).as_u64vec2()).collect()))
+    pub(crate) fn placed(&self, most: u64) -> Result<(Raster, Vec<PlacedHeader>), MosaicError> {
+        let nested = self.nested();
+        let headers = self.in_one_grid(&nested);
+        let corners = headers.corners()?;
+        let frame = MosaicFrame::around(&headers.rasters, &corners, most)?;
+        let is_wide = headers.rasters.iter().any(|tile| tile.samples.is_wide());
+        let header = header(&headers.rasters, frame, Samples::absent(0, is_wide));
+        let placed = |((tile, name), (header, corner)): ((&NestedTile, &String), (&Raster, &I64Vec2))| {
+            let at = (*corner - frame.min).as_uvec2();
+            let (width, height) = header.size();
+            let window = RasterWindow { column: at.x, row: at.y, width, height };
+            let size = self.rasters[tile.index].size();
+            PlacedHeader { index: tile.index, name: name.clone(), refinement: tile.refinement, size, window }
+        };
+        let tiles = nested.iter().zip(&headers.names).zip(headers.rasters.iter().zip(&corners));
+        let tiles = tiles.map(placed).collect();
+        Ok((Raster { notes: headers.notes(&nested), ..header }, tiles))
     }
 
     /// Where each tile's first sample lies in the first tile's grid, after all were compared.
@@ -221,7 +334,8 @@ impl Tiles {
         let longest = f64::from(first.width.max(first.height).max(tile.width).max(tile.height));
         let apart = DVec2::new(axes.x_axis.length(), axes.y_axis.length()) * longest;
         if apart.cmpgt(first.spacing() * ALIGNMENT).any() {
-            return differ("cells", [first, tile].map(cells));
+            let (first_name, other) = (self.names[0].clone(), self.names[index].clone());
+            return Err(MosaicError::Cells { first: first_name, other, found: [first, tile].map(cells) });
         }
         Ok(())
     }
@@ -271,29 +385,24 @@ fn turns(tiles: &[Raster]) -> Vec<f64> {
     turns
 }
 
-/// The rectangle around all tiles, in the first tile's grid.
-#[derive(Clone, Copy)]
-struct MosaicFrame {
-    min: I64Vec2,
-    width: usize,
-    height: usize,
+/// A tile by its number, and what brings it to the finest one's grid; `None` where it is in that.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NestedTile {
+    index: usize,
+    refinement: Option<Refinement>,
 }
 
-impl MosaicFrame {
-    /// Of at most `most` samples.
-    fn around(tiles: &[Raster], corners: &[I64Vec2], most: u64) -> Result<Self, MosaicError> {
-        let size = |tile: &Raster| I64Vec2::new(tile.width.into(), tile.height.into());
-        let ends = tiles.iter().zip(corners).map(|(tile, corner)| *corner + size(tile));
-        let min = corners.iter().copied().fold(I64Vec2::MAX, I64Vec2::min);
-        let max = ends.fold(I64Vec2::MIN, I64Vec2::max);
-        let size = (max - min).as_u64vec2();
-        match size.x.checked_mul(size.y) {
-            Some(samples) if samples <= most && size.max_element() <= u32::MAX.into() => {
-                Ok(Self { min, width: size.x as usize, height: size.y as usize })
-            }
-            _ => Err(MosaicError::TooLarge(size)),
-        }
-    }
+/// A tile whose samples are not in memory, in a mosaic.
+#[derive(Clone, Debug)]
+pub(crate) struct PlacedHeader {
+    /// Its number.
+    pub index: usize,
+    pub name: String,
+    pub refinement: Option<Refinement>,
+    /// Its own columns and rows.
+    pub size: (u32, u32),
+    /// Its place in the mosaic.
+    pub window: RasterWindow,
 }
 
 /// The mosaic with these samples.
@@ -309,49 +418,6 @@ fn header(tiles: &[Raster], frame: MosaicFrame, samples: Samples) -> Raster {
         vertical_datum: tiles.iter().find_map(|tile| tile.vertical_datum.clone()),
         ..first.without_samples()
     }
-}
-
-fn join<T: SampleFloat>(tiles: &[Raster], corners: &[I64Vec2], frame: MosaicFrame) -> Mosaic {
-    let mut values = vec![T::NODATA; frame.width * frame.height];
-    let mut covered = vec![0u64; values.len().div_ceil(64)];
-    let (mut overlaps, mut differing, mut greatest_difference, mut in_feet) = (0, 0, 0.0f64, 0);
-    for (tile, corner) in tiles.iter().zip(corners) {
-        let at = *corner - frame.min;
-        let width = tile.width as usize;
-        for (index, value) in tile.samples.iter().enumerate() {
-            let place = (at.y as usize + index / width) * frame.width + at.x as usize + index % width;
-            covered[place / 64] |= 1 << (place % 64);
-            let earlier: f64 = values[place].into();
-            if value.is_nan() {
-                continue;
-            }
-            if earlier.is_nan() {
-                values[place] = T::from_f64(value);
-                continue;
-            }
-            overlaps += 1;
-            if earlier != value {
-                differing += 1;
-                greatest_difference = greatest_difference.max((earlier - value).abs());
-                in_feet += u64::from(is_foot_to_meter(earlier, value));
-            }
-        }
-    }
-    let kept: u64 = covered.iter().map(|word| u64::from(word.count_ones())).sum();
-    let gaps = values.len() as u64 - kept;
-    let raster = header(tiles, frame, T::into_samples(values));
-    let without_datum = match raster.vertical_datum {
-        Some(_) => tiles.iter().filter(|tile| tile.vertical_datum.is_none()).count(),
-        None => 0,
-    };
-    let tiles = tiles.len();
-    Mosaic { raster, tiles, overlaps, differing, greatest_difference, in_feet, gaps, without_datum }
-}
-
-/// Whether one of two heights is the other in feet, within 1 %.
-fn is_foot_to_meter(one: f64, other: f64) -> bool {
-    let is_near = |ratio: f64| (ratio - FOOT_M).abs() < 0.01 * FOOT_M;
-    is_near(one / other) || is_near(other / one)
 }
 
 #[cfg(test)]
@@ -414,8 +480,8 @@ mod tests {
             "{shifted}"
         );
         let mut coarse = tile(2.0, 0.0, 2, 2, vec![0.0; 4]);
-        coarse.map_from_grid.matrix2 *= 2.0;
-        assert!(refused(coarse).contains("cells are 10 by -10 and 20 by -20"));
+        coarse.map_from_grid.matrix2 *= 1.5;
+        assert!(refused(coarse).contains("cells are 10 by -10 and 15 by -15, which do not nest"));
         let in_feet = Raster { meters_per_z: 0.3048, ..one() };
         assert!(refused(in_feet).contains("vertical units are 1 m and 0.3048 m"));
         let named = Raster { crs: Some(Crs::wgs84()), ..one() };
@@ -425,6 +491,47 @@ mod tests {
         assert!(far.contains("10000002 x 10000002"), "{far}");
         assert!(refused(tile(1e300, 0.0, 2, 2, vec![0.0; 4])).contains("samples"));
         assert_eq!(mosaic([]).expect_err("none"), MosaicError::Empty);
+    }
+
+    /// A tile of cells twice as large; its corner lies as that of [`tile`].
+    fn coarse(column: f64, row: f64, width: u32, height: u32, values: Vec<f32>) -> Raster {
+        let mut tile = tile(column, row, width, height, values);
+        tile.map_from_grid.matrix2 *= 2.0;
+        tile
+    }
+
+    #[test]
+    fn tiles_of_larger_cells_fill_what_the_finest_leave() {
+        let hole = f32::NAN;
+        let fine = || tile(0.0, 0.0, 2, 2, vec![1.0, 2.0, 3.0, hole]);
+        let wide = || coarse(0.0, 0.0, 2, 1, vec![10.0, 30.0]);
+        for tiles in [[fine(), wide()], [wide(), fine()]] {
+            let joined = mosaic(tiles).expect("they nest");
+            let wanted = vec![1.0, 2.0, 25.0, 30.0, 3.0, 15.0, 25.0, 30.0];
+            assert_eq!((joined.raster.width, &joined.raster.samples), (4, &Samples::F32(wanted)));
+            assert_eq!((joined.tiles, joined.overlaps, joined.differing, joined.gaps), (2, 0, 0, 0));
+            assert!(
+                joined.raster.notes[0].starts_with("1 of 2 tiles have cells 2 times as large"),
+                "{joined:?}"
+            );
+        }
+        // Nodes: the large cells' centers lie on centers of the small ones.
+        let nodes = mosaic([fine(), coarse(1.5, -0.5, 2, 2, vec![5.0, 7.0, 9.0, 11.0])]).expect("they nest");
+        assert_eq!((nodes.raster.width, nodes.raster.height), (5, 3));
+        let row = [2u32, 3, 4].map(|column| nodes.raster.at(column, 0));
+        assert_eq!(row, [5.0, 6.0, 7.0]);
+    }
+
+    #[test]
+    fn notes_of_tiles_are_told_once_with_the_tile_or_the_number_of_tiles() {
+        let noted = |column: f64, notes: &[&str]| Raster {
+            notes: notes.iter().map(|note| (*note).to_owned()).collect(),
+            ..tile(column, 0.0, 1, 1, vec![0.0])
+        };
+        let joined =
+            mosaic([noted(0.0, &["b"]), noted(1.0, &["b", "a"]), noted(2.0, &["b"])]).expect("tiles");
+        assert_eq!(joined.raster.notes, ["tile 1 and 2 more tiles: b", "tile 2: a"]);
+        assert_eq!(mosaic([noted(0.0, &["b"])]).expect("one").raster.notes, ["b"]);
     }
 
     #[test]

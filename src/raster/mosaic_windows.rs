@@ -5,7 +5,8 @@
 
 use crate::cache::LruCache;
 use crate::error::DemErrorKind;
-use crate::mosaic::{MosaicError, Tiles};
+use crate::mosaic::{MosaicError, PlacedHeader, Tiles};
+use crate::nested_tile::{FinerWindows, Refinement};
 use crate::raster::{Raster, Samples};
 use crate::windows::{RasterWindow, Windows};
 use sandtable_base::limits::WINDOWED_SAMPLES;
@@ -19,15 +20,10 @@ type TileOpener = Box<dyn FnMut(usize) -> Result<Box<dyn Windows + Send>, DemErr
 /// A mosaic of tiles on disk.
 pub struct MosaicWindows {
     header: Raster,
-    tiles: Vec<MosaicTile>,
+    /// In the order in which they win.
+    tiles: Vec<PlacedHeader>,
     opener: TileOpener,
     open: LruCache<usize, Box<dyn Windows + Send>>,
-}
-
-/// A tile's name and its place in the mosaic.
-struct MosaicTile {
-    name: String,
-    window: RasterWindow,
 }
 
 impl MosaicWindows {
@@ -36,34 +32,34 @@ impl MosaicWindows {
     /// # Errors
     /// [`MosaicError`].
     pub fn new(headers: Vec<(String, Raster)>, opener: TileOpener) -> Result<Self, MosaicError> {
-        let tiles = Tiles::of_headers(headers);
-        let (header, corners) = tiles.placed(WINDOWED_SAMPLES.get())?;
-        let placed = tiles.into_named().into_iter().zip(corners);
-        let tile = |((name, tile), corner): ((String, Raster), glam::U64Vec2)| MosaicTile {
-            name,
-            window: RasterWindow {
-                column: corner.x as u32,
-                row: corner.y as u32,
-                width: tile.width,
-                height: tile.height,
-            },
-        };
-        Ok(Self { header, tiles: placed.map(tile).collect(), opener, open: LruCache::new(OPEN_TILES) })
+        let (header, tiles) = Tiles::of_headers(headers).placed(WINDOWED_SAMPLES.get())?;
+        Ok(Self { header, tiles, opener, open: LruCache::new(OPEN_TILES) })
     }
 
-    /// The samples of a tile in a window of its own.
+    /// The samples of a tile in a window of its own, in the mosaic's grid.
     fn tile_samples(&mut self, tile: usize, window: RasterWindow) -> Result<Samples, DemErrorKind> {
+        let PlacedHeader { index, size, refinement, .. } = self.tiles[tile];
         let mut opened = match self.open.take(tile) {
             Some(opened) => opened,
-            None => (self.opener)(tile)?,
+            None => {
+                let opened = (self.opener)(index)?;
+                if opened.size() != size {
+                    return Err(DemErrorKind::Changed);
+                }
+                in_finer_grid(opened, refinement)
+            }
         };
-        let (size, expected) = (opened.size(), self.tiles[tile].window);
-        if size != (expected.width, expected.height) {
-            return Err(DemErrorKind::Changed);
-        }
         let samples = opened.samples(window);
         self.open.put(tile, opened, 1);
         samples
+    }
+}
+
+/// A tile in the grid of the finest one.
+fn in_finer_grid(tile: Box<dyn Windows + Send>, refinement: Option<Refinement>) -> Box<dyn Windows + Send> {
+    match refinement {
+        Some(refinement) => Box::new(FinerWindows::new(tile, refinement)),
+        None => tile,
     }
 }
 
@@ -130,6 +126,39 @@ mod tests {
         assert_eq!(windows.metadata().geotransform(), whole.geotransform());
         let (width, height) = whole.size();
         assert_eq!(windows.size(), (width, height));
+        let bits = |samples: Samples| samples.iter().map(f64::to_bits).collect::<Vec<_>>();
+        for (column, row) in (0..width).flat_map(|column| (0..height).map(move |row| (column, row))) {
+            let window =
+                RasterWindow { column, row, width: (width - column).min(4), height: (height - row).min(3) };
+            let found = windows.samples(window).expect("in memory");
+            assert_eq!(bits(found), bits(whole.samples(window).expect("in memory")), "{window:?}");
+        }
+    }
+
+    #[test]
+    fn windows_of_tiles_of_several_cells_are_those_of_the_joined_raster() {
+        let several = || {
+            let mut all = tiles();
+            for (times, column, row) in [(2.0, -4.0, -2.0), (3.0, 6.0, 1.0), (2.0, 0.5, 0.5)] {
+                let mut tile = all[0].clone();
+                tile.map_from_grid.matrix2 *= times;
+                tile.map_from_grid.translation = DVec2::new(1000.0 + 10.0 * column, 2000.0 - 10.0 * row);
+                all.insert(0, tile);
+            }
+            all
+        };
+        let mut joined = Tiles::default();
+        let mut headers = Vec::new();
+        for (index, tile) in several().into_iter().enumerate() {
+            headers.push((format!("tile {index}"), tile.without_samples()));
+            joined.push(format!("tile {index}"), tile).expect("few samples");
+        }
+        let mut whole = joined.join().expect("they nest").raster;
+        let opener: TileOpener = Box::new(move |index| Ok(Box::new(several().swap_remove(index))));
+        let mut windows = MosaicWindows::new(headers, opener).expect("they nest");
+        assert_eq!(windows.metadata().geotransform(), whole.geotransform());
+        assert_eq!(windows.metadata().notes, whole.notes);
+        let (width, height) = whole.size();
         let bits = |samples: Samples| samples.iter().map(f64::to_bits).collect::<Vec<_>>();
         for (column, row) in (0..width).flat_map(|column| (0..height).map(move |row| (column, row))) {
             let window =

@@ -8,6 +8,8 @@ use glam::{DAffine2, DMat2, DVec2};
 use rayon::iter::repeat_n;
 use rayon::prelude::*;
 
+use crate::file_bands::FileBands;
+use crate::nodata_span::NoDataSpan;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::rect::Rect;
 
@@ -43,6 +45,10 @@ pub struct Raster {
     pub nodata: Option<f64>,
     /// The vertical datum in the file's words (`NAVD88`); `None` where not stated.
     pub vertical_datum: Option<String>,
+    /// The bands of the file, of which the samples are the first.
+    pub bands: FileBands,
+    /// What was guessed or left out where the file was read, a sentence each, for the user.
+    pub notes: Vec<String>,
 }
 
 /// Elevations in the precision that keeps the file's values exact.
@@ -58,7 +64,7 @@ pub enum Samples {
 const FILLED_ALONE: usize = 1 << 20;
 
 /// A float type of [`Samples`].
-pub trait SampleFloat: Copy + Default + Display + Into<f64> + PartialEq + Send + Sync {
+pub trait SampleFloat: Copy + Default + Display + Into<f64> + PartialOrd + Send + Sync {
     /// The value without data: NaN.
     const NODATA: Self;
 
@@ -183,13 +189,15 @@ impl Samples {
         }
     }
 
-    /// Makes every sample of `value` one without data; a 32-bit sample is compared with the nearest 32-bit value.
-    pub fn clear(&mut self, value: f64) {
+    /// Makes every sample one without data that a stated no-data value means ([`NoDataSpan`]).
+    pub fn clear(&mut self, stated: f64) {
+        fn clear<T: SampleFloat>(values: &mut [T], stated: f64) {
+            let (low, high) = NoDataSpan::around(stated).ends::<T>();
+            values.iter_mut().filter(|at| **at >= low && **at <= high).for_each(|at| *at = T::NODATA);
+        }
         match self {
-            Self::F32(values) => {
-                values.iter_mut().filter(|at| **at == value as f32).for_each(|at| *at = f32::NAN)
-            }
-            Self::F64(values) => values.iter_mut().filter(|at| **at == value).for_each(|at| *at = f64::NAN),
+            Self::F32(values) => clear(values, stated),
+            Self::F64(values) => clear(values, stated),
         }
     }
 
@@ -264,7 +272,15 @@ impl Raster {
             crs: None,
             nodata: None,
             vertical_datum: None,
+            bands: FileBands::default(),
+            notes: Vec::new(),
         }
+    }
+
+    /// This raster as that of a file with these bands; a note says where there are others than elevation.
+    pub fn with_bands(mut self, bands: FileBands) -> Self {
+        self.notes.extend(bands.note());
+        Self { bands, ..self }
     }
 
     /// This raster with a stated georeference.
@@ -293,8 +309,9 @@ impl Raster {
 
     /// All but the samples; their precision stays known.
     pub fn without_samples(&self) -> Self {
-        let (crs, vertical_datum) = (self.crs.clone(), self.vertical_datum.clone());
-        Self { samples: Samples::absent(0, self.samples.is_wide()), crs, vertical_datum, ..*self }
+        let (crs, vertical_datum, notes) =
+            (self.crs.clone(), self.vertical_datum.clone(), self.notes.clone());
+        Self { samples: Samples::absent(0, self.samples.is_wide()), crs, vertical_datum, notes, ..*self }
     }
 
     /// Grid position (column, row) of a map position; NaN where the georeference cannot be inverted.

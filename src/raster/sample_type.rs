@@ -1,5 +1,7 @@
 //! Types of stored samples.
 
+use crate::nodata_span::NoDataSpan;
+
 /// The type of a stored sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the names are those of the types of numbers")]
@@ -79,13 +81,17 @@ impl SampleType {
         TYPES[self as usize].3
     }
 
-    /// A no-data value as a sample can equal it; NaN, which equals nothing, where there is none.
-    #[inline]
-    pub fn comparable(self, nodata: Option<f64>) -> f64 {
-        match nodata {
-            Some(value) if matches!(self, Self::F16 | Self::F32) => f64::from(value as f32),
-            Some(value) => value,
-            None => f64::NAN,
+    /// The samples that a stated no-data value means; none where none is stated.
+    pub fn nodata_span(self, stated: Option<f64>) -> NoDataSpan {
+        let Some(stated) = stated else { return NoDataSpan::NONE };
+        let span = NoDataSpan::around(stated);
+        match self {
+            // Of 16 bits the nearest number may be some meters off.
+            Self::F16 => {
+                let nearest = half::f16::from_f64(stated);
+                if nearest.is_finite() { span.with(nearest.to_f64()) } else { span }
+            }
+            _ => span,
         }
     }
 

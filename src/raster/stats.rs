@@ -3,8 +3,10 @@
 use rayon::prelude::*;
 
 use crate::error::DemErrorKind;
+use crate::odd_values::OddValues;
 use crate::raster::{Raster, SampleFloat, Samples};
 use crate::read_ahead::read_ahead;
+use crate::undeclared::{UndeclaredNodata, of_counts};
 use crate::void_counts::{VoidCounts, VoidSearch};
 use crate::windows::{RasterWindow, Windows};
 
@@ -23,6 +25,17 @@ pub struct Stats {
     pub std: f64,
 }
 
+/// What is found of the samples of a raster.
+#[derive(Clone, Debug)]
+pub struct RasterSurvey {
+    /// The statistics.
+    pub stats: Stats,
+    /// Voids that other samples enclose.
+    pub voids: VoidCounts,
+    /// Values that may mean no data by themselves; margins are not looked at.
+    pub undeclared: Vec<UndeclaredNodata>,
+}
+
 impl Stats {
     /// The statistics of `raster`, in 64 bits: the same bits on every machine, and for every number of threads.
     ///
@@ -34,22 +47,23 @@ impl Stats {
         sums.finish()
     }
 
-    /// The statistics of a raster that is read in windows, and its [voids](VoidCounts): the same bits. It is read once, some
+    /// The statistics of a raster that is read in windows, the same bits, and what else is found of it. It is read once, some
     /// rows at a time.
     ///
     /// # Errors
     /// Samples cannot be read.
-    pub fn of_windows(
-        windows: &mut (impl Windows + Send + ?Sized),
-    ) -> Result<(Self, VoidCounts), DemErrorKind> {
+    pub fn of_windows(windows: &mut (impl Windows + Send + ?Sized)) -> Result<RasterSurvey, DemErrorKind> {
         let size = windows.size();
         let (mut sums, mut voids) = (StatsSums::default(), VoidSearch::new(size));
+        let mut odd = OddValues::new(windows.metadata());
         let bands = RasterWindow::all(size).bands(ROWS_SAMPLES);
         read_ahead(windows, bands, Windows::samples, |_, samples| {
             sums.add_rows(&samples, size.0);
             voids.add_rows(&samples);
+            odd.add(&samples);
         })?;
-        Ok((sums.finish(), voids.finish()))
+        let (stats, voids) = (sums.finish(), voids.finish());
+        Ok(RasterSurvey { stats, voids, undeclared: of_counts(&odd) })
     }
 
     /// The lowest and the highest valid sample of a raster that is read in windows, once, some rows at a time; NaN where none
@@ -176,11 +190,21 @@ mod tests {
     fn statistics_of_windows_are_those_of_the_raster() {
         let value = |at: u32| if at % 7 == 3 { f32::NAN } else { (at * 7919 % 1013) as f32 / 3.0 };
         let mut raster = small(23, 19, (0..23 * 19).map(value).collect());
-        let (stats, voids) = Stats::of_windows(&mut raster.clone()).expect("in memory");
+        let surveyed = Stats::of_windows(&mut raster.clone()).expect("in memory");
+        let RasterSurvey { stats, voids, undeclared } = surveyed;
         assert_eq!(stats, Stats::new(&raster));
         assert_eq!(voids, VoidCounts::of(&raster));
+        assert!(undeclared.is_empty());
         raster.samples.clear(raster.samples.get(0));
         assert_ne!(Stats::new(&raster), stats);
+    }
+
+    #[test]
+    fn values_of_windows_that_may_mean_no_data_are_found() {
+        let value = |at: u32| if at < 50 { 65535.0 } else { (at % 100) as f32 };
+        let mut raster = small(20, 20, (0..400).map(value).collect());
+        let found = Stats::of_windows(&mut raster).expect("in memory").undeclared;
+        assert_eq!(found.iter().map(|found| found.value).collect::<Vec<_>>(), [65535.0]);
     }
 
     #[test]

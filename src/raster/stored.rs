@@ -6,6 +6,7 @@
 
 use rayon::prelude::*;
 
+use crate::nodata_span::NoDataSpan;
 use crate::raster::{Raster, SampleFloat, Samples};
 use crate::sample_type::SampleType;
 
@@ -122,8 +123,10 @@ impl SampleSurvey {
             bytes |= kept[index] && *sample == SampleType::U8;
         }
         let taken = self.possible.iter().zip(&self.found.taken).map(|(&candidate, &is_taken)| {
+            // Readers take all of the span for no data.
+            let (low, high) = NoDataSpan::around(candidate).ends::<T>();
             // Counted rather than searched: a loop that may end early is not vectorized.
-            let equal = || values.iter().filter(|&&value| value.into() == candidate).count();
+            let equal = || values.iter().filter(|&&value| (value >= low) & (value <= high)).count();
             !is_taken && (!bytes || SampleType::U8.keeps(candidate)) && equal() > 0
         });
         SurveyedSamples { has_holes, taken: taken.collect(), kept }

@@ -26,14 +26,16 @@ use sandtable_dem::vrt::{self, VrtTiles};
 use sandtable_dem::vrt_source::VrtSource;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
+use sandtable_description::elevation_file::ElevationFile;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::words::HeightEncodingWord;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::rect::Rect;
 use sandtable_raster::crop::{crop_window, part};
 use sandtable_raster::error::{DemError, DemErrorKind};
-use sandtable_raster::mosaic::Tiles;
+use sandtable_raster::mosaic::{MosaicError, Tiles};
 use sandtable_raster::mosaic_windows::MosaicWindows;
+use sandtable_raster::raised::RaisedWindows;
 use sandtable_raster::raster::Raster;
 use sandtable_raster::reduced_windows::ReducedWindows;
 use sandtable_raster::unstated_unit;
@@ -215,12 +217,14 @@ struct TileFile {
     name: String,
     /// How the virtual raster takes it that lists it, where one does.
     source: Option<VrtSource>,
+    /// What is added to its heights.
+    offset_m: f64,
 }
 
 impl TileFile {
     /// A file that no virtual raster lists.
-    fn alone(name: String) -> Self {
-        Self { name, source: None }
+    fn alone(name: String, offset_m: f64) -> Self {
+        Self { name, source: None, offset_m }
     }
 
     /// What is stated of the file, by the document and by the virtual raster.
@@ -235,14 +239,15 @@ impl TileList {
     fn of(document: &Document, assets: &Assets) -> Result<Option<Self>, Diagnostic> {
         let dem = &document.terrain.dem;
         let mut list = Self { files: Vec::new(), vrts: Vec::new(), stated: stated(document)? };
-        for name in dem.iter() {
+        for ElevationFile { file: name, offset } in dem.iter() {
+            let offset_m = *offset;
             if assets.elevation(name).map_err(|error| document.error(dem, error))?.is_some() {
                 return Ok(None);
             }
             if let Some(files) = assets.folder(name).map_err(|error| document.error(dem, error))? {
                 let before = list.files.len();
                 let tiles = files.into_iter().filter(|file| read::is_tile_name(file));
-                list.files.extend(tiles.map(TileFile::alone));
+                list.files.extend(tiles.map(|file| TileFile::alone(file, offset_m)));
                 if list.files.len() == before {
                     return Err(
                         document.error(dem, format!("'{}' is a folder without elevation", quoted(name)))
@@ -251,7 +256,7 @@ impl TileList {
                 continue;
             }
             if !vrt::is_vrt(name) {
-                list.files.push(TileFile::alone(name.clone()));
+                list.files.push(TileFile::alone(name.clone(), offset_m));
                 continue;
             }
             let bytes = assets.read(name).map_err(|error| document.error(dem, error))?;
@@ -264,7 +269,7 @@ impl TileList {
             vrt.state_nodata(list.stated.nodata);
             list.files.extend(vrt.sources.iter().map(|source| {
                 let folder = if source.file.starts_with('/') { "" } else { &folder };
-                TileFile { name: format!("{folder}{}", source.file), source: Some(source.clone()) }
+                TileFile { name: format!("{folder}{}", source.file), source: Some(source.clone()), offset_m }
             }));
             list.vrts.push(vrt);
         }
@@ -311,9 +316,10 @@ impl TileList {
             return Ok(None);
         }
         let mut headers = Vec::new();
-        for (TileFile { name, .. }, (mut tile, overridden)) in files.iter().zip(tiles) {
-            check_tile(name, &mut tile, overridden, document, findings);
-            headers.push((name.clone(), tile));
+        for (file, (mut tile, overridden)) in files.iter().zip(tiles) {
+            tile.vertical_datum = tile.vertical_datum.filter(|_| self.keeps_datum(file));
+            check_tile(&file.name, &mut tile, overridden, document, findings);
+            headers.push((file.name.clone(), tile));
         }
         let stating = headers.iter().filter(|(_, tile)| tile.vertical_datum.is_some()).count();
         let (count, is_alone, assets) = (headers.len(), self.vrts.is_empty(), assets.clone());
@@ -333,9 +339,15 @@ impl TileList {
         }
         let message = format!("{count} tiles joined by their headers; what they share is not compared");
         findings.add(FindingCode::TilesJoined, dem.span().unwrap_or_default(), message);
-        let mosaic =
-            MosaicWindows::new(headers, Box::new(open)).map_err(|error| document.error(dem, error))?;
-        let mosaic = Box::new(mosaic);
+        let mosaic = match MosaicWindows::new(headers, Box::new(open)) {
+            // They are resampled when they are read whole.
+            Err(MosaicError::Cells { .. } | MosaicError::Misaligned { .. })
+                if document.terrain.cell.is_some() && is_alone =>
+            {
+                return Ok(None);
+            }
+            mosaic => Box::new(mosaic.map_err(|error| document.error(dem, error))?),
+        };
         match self.frame() {
             Some(vrt) => vrt.filled_windows(mosaic).map(Some).map_err(|error| document.error(dem, error)),
             None => Ok(Some(mosaic)),
@@ -368,10 +380,14 @@ impl TileList {
             if let Some(source) = &file.source {
                 tile = source.taken_from(tile).map_err(|error| document.error(dem, error))?;
             }
+            tile = tile.raised(file.offset_m);
+            tile.vertical_datum = tile.vertical_datum.filter(|_| self.keeps_datum(file));
             check_tile(name, &mut tile, overridden.take(), document, findings);
             tiles.push(name, tile).map_err(failed)?;
         }
-        let mut mosaic = tiles.join().map_err(failed)?;
+        // A virtual raster states its own grid.
+        let cell = document.terrain.cell.filter(|_| self.vrts.is_empty());
+        let mut mosaic = tiles.join_in_cells(cell).map_err(failed)?;
         if let Some(vrt) = self.frame() {
             mosaic.raster = vrt.filled(mosaic.raster).map_err(|error| document.error(dem, error))?;
         }
@@ -389,6 +405,12 @@ impl TileList {
             findings.add(FindingCode::TilesJoined, dem.span().unwrap_or_default(), mosaic.note());
         }
         Ok(mosaic.raster)
+    }
+
+    /// Whether the vertical datum that a file states is still that of its heights: an offset brings a tile to the datum of
+    /// the others.
+    fn keeps_datum(&self, file: &TileFile) -> bool {
+        file.offset_m == 0.0 || self.files.len() < 2
     }
 
     /// The virtual raster that states the frame of all tiles: several are joined to another raster than each states.
@@ -414,20 +436,26 @@ fn open_windows(
     stated: &DemOptions,
     overridden: &dyn Fn(&Crs),
 ) -> Result<Option<Box<dyn Windows + Send>>, TileError> {
-    let TileFile { name, source } = file;
+    let TileFile { name, source, offset_m } = file;
     let (head, content) = assets.open_elevation(name, read::HEAD_BYTES)?;
     let companions = assets.companions(COMPANION_BYTES.get());
     let options = file.options(stated);
     let hints = DemHints { options, overridden, companions: &|name| companions.get(name) };
     let windows = read::open_windows(name, &head, content, &hints, WINDOW_CACHE_BYTES);
     companions.check()?;
-    match (source, windows?) {
+    let windows = match (source, windows?) {
         (Some(source), Some(windows)) => {
             let failed = |kind| DemError { name: name.clone(), kind };
-            Ok(Some(source.taken_windows(windows).map_err(failed)?))
+            Some(source.taken_windows(windows).map_err(failed)?)
         }
-        (_, windows) => Ok(windows),
-    }
+        (_, windows) => windows,
+    };
+    Ok(windows.map(|windows| raised(windows, *offset_m)))
+}
+
+/// Windows with `meters` added to their heights.
+fn raised(windows: Box<dyn Windows + Send>, meters: f64) -> Box<dyn Windows + Send> {
+    if meters == 0.0 { windows } else { Box::new(RaisedWindows::new(windows, meters)) }
 }
 
 /// What the document states of its elevation files.
@@ -455,9 +483,9 @@ fn replaced(
     findings: &mut SceneFindings,
 ) -> Result<Raster, Diagnostic> {
     let (dem, mut found) = (&document.terrain.dem, None);
-    for name in dem.iter() {
+    for ElevationFile { file: name, offset } in dem.iter() {
         let elevation = assets.elevation(name).map_err(|error| document.error(dem, error))?;
-        found = found.or(elevation.map(|elevation| (name, elevation.clone())));
+        found = found.or(elevation.map(|elevation| (name, elevation.clone().raised(*offset))));
     }
     let (name, mut tile) = found.ok_or_else(|| document.error(dem, "no elevation is named"))?;
     check_tile(name, &mut tile, None, document, findings);

@@ -9,6 +9,7 @@ use crate::assets::Assets;
 use crate::elevation::{BESIDE, ReadElevation, nothing_within};
 use crate::planned_pictures::ElevationNeed;
 use crate::scene_findings::SceneFindings;
+use sandtable_base::message::suggest::quoted;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::finding_code::FindingCode;
@@ -57,6 +58,14 @@ pub fn load(
     let dem = &document.terrain.dem;
     let (mut findings, span) = (SceneFindings::new(document), dem.span().unwrap_or_default());
     let mut read = ReadElevation::new(document, assets, need, &mut findings)?;
+    for note in &read.held.notes {
+        // Of several files the note names the one that it is about.
+        let message = match &dem[..] {
+            [tile] => format!("'{}': {note}", quoted(&tile.file)),
+            _ => note.clone(),
+        };
+        findings.add(FindingCode::ElevationGuessed, span.clone(), message);
+    }
     for found in undeclared_nodata(&read.held) {
         let (evidence, value) = (&found.evidence, found.written());
         let message = format!("{evidence}: if that means no data, say `nodata = {value}` under [terrain]");

@@ -74,6 +74,8 @@ fn system_name(crs: &Crs) -> String {
     match crs.epsg() {
         Some(code @ 32601..=32660) => format!("WGS 84 / UTM zone {} N ({name})", code - 32600),
         Some(code @ 32701..=32760) => format!("WGS 84 / UTM zone {} S ({name})", code - 32700),
+        Some(5041) => format!("WGS 84 / UPS North ({name})"),
+        Some(5042) => format!("WGS 84 / UPS South ({name})"),
         _ => format!("Coordinates {name}"),
     }
 }

@@ -167,8 +167,7 @@ impl PictureBuffers<'_> {
             }),
             georeferenced: frame.is_some(),
             crs: frame.map(|_| self.scene.crs.clone()),
-            nodata: None,
-            vertical_datum: None,
+            ..Raster::without_place(1, 1)
         }
     }
 

@@ -14,6 +14,7 @@ use sandtable_raster::void_counts::VoidCounts;
 use sandtable_raster::voids;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
+use sandtable_scene::scene_model::SceneModel;
 
 /// The real tile, with a few voids over the sea cliffs.
 fn monaco() -> Option<Raster> {
@@ -96,12 +97,31 @@ fn a_missing_quarter_is_a_gap() {
 }
 
 #[test]
-fn tiles_of_two_resolutions_are_refused() {
+fn tiles_of_two_resolutions_are_joined_in_the_finer_cells() {
     let Some(whole) = monaco() else { return };
     let bytes = vec![0; 3601 * 3601 * 2];
     let fine = read("N43E008.hgt", &bytes, &DemHints::default()).expect("a tile");
-    let refused = join(vec![whole, fine]).expect_err("refused").to_string();
-    assert!(refused.contains("tile 0 and tile 1") && refused.contains("cells"), "{refused}");
+    let joined = join(vec![whole.clone(), fine]).expect("they nest");
+    // The cells at the border of the coarser tile reach one finer cell beyond those of the other.
+    assert_eq!((joined.raster.width, joined.raster.height, joined.overlaps), (7202, 3603, 0));
+    for (column, row) in
+        (0..1200).step_by(7).flat_map(|column| (0..1201).step_by(11).map(move |row| (column, row)))
+    {
+        let (found, wanted) = (joined.raster.at(3 * column + 1, 3 * row + 1), whole.at(column, row));
+        assert!(
+            found == wanted || found.is_nan() && wanted.is_nan(),
+            "{column}, {row}: {found} for {wanted}"
+        );
+    }
+    assert_eq!([joined.raster.at(3601, 1), joined.raster.at(7201, 3601)], [0.0, 0.0]);
+    assert!(joined.raster.notes[0].contains("cells 3 times as large"), "{:?}", joined.raster.notes);
+    let odd = Raster {
+        map_from_grid: whole.map_from_grid * DAffine2::from_scale(DVec2::splat(0.7)),
+        ..whole.clone()
+    };
+    let refused = join(vec![whole, odd]).expect_err("they do not nest").to_string();
+    assert!(refused.contains("tile 1 and tile 0") || refused.contains("tile 0 and tile 1"), "{refused}");
+    assert!(refused.contains("do not nest") && refused.contains("--cell"), "{refused}");
 }
 
 #[test]
@@ -132,16 +152,7 @@ fn the_voids_of_a_real_tile_are_filled_within_the_heights_around() {
 
 /// Two tiles side by side that share a column, the second with a void.
 fn scene(scratch: &scratch::Scratch, terrain: &str) -> Result<(Vec<String>, f64, Option<String>), String> {
-    let tile = |west: u32, heights: &str| {
-        format!("ncols 3\nnrows 3\nxllcorner {west}\nyllcorner 0\ncellsize 10\n{heights}\n")
-    };
-    scratch.write("s/a.asc", tile(500_000, "1 2 3 1 2 3 1 2 3"));
-    scratch.write("s/b.asc", tile(500_020, "3 4 5 3 -9999 5 4 4 5"));
-    scratch.write("s/a.toml", terrain);
-    let path = scratch.folder().join("s/a.toml");
-    let document = parse_bytes("a.toml", terrain.as_bytes()).map_err(|error| error.to_string())?;
-    let assets = Assets::new(&path, &[]).map_err(|error| error.to_string())?;
-    let scene = build(&document, &assets, &|_| ()).map_err(|error| error.to_string())?;
+    let scene = built(scratch, terrain)?;
     let now = scene.heights.snapshot();
     let source = now.source();
     Ok((
@@ -149,6 +160,26 @@ fn scene(scratch: &scratch::Scratch, terrain: &str) -> Result<(Vec<String>, f64,
         source.at(source.width - 2, 1),
         source.vertical_datum.clone(),
     ))
+}
+
+/// The scene of those tiles, and of one of larger cells around both.
+fn built(scratch: &scratch::Scratch, terrain: &str) -> Result<SceneModel, String> {
+    let tile = |west: u32, heights: &str| {
+        format!("ncols 3\nnrows 3\nxllcorner {west}\nyllcorner 0\ncellsize 10\n{heights}\n")
+    };
+    scratch.write("s/a.asc", tile(500_000, "1 2 3 1 2 3 1 2 3"));
+    scratch.write("s/b.asc", tile(500_020, "3 4 5 3 -9999 5 4 4 5"));
+    let wide = |cell: u32| {
+        let heights = "7 7 7 7 7 7 7 7 7";
+        format!("ncols 3\nnrows 3\nxllcorner 500000\nyllcorner 0\ncellsize {cell}\n{heights}\n")
+    };
+    scratch.write("s/wide.asc", wide(20));
+    scratch.write("s/odd.asc", wide(17));
+    scratch.write("s/a.toml", terrain);
+    let path = scratch.folder().join("s/a.toml");
+    let document = parse_bytes("a.toml", terrain.as_bytes()).map_err(|error| error.to_string())?;
+    let assets = Assets::new(&path, &[]).map_err(|error| error.to_string())?;
+    build(&document, &assets, &|_| ()).map_err(|error| error.to_string())
 }
 
 #[test]
@@ -172,10 +203,60 @@ fn a_scene_joins_tiles_fills_voids_and_states_a_datum_where_it_asks_for_it() {
 }
 
 #[test]
+fn a_scene_adds_the_offsets_of_its_tiles() {
+    let scratch = scratch::Scratch::new();
+    let terrain = "[terrain]\ndem = [{ file = \"a.asc\", offset = 10 }, { file = \"b.asc\", offset = 9.5 }]\n\
+                   crs = \"EPSG:32633\"\n";
+    let scene = built(&scratch, terrain).expect("sound");
+    let now = scene.heights.snapshot();
+    let source = now.source();
+    assert_eq!([0, 1, 2, 4].map(|column| source.at(column, 0)), [11.0, 12.0, 13.0, 14.5]);
+    assert!(source.at(3, 1).is_nan());
+    let notes = scene.notes().join("\n");
+    assert!(notes.contains("3 of them differ, by up to 0.5"), "{notes}");
+    for (terrain, wanted) in [
+        ("dem = { offset = 1 }", "needs the key `file`"),
+        ("dem = [\"a.asc\", { file = \"b.asc\", ofset = 1 }]", "did you mean `offset`?"),
+        ("dem = { file = \"a.asc\", offset = \"1 m\" }", "write 1"),
+        ("dem = { file = 1 }", "must be text"),
+    ] {
+        let refused = scene_error(&scratch, terrain);
+        assert!(refused.contains(wanted), "{terrain}: {refused}");
+    }
+    let alone =
+        built(&scratch, "[terrain]\ndem = { file = \"a.asc\" }\ncrs = \"EPSG:32633\"\n").expect("sound");
+    assert_eq!(alone.heights.snapshot().source().at(0, 0), 1.0);
+}
+
+fn scene_error(scratch: &scratch::Scratch, dem: &str) -> String {
+    built(scratch, &format!("[terrain]\n{dem}\ncrs = \"EPSG:32633\"\n")).map(drop).expect_err(dem)
+}
+
+#[test]
+fn a_scene_joins_tiles_of_several_cells_and_tells_it() {
+    let scratch = scratch::Scratch::new();
+    let joined = |dem: &str| built(&scratch, &format!("[terrain]\ncrs = \"EPSG:32633\"\n{dem}\n"));
+    let scene = joined("dem = [\"wide.asc\", \"a.asc\"]").expect("they nest");
+    let now = scene.heights.snapshot();
+    let source = now.source();
+    assert_eq!((source.width, source.height), (6, 6));
+    assert_eq!([source.at(0, 5), source.at(2, 5), source.at(3, 5), source.at(0, 0)], [1.0, 3.0, 7.0, 7.0]);
+    let notes = scene.notes().join("\n");
+    assert!(notes.contains("1 of 2 tiles have cells 2 times as large as the finest, 10 by -10"), "{notes}");
+
+    let refused = joined("dem = [\"odd.asc\", \"a.asc\"]").map(drop).expect_err("17 m and 10 m");
+    assert!(refused.contains("do not nest") && refused.contains("`cell` under [terrain]"), "{refused}");
+    let scene = joined("dem = [\"odd.asc\", \"a.asc\"]\ncell = 5").expect("resampled");
+    assert_eq!(scene.heights.snapshot().source().spacing(), DVec2::splat(5.0));
+    let notes = scene.notes().join("\n");
+    assert!(notes.contains("2 tiles whose cells do not nest were resampled to cells of 5"), "{notes}");
+}
+
+#[test]
 fn what_a_scene_says_wrong_of_its_elevation_is_told_with_its_place() {
     let scratch = scratch::Scratch::new();
     for (terrain, place, wanted) in [
-        ("[terrain]\ndem = []\n", "a.toml:2:7", "`dem` lists 0 texts"),
+        ("[terrain]\ndem = []\n", "a.toml:2:7", "`dem` lists 0 elevation files"),
         ("[terrain]\ndem = [\"a.asc\", 3]\n", "a.toml:2:17", "must be text"),
         ("[terrain]\ndem = \"a.asc\"\nheight_encoding = \"rgb\"\n", "a.toml:3:19", "terrarium"),
         ("[terrain]\ndem = \"a.asc\"\nraw = \"3x3\"\n", "a.toml:3:7", "1201x1201:i16be"),

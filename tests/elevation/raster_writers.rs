@@ -40,8 +40,7 @@ fn raster(width: u32, samples: Samples, crs: Option<&str>) -> Raster {
         },
         georeferenced: true,
         crs: crs.map(|crs| Crs::parse(crs).expect("known")),
-        nodata: None,
-        vertical_datum: None,
+        ..Raster::without_place(1, 1)
     }
 }
 

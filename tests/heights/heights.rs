@@ -68,8 +68,7 @@ fn raster_of(lattice: &Lattice) -> Raster {
         },
         georeferenced: true,
         crs: None,
-        nodata: None,
-        vertical_datum: None,
+        ..Raster::without_place(1, 1)
     }
 }
 

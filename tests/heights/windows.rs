@@ -14,7 +14,7 @@ use sandtable_query::ground::QueriedGround;
 use sandtable_query::viewshed::ViewshedSummary;
 use sandtable_query::windowed_elevation::GroundReach;
 use sandtable_raster::raster::{Raster, Samples};
-use sandtable_raster::stats::Stats;
+use sandtable_raster::stats::{RasterSurvey, Stats};
 use sandtable_raster::void_counts::VoidCounts;
 use sandtable_terrain::profile::{Sampling, sampled_profile};
 use sandtable_terrain::query::Surface;
@@ -188,7 +188,7 @@ impl Pair {
         else {
             panic!("{}: not opened again", self.name)
         };
-        let (stats, voids) = Stats::of_windows(&mut *windows).expect("readable");
+        let RasterSurvey { stats, voids, .. } = Stats::of_windows(&mut *windows).expect("readable");
         let bits = |stats: Stats| [stats.min, stats.max, stats.mean, stats.std].map(f64::to_bits);
         let whole = Stats::new(&kept.raster);
         assert_eq!((stats.valid, bits(stats)), (whole.valid, bits(whole)), "{}", self.name);

@@ -289,8 +289,7 @@ fn raster_of(lattice: &Lattice) -> Raster {
         map_from_grid: DAffine2 { matrix2: axes, translation: DVec2::new(-5.0, f64::from(rows) * 8.0 - 4.0) },
         georeferenced: true,
         crs: None,
-        nodata: None,
-        vertical_datum: None,
+        ..Raster::without_place(1, 1)
     }
 }
 

@@ -170,11 +170,8 @@ fn displayed_heights_lie_on_drawn_triangles_and_ground_heights_never_change() {
         samples: Samples::F32(lattice.heights().to_vec()),
         map_from_grid: DAffine2::IDENTITY,
         crs: None,
-        nodata: None,
-        vertical_datum: None,
-        meters_per_z: 1.0,
-        states_z_unit: false,
         georeferenced: false,
+        ..Raster::without_place(1, 1)
     };
     let world = World::new(lattice);
     let service = HeightService::new(Arc::new(raster), Crs::local(), Arc::new(world.lattice.clone()));

@@ -235,7 +235,7 @@ fn a_scene_with_every_key_is_read_completely() {
 fn the_ground_and_its_look_are_read() {
     let document = read(COMPLETE).expect("a valid scene");
     let terrain = &document.terrain;
-    assert_eq!(*terrain.dem, ["data/hill.tif"]);
+    assert_eq!(terrain.dem.iter().map(|tile| &tile.file).collect::<Vec<_>>(), ["data/hill.tif"]);
     assert_eq!((terrain.height_scale, terrain.height_offset, terrain.cell), (Some(0.5), -10.0, Some(30.0)));
     assert_eq!((terrain.vertical_exaggeration, *terrain.tolerance_px), (1.5, 0.5));
     let style = &document.style;

@@ -1,7 +1,8 @@
 //! ESRI ASCII grid (`.asc`): lines of `key value`, then the samples as text, north row first.
 //!
 //! Read liberally: keys in any order and case, tabs and CRLF, `xllcenter` for `xllcorner`, `dx`/`dy` for `cellsize`,
-//! line breaks anywhere, a decimal comma. The number of samples must be right: a wrong `ncols` would shear the terrain
+//! line breaks anywhere, a decimal comma, a no-data value that is a word, as 12d writes `null`, and such words in place of
+//! values. The number of samples must be right: a wrong `ncols` would shear the terrain
 //! silently.
 //!
 //! Written with as many digits as a value needs to come back to the last bit, its coordinate system in a `.prj` beside
@@ -15,10 +16,11 @@ use crate::companion::projection_file_of;
 use crate::dem_file::DemFile;
 use crate::dem_format::{DemFormat, Recognition};
 use crate::formats::header::HeaderFields;
-use crate::formats::text::{TextWords, number, quote};
+use crate::formats::text::{TextWords, is_missing, number, quote};
 use crate::written::{WriteError, WrittenDem};
 use sandtable_raster::error::DemErrorKind;
 use sandtable_raster::limits::SizeClaim;
+use sandtable_raster::nodata_span::NoDataSpan;
 use sandtable_raster::raster::{Raster, SampleFloat, Samples, north_up};
 
 pub(super) static FORMAT: DemFormat = DemFormat {
@@ -35,6 +37,9 @@ pub(super) static FORMAT: DemFormat = DemFormat {
 
 /// The no-data value where the header states none, by Esri's definition of the format.
 const DEFAULT_NODATA: f64 = -9999.0;
+
+/// The key of the value for no data.
+const NODATA_KEY: &str = "nodata_value";
 
 /// Written for no data, in the order of preference; the raster's own value comes first.
 const NODATA_VALUES: [f64; 3] = [DEFAULT_NODATA, -32768.0, -99999.0];
@@ -78,14 +83,16 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
     if !corner.is_finite() {
         return Err(header.broken("its corner is not finite"));
     }
-    let nodata = header.number("nodata_value")?;
-    let values = values(&mut words, size.x as usize * size.y as usize, nodata.unwrap_or(DEFAULT_NODATA))?;
+    let stated = StatedMissing::new(header.get(NODATA_KEY));
+    let values = values(&mut words, size.x as usize * size.y as usize, &stated)?;
+    let nodata = stated.value.or(values.have_nodata.then_some(DEFAULT_NODATA));
     let north_west = DVec2::new(corner.x, corner.y + height as f64 * cell.y);
     Ok(Raster {
         driver: "AAIGrid",
-        data_type: if values.are_whole { "Int32" } else { "Float32" },
+        data_type: if values.have_fractions { "Float32" } else { "Int32" },
         crs: file.crs()?,
-        nodata: nodata.or(values.have_nodata.then_some(DEFAULT_NODATA)),
+        nodata,
+        notes: values.note(&stated).into_iter().collect(),
         ..Raster::new(size.x, Samples::F32(values.values)).placed(north_up(north_west, cell))
     })
 }
@@ -99,7 +106,9 @@ fn header(words: &mut TextWords) -> Result<HeaderFields, DemErrorKind> {
         if header.get(&key).is_some() {
             return Err(FORMAT.broken(format!("{key} is stated twice")));
         }
-        header.parse(&key, &value)?;
+        if key != NODATA_KEY {
+            header.parse(&key, &value)?;
+        }
         header.push(&key, &value);
     }
     Ok(header)
@@ -114,28 +123,89 @@ fn cell(header: &HeaderFields) -> Result<DVec2, DemErrorKind> {
     Err(header.broken(format!("the cells are {} by {}, not of a positive size", cell.x, cell.y)))
 }
 
+/// What the header states of missing data.
+struct StatedMissing<'a> {
+    /// The value; `None` where none is stated, or a word.
+    value: Option<f64>,
+    /// The word that stands for missing data.
+    word: Option<&'a str>,
+    /// What means no data among the samples.
+    span: NoDataSpan,
+}
+
+impl<'a> StatedMissing<'a> {
+    fn new(stated: Option<&'a str>) -> Self {
+        let value = stated.and_then(|text| number(text.as_bytes()));
+        let word = stated.filter(|_| value.is_none());
+        Self { value, word, span: NoDataSpan::around(value.unwrap_or(DEFAULT_NODATA)) }
+    }
+
+    fn is_word(&self, word: &[u8]) -> bool {
+        self.word.is_some_and(|stated| stated.as_bytes().eq_ignore_ascii_case(word))
+    }
+}
+
+#[derive(Default)]
 struct AsciiValues {
     values: Vec<f32>,
     /// Whether any of them is no data.
     have_nodata: bool,
-    /// Whether all are written as whole numbers.
-    are_whole: bool,
+    /// Whether one is written as a fraction or not as a number.
+    have_fractions: bool,
+    /// How many are written as a word that the header does not state, and the first such word.
+    unstated_words: u64,
+    first_word: String,
+    /// How many have the default value for no data where the header states a word.
+    defaults: u64,
 }
 
-fn values(words: &mut TextWords, count: usize, nodata: f64) -> Result<AsciiValues, DemErrorKind> {
-    let mut read = AsciiValues { values: Vec::with_capacity(count), have_nodata: false, are_whole: true };
+impl AsciiValues {
+    /// What was guessed, for the user.
+    fn note(&self, stated: &StatedMissing) -> Option<String> {
+        let Self { unstated_words, first_word, defaults, .. } = self;
+        let of_words = (*unstated_words > 0).then(|| {
+            let are = if *unstated_words == 1 { "value is" } else { "values are" };
+            format!("{unstated_words} {are} no number ('{first_word}'), and taken for no data")
+        });
+        let of_defaults = stated.word.filter(|_| *defaults > 0).map(|word| {
+            let word = quote(word.as_bytes());
+            format!("its no-data value is '{word}', and {defaults} values of {DEFAULT_NODATA} are taken for no data")
+        });
+        let parts: Vec<String> = of_words.into_iter().chain(of_defaults).collect();
+        (!parts.is_empty()).then(|| parts.join("; "))
+    }
+}
+
+fn values(words: &mut TextWords, count: usize, stated: &StatedMissing) -> Result<AsciiValues, DemErrorKind> {
+    let mut read = AsciiValues { values: Vec::with_capacity(count), ..AsciiValues::default() };
     for word in words {
         let index = read.values.len();
         if index == count {
             return Err(FORMAT.broken(format!("more than the {count} values that ncols and nrows promise")));
         }
-        let value = number(word).ok_or_else(|| {
-            FORMAT.broken(format!("value {} of {count} is '{}', not a number", index + 1, quote(word)))
-        })?;
-        let is_nodata = value == nodata || !value.is_finite();
+        let Some(value) = number(word) else {
+            if !stated.is_word(word) {
+                if !is_missing(word) {
+                    let (at, found) = (index + 1, quote(word));
+                    return Err(FORMAT.broken(format!("value {at} of {count} is '{found}', not a number")));
+                }
+                if read.unstated_words == 0 {
+                    read.first_word = quote(word);
+                }
+                read.unstated_words += 1;
+            }
+            read.have_nodata = true;
+            read.values.push(f32::NAN);
+            continue;
+        };
+        // The value for no data may have other digits than the samples, which are 32 bits wide.
+        let narrow = value as f32;
+        let is_stated = stated.span.contains(value) || stated.span.contains(narrow.into());
+        let is_nodata = is_stated || !narrow.is_finite();
+        read.defaults += u64::from(is_stated && stated.word.is_some());
         read.have_nodata |= is_nodata;
-        read.are_whole &= word.iter().all(|byte| matches!(byte, b'0'..=b'9' | b'-' | b'+'));
-        read.values.push(if is_nodata { f32::NAN } else { value as f32 });
+        read.have_fractions |= !word.iter().all(|byte| matches!(byte, b'0'..=b'9' | b'-' | b'+'));
+        read.values.push(if is_nodata { f32::NAN } else { narrow });
     }
     if read.values.len() < count {
         return Err(FORMAT.broken(format!("it ends after {} of {count} values", read.values.len())));
@@ -180,7 +250,10 @@ fn write_rows<T: SampleFloat>(text: &mut String, values: &[T], width: u32, nodat
 /// A value that no sample has. It is always stated: readers assume −9999 where none is.
 fn nodata_to_write(raster: &Raster) -> Result<f64, WriteError> {
     let own = raster.nodata.filter(|value| value.is_finite());
-    let is_free = |nodata: &f64| raster.samples.iter().all(|value| value != *nodata);
+    let is_free = |nodata: &f64| {
+        let span = NoDataSpan::around(*nodata);
+        !raster.samples.iter().any(|value| span.contains(value))
+    };
     let taken = WriteError::NoDataTaken { format: FORMAT.name, value: DEFAULT_NODATA };
     own.into_iter().chain(NODATA_VALUES).find(is_free).ok_or(taken)
 }
@@ -212,6 +285,52 @@ mod tests {
         let unstated = grid(&format!("{head}7 -9999 1,5")).expect("fine");
         assert!(unstated.at(1, 0).is_nan() && unstated.at(2, 0) == 1.5);
         assert_eq!(unstated.nodata, Some(-9999.0));
+    }
+
+    #[test]
+    fn no_data_may_be_written_with_other_digits_than_the_samples() {
+        let head = "ncols 3\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value";
+        for (stated, samples) in [
+            ("-3.40282e+38", ["-3.4028234663852886e+38", "-3.402823e+38"]),
+            ("-3.4028234663852886e+38", ["-3.40282e+38", "-340282346638528859811704183484516925440"]),
+            ("-9999.9", ["-9999.900391", "-9999.9000"]),
+            ("-9999.900391", ["-9999.9", "-9999.900390625"]),
+            ("-1.79769e+308", ["-1.7976931348623157e308", "-1.79769e+308"]),
+            ("1.70141e+038", ["1.7014100091878281e+38", "1.70141e38"]),
+        ] {
+            let raster = grid(&format!("{head} {stated}\n{} {} 7", samples[0], samples[1])).expect(stated);
+            assert!(
+                raster.at(0, 0).is_nan() && raster.at(1, 0).is_nan() && raster.at(2, 0) == 7.0,
+                "{stated}: {:?}",
+                raster.samples
+            );
+        }
+        let near = grid(&format!("{head} -9999\n-9999.4 -9998 -9999")).expect("fine");
+        assert!(
+            near.at(0, 0) == f64::from(-9999.4_f32) && near.at(1, 0) == -9998.0 && near.at(2, 0).is_nan()
+        );
+    }
+
+    #[test]
+    fn a_word_may_stand_for_no_data_in_the_header_and_among_the_values() {
+        let head = "ncols 3\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n";
+        let missing = |values: &str| {
+            let raster = grid(&format!("{head}{values}")).expect(values);
+            let valid: Vec<f64> = raster.samples.valid().collect();
+            (valid, raster.notes, raster.data_type)
+        };
+        let plain = || (vec![7.0, 8.0], Vec::<String>::new(), "Int32");
+        assert_eq!(missing("NODATA_value null\n7 NULL 8"), plain());
+        assert_eq!(missing("NODATA_value void\n7 void 8"), plain());
+        assert_eq!(missing("NODATA_value nan\n7 -nan(ind) 8").0, [7.0, 8.0]);
+        let (valid, notes, _) = missing("NODATA_value -9999\n7 null -9999");
+        assert_eq!((valid, notes.len()), (vec![7.0], 1));
+        assert!(notes[0].starts_with("1 value is no number ('null')"), "{notes:?}");
+        let (valid, notes, _) = missing("NODATA_value null\n7 -9999 n/a");
+        assert_eq!(valid, [7.0]);
+        assert!(notes[0].contains("('n/a')") && notes[0].contains("1 values of -9999"), "{notes:?}");
+        let refused = grid(&format!("{head}NODATA_value null\n7 x 8")).expect_err("a word");
+        assert!(refused.contains("value 2 of 3 is 'x'"), "{refused}");
     }
 
     #[test]

@@ -32,7 +32,7 @@ use crate::written::{WriteError, WrittenDem};
 use sandtable_base::bytes::{ByteFields, ByteOrder};
 use sandtable_geom::crs::Crs;
 use sandtable_raster::error::DemErrorKind;
-use sandtable_raster::georef::{crs_on_earth, utm_code};
+use sandtable_raster::georef::crs_on_earth;
 use sandtable_raster::raster::{Raster, north_up_nodes};
 use sandtable_raster::sample_type::SampleType;
 use sandtable_raster::stored::StoredSamples;
@@ -200,18 +200,12 @@ fn system(file: &DemFile, header: &BtHeader) -> Result<BtSystem, DemErrorKind> {
         3 => US_SURVEY_FOOT_M,
         other => return Err(FORMAT.broken(format!("its horizontal unit is {other}; 0 to 3 exist"))),
     };
-    let code = match (header.zone, header.unit) {
-        (0, 0) => geographic_code(header.datum)?,
+    let crs = match (header.zone, header.unit) {
+        (0, 0) => Crs::from_epsg(geographic_code(header.datum)?)?,
         (0, _) => return Ok(BtSystem { crs: None, meters_per_unit: unit }),
-        (zone, _) => {
-            let base = geographic_code(header.datum)?;
-            utm_code(base, zone.into()).ok_or_else(|| DemErrorKind::Georeference {
-                reason: format!("UTM zone {zone} on datum EPSG:{base} is not known"),
-                remedy: "state crs under [terrain]",
-            })?
-        }
+        (zone, _) => Crs::utm_on(geographic_code(header.datum)?, zone.into(), unit)?,
     };
-    Ok(BtSystem { crs: Some(Crs::from_epsg_in(code, unit)?), meters_per_unit: 1.0 })
+    Ok(BtSystem { crs: Some(crs), meters_per_unit: 1.0 })
 }
 
 /// The geographic system of a datum by EPSG's number less 2000 or an old USGS number; WGS 84, as in GDAL, if negative.

@@ -9,11 +9,12 @@ use glam::{DAffine2, DVec2};
 
 use crate::dem_file::DemFile;
 use crate::dem_format::{DemFormat, Recognition, any_size};
-use crate::formats::header::HeaderFields;
+use crate::formats::header::{HeaderFields, StatedNoData};
 use crate::formats::plain_raster::{self, PlainRaster};
 use crate::formats::sample_layout::{FileSize, NoData, SampleLayout};
 use sandtable_base::bytes::ByteOrder;
 use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::file_bands::FileBands;
 use sandtable_raster::raster::{Raster, north_up, north_up_nodes};
 use sandtable_raster::sample_type::{NumberKind, SampleType};
 
@@ -41,13 +42,15 @@ fn is_header(header: &[u8]) -> bool {
 fn plain(file: &DemFile, size: FileSize) -> Result<PlainRaster, DemErrorKind> {
     let header = file.header().ok_or(DemErrorKind::NoHeader(FORMAT.name))?;
     let header = HeaderFields::from_lines(FORMAT.name, &header, MOST_LINES);
-    let nodata = header.first_number(["nodata", "nodata_value"])?;
+    let StatedNoData { value: nodata, note } = header.nodata(&["nodata", "nodata_value"]);
     let sample = sample_type(&header, nodata, &file.extension())?;
     let layout = layout(&header, sample)?;
     let raster = layout.header(FORMAT.name, size)?;
     let place = place(&header, raster.height)?;
     let raster = file.placed(raster, place, &["blw", "bpw", "bqw", "flw", "wld"])?;
-    let raster = Raster { driver: "EHdr", crs: file.crs()?, nodata, ..raster };
+    let bands = FileBands { count: header.whole("nbands")?.unwrap_or(1), mask: None };
+    let mut raster = Raster { driver: "EHdr", crs: file.crs()?, nodata, ..raster }.with_bands(bands);
+    raster.notes.extend(note);
     Ok(PlainRaster::new(raster, layout, NoData::Value(nodata)))
 }
 

@@ -8,13 +8,13 @@ use glam::{DAffine2, DVec2};
 
 use crate::dem_file::DemFile;
 use crate::dem_format::{DemFormat, Recognition, any_size};
-use crate::formats::header::HeaderFields;
+use crate::formats::header::{HeaderFields, StatedNoData};
 use crate::formats::plain_raster::{self, PlainRaster};
 use crate::formats::sample_layout::{FileSize, NoData, SampleLayout};
 use sandtable_base::bytes::ByteOrder;
 use sandtable_geom::crs::Crs;
 use sandtable_raster::error::DemErrorKind;
-use sandtable_raster::georef::utm_code;
+use sandtable_raster::file_bands::FileBands;
 use sandtable_raster::raster::{Raster, north_up};
 use sandtable_raster::sample_type::SampleType;
 
@@ -34,7 +34,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
 fn plain(file: &DemFile, size: FileSize) -> Result<PlainRaster, DemErrorKind> {
     let text = file.header().ok_or(DemErrorKind::NoHeader(FORMAT.name))?;
     let header = header(&String::from_utf8_lossy(&text));
-    let nodata = header.number("data ignore value")?;
+    let StatedNoData { value: nodata, note } = header.nodata(&["data ignore value"]);
     let layout = layout(&header)?;
     let raster = layout.header(FORMAT.name, size)?;
     let first_number = |key: &str| list(&header, key).first().map(|text| header.parse(key, text)).transpose();
@@ -46,7 +46,9 @@ fn plain(file: &DemFile, size: FileSize) -> Result<PlainRaster, DemErrorKind> {
         Some(text) => Ok(Some(Crs::parse(text)?)),
         None => system(&map),
     })?;
-    let raster = Raster { driver: "ENVI", crs, nodata, ..raster };
+    let bands = FileBands { count: header.whole("bands")?.unwrap_or(1), mask: None };
+    let mut raster = Raster { driver: "ENVI", crs, nodata, ..raster }.with_bands(bands);
+    raster.notes.extend(note);
     Ok(PlainRaster::new(raster, layout, NoData::Value(nodata)).scaled(gain, offset))
 }
 
@@ -142,8 +144,9 @@ fn system(map: &[&str]) -> Result<Option<Crs>, DemErrorKind> {
         return Ok(None);
     }
     let zone = map.get(7).and_then(|zone| zone.parse::<u8>().ok()).map(i64::from);
-    let code = zone.and_then(|zone| utm_code(4326, if is(8, "South") { -zone } else { zone }));
-    Ok(code.map(Crs::from_epsg).transpose()?)
+    let zone = zone.filter(|zone| (1..=60).contains(zone));
+    let system = zone.map(|zone| Crs::utm_on(4326, if is(8, "South") { -zone } else { zone }, 1.0));
+    Ok(system.transpose()?)
 }
 
 #[cfg(test)]

@@ -2,13 +2,21 @@
 
 use glam::DVec2;
 
-use crate::formats::text::{number, quote};
+use crate::formats::text::{number, quote, unknown_nodata};
 use sandtable_raster::error::DemErrorKind;
 
 /// The keys of a header in lower case, and their values.
 pub(crate) struct HeaderFields {
     format: &'static str,
     fields: Vec<(String, String)>,
+}
+
+/// What a header states of missing data.
+pub(crate) struct StatedNoData {
+    /// The value; `None` where none is stated, or no number.
+    pub value: Option<f64>,
+    /// A note for the user where it is no number.
+    pub note: Option<String>,
 }
 
 impl HeaderFields {
@@ -47,6 +55,14 @@ impl HeaderFields {
         let shown = quote(text.as_bytes());
         number(text.as_bytes())
             .ok_or_else(|| self.broken(format!("{key} in its header is '{shown}', not a number")))
+    }
+
+    /// The no-data value that the first of these keys states.
+    pub fn nodata(&self, keys: &[&str]) -> StatedNoData {
+        let stated = keys.iter().find_map(|key| self.get(key));
+        let value = stated.and_then(|text| number(text.as_bytes()));
+        let note = stated.filter(|text| value.is_none() && !text.is_empty()).map(unknown_nodata);
+        StatedNoData { value, note }
     }
 
     pub fn first_number(&self, keys: [&str; 2]) -> Result<Option<f64>, DemErrorKind> {

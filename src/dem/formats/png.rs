@@ -16,6 +16,7 @@ use crate::dem_format::{DemFormat, Recognition, any_size};
 use crate::formats::height_encoding::HeightEncoding;
 use crate::written::{WriteError, WrittenDem};
 use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::file_bands::FileBands;
 use sandtable_raster::limits::SizeClaim;
 use sandtable_raster::raster::{Raster, Samples};
 
@@ -60,6 +61,11 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
         PngHeights::Colors(encoding) => Samples::F64(pixels.heights(encoding)),
     };
     let raster = file.placed(Raster::new(size.x, samples), None, &["pgw", "pngw", "wld"])?;
+    let bands = match color {
+        ColorType::GrayscaleAlpha => FileBands { count: 2, mask: Some(2) },
+        _ => FileBands::default(),
+    };
+    let raster = raster.with_bands(bands);
     Ok(Raster {
         driver: "PNG",
         data_type: if depth == BitDepth::Sixteen { "UInt16" } else { "Byte" },

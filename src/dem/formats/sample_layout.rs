@@ -12,6 +12,7 @@ use sandtable_base::limits::RASTER_SAMPLES;
 use sandtable_base::limits::work_limit::WorkLimit;
 use sandtable_raster::error::DemErrorKind;
 use sandtable_raster::limits::SizeClaim;
+use sandtable_raster::nodata_span::NoDataSpan;
 use sandtable_raster::raster::{Raster, SampleFloat, Samples};
 use sandtable_raster::sample_type::SampleType;
 use sandtable_raster::windows::RasterWindow;
@@ -61,7 +62,7 @@ pub(crate) enum FirstRow {
 /// Which stored values are no data. Values that are not finite always are.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum NoData {
-    /// This value, compared in the precision of the samples.
+    /// All that this value means ([`NoDataSpan`]).
     Value(Option<f64>),
     /// All values from this one on.
     From(f64),
@@ -182,8 +183,8 @@ impl SampleLayout {
         value: impl Fn([u8; N]) -> T,
     ) -> Samples {
         let (nodata, nodata_from) = match nodata {
-            NoData::Value(nodata) => (self.sample.comparable(nodata), f64::INFINITY),
-            NoData::From(nodata) => (f64::NAN, nodata),
+            NoData::Value(nodata) => (self.sample.nodata_span(nodata), f64::INFINITY),
+            NoData::From(nodata) => (NoDataSpan::NONE, nodata),
         };
         let (width, height) = (self.width as usize, self.height as usize);
         let mut values = Vec::with_capacity(width * height);
@@ -197,7 +198,7 @@ impl SampleLayout {
                 }
                 let value = value(raw);
                 let wide: f64 = value.into();
-                let is_nodata = !wide.is_finite() || wide == nodata || wide >= nodata_from;
+                let is_nodata = !wide.is_finite() || nodata.contains(wide) || wide >= nodata_from;
                 if is_nodata { T::NODATA } else { value }
             }));
         }

@@ -17,7 +17,7 @@ use glam::DVec2;
 use crate::dem_file::DemFile;
 use crate::dem_format::{DemFormat, Recognition, any_size};
 use crate::formats::sample_layout::{NoData, SampleLayout};
-use crate::formats::text::{TextWords, number};
+use crate::formats::text::{TextWords, is_missing, number};
 use sandtable_base::bytes::{ByteFields, ByteOrder, bytes_at};
 use sandtable_raster::error::DemErrorKind;
 use sandtable_raster::limits::SizeClaim;
@@ -94,7 +94,7 @@ fn text_grid(bytes: &[u8]) -> Result<SurferGrid, DemErrorKind> {
     let mut values = Vec::with_capacity(count);
     for word in words.take(count) {
         let wrong = || FORMAT.broken(format!("height {} of {count} is not a number", values.len() + 1));
-        let value = number(word).ok_or_else(wrong)?;
+        let value = if is_missing(word) { f64::NAN } else { number(word).ok_or_else(wrong)? };
         values.push(if value >= BLANK || !value.is_finite() { f32::NAN } else { value as f32 });
     }
     if values.len() < count {

@@ -36,13 +36,25 @@ impl<'a> Iterator for TextWords<'a> {
     }
 }
 
-/// A number, with a decimal point or a single decimal comma; `nan` in any case and GDAL's `-1.#IND` are NaN.
+/// Words that programs write in place of a number that is missing, in lower case.
+const MISSING: [&str; 12] =
+    ["null", "none", "na", "n/a", "#n/a", "nodata", "no_data", "no-data", "void", "missing", "*", "-"];
+
+/// Whether a word is one of those that are written in place of a number that is missing.
+pub(crate) fn is_missing(word: &[u8]) -> bool {
+    MISSING.iter().any(|missing| missing.as_bytes().eq_ignore_ascii_case(word))
+}
+
+/// A number, with a decimal point or a single decimal comma; `nan` in any case, the same with what C adds in parentheses,
+/// and Microsoft's `-1.#IND` are NaN.
 pub(crate) fn number(word: &[u8]) -> Option<f64> {
     let text = std::str::from_utf8(word).ok()?;
     if let Ok(value) = text.parse() {
         return Some(value);
     }
-    if text.contains('#') {
+    let unsigned = text.trim_start_matches(['+', '-']);
+    let is_nan = unsigned.get(..4).is_some_and(|start| start.eq_ignore_ascii_case("nan("));
+    if is_nan || unsigned.starts_with("1.#") {
         return Some(f64::NAN);
     }
     if text.matches(',').count() == 1 && !text.contains('.') {
@@ -51,7 +63,29 @@ pub(crate) fn number(word: &[u8]) -> Option<f64> {
     None
 }
 
+/// The note on a no-data value that is no number.
+pub(crate) fn unknown_nodata(stated: &str) -> String {
+    format!("its no-data value '{}' is no number, so that none is taken", quote(stated.trim().as_bytes()))
+}
+
 /// A word as messages repeat it: cut where it is long.
 pub(crate) fn quote(word: &[u8]) -> String {
     String::from_utf8_lossy(word).chars().take(40).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_way_to_write_nan_is_one_and_words_are_missing_numbers() {
+        for nan in ["nan", "NaN", "-nan", "nan(ind)", "-nan(ind)", "1.#QNAN", "-1.#IND", "1.#IND00"] {
+            assert!(number(nan.as_bytes()).is_some_and(f64::is_nan), "{nan}");
+        }
+        for word in ["null", "NULL", "NoData", "N/A", "#N/A", "*", "-"] {
+            assert!(number(word.as_bytes()).is_none() && is_missing(word.as_bytes()), "{word}");
+        }
+        assert!(!is_missing(b"12") && !is_missing(b"") && number(b"x#").is_none());
+        assert_eq!((number(b"1,5"), number(b"+2"), number(b"1,5.0")), (Some(1.5), Some(2.0), None));
+    }
 }

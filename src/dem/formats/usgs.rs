@@ -17,8 +17,8 @@ use glam::DVec2;
 use crate::dem_file::DemFile;
 use crate::dem_format::{DemFormat, Recognition, any_size};
 use sandtable_geom::crs::Crs;
+use sandtable_geom::projection::utm_code;
 use sandtable_raster::error::DemErrorKind;
-use sandtable_raster::georef::utm_code;
 use sandtable_raster::limits::SizeClaim;
 use sandtable_raster::raster::{Raster, Samples, north_up_nodes};
 use sandtable_raster::units::{FOOT_M, US_SURVEY_FOOT_M};
@@ -64,6 +64,7 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
         crs: file.crs_or(|| header.system())?,
         nodata: Some(VOID as f64),
         vertical_datum: header.vertical_datum.map(str::to_owned),
+        notes: header.note().filter(|_| file.hints.options.crs.is_none()).into_iter().collect(),
         ..Raster::new(header.columns, samples).placed(north_up_nodes(header.first, header.cell))
     })
 }
@@ -122,6 +123,8 @@ struct UsgsHeader {
     datum: i64,
     vertical_datum: Option<&'static str>,
     profiles_at: usize,
+    /// Whether record A ends before it states the datum.
+    is_old: bool,
 }
 
 impl UsgsHeader {
@@ -175,6 +178,7 @@ impl UsgsHeader {
             datum: if is_old { 1 } else { text.field(890, 2).unwrap_or(0) },
             vertical_datum: vertical_datum(text.field(888, 2).filter(|_| !is_old)),
             profiles_at,
+            is_old,
         })
     }
 
@@ -185,26 +189,34 @@ impl UsgsHeader {
             4 => 4269,
             _ => 4267,
         };
-        let code = match self.system {
-            -9999 => return Ok(None),
-            0 => Some(geographic),
-            1 => utm_code(geographic, self.zone),
-            _ => None,
-        };
-        let code = code.ok_or_else(|| DemErrorKind::Georeference {
-            reason: match self.system {
-                2 => format!("it is in state plane zone {}", self.zone),
-                system => {
-                    format!(
-                        "coordinate system {system}, zone {} on datum {} is not known",
-                        self.zone, self.datum
-                    )
-                }
-            },
-            remedy: "state crs under [terrain]",
-        })?;
         let meters = if self.ground_unit == 1 { US_SURVEY_FOOT_M } else { 1.0 };
-        Ok(Some(Crs::from_epsg_in(code, meters)?))
+        let unknown =
+            |reason: String| Err(DemErrorKind::Georeference { reason, remedy: "state crs under [terrain]" });
+        match self.system {
+            -9999 => Ok(None),
+            0 => Ok(Some(Crs::from_epsg(geographic)?)),
+            1 if (1..=60).contains(&self.zone.unsigned_abs()) => {
+                Ok(Some(Crs::utm_on(geographic, self.zone, meters)?))
+            }
+            2 => unknown(format!("it is in state plane zone {}", self.zone)),
+            system => unknown(format!(
+                "coordinate system {system}, zone {} on datum {} is not known",
+                self.zone, self.datum
+            )),
+        }
+    }
+
+    /// A note where the datum is taken that GDAL takes too.
+    fn note(&self) -> Option<String> {
+        let is_told = (1..=4).contains(&self.datum) && !self.is_old;
+        let is_of_nad27 = !matches!(self.system, 1) || utm_code(4267, self.zone).is_some();
+        if is_told || self.system == -9999 || self.is_old && is_of_nad27 {
+            return None;
+        }
+        let beyond = if is_of_nad27 { "" } else { ", although its zone lies beyond those of that datum" };
+        Some(format!(
+            "it states no datum, so that NAD27 is taken, as GDAL does{beyond}; `crs` states another"
+        ))
     }
 }
 
@@ -277,7 +289,11 @@ mod tests {
 
     /// Two profiles of three and two heights, 30 m apart, in UTM zone 10; the second starts a row further north.
     fn model(unit: u32, datums: &str) -> Vec<u8> {
-        let mut a = format!("{:<150}     1     1    10", "TEST");
+        model_in_zone(10, unit, datums)
+    }
+
+    fn model_in_zone(zone: i32, unit: u32, datums: &str) -> Vec<u8> {
+        let mut a = format!("{:<150}     1     1{zone:6}", "TEST");
         a = format!("{a:<528}     2{unit:6}     4");
         for corner in
             [600_000.0, 5_000_013.0, 600_000.0, 5_000_069.0, 600_030.0, 5_000_069.0, 600_030.0, 5_000_020.0]
@@ -321,6 +337,35 @@ mod tests {
         assert_eq!((raster.meters_per_z, raster.data_type), (0.3048, "Float32"));
         assert_eq!(raster.vertical_datum.as_deref(), Some("NGVD29"));
         assert_eq!(raster.crs.as_ref().and_then(Crs::epsg), Some(26710));
+    }
+
+    #[test]
+    fn a_zone_is_never_taken_for_a_system_with_the_code_behind_it() {
+        let found = |zone: i32, datums: &str| {
+            let raster = raster(&model_in_zone(zone, 2, datums)).expect("a model");
+            let crs = raster.crs.expect("a system");
+            (crs.epsg(), crs.definition().map(|it| (it.longitude_deg, it.false_northing_m)), raster.notes)
+        };
+        let zone = |zone: i32| Some((f64::from(zone.abs()) * 6.0 - 183.0, if zone < 0 { 1e7 } else { 0.0 }));
+        assert_eq!(found(10, " 3 1"), (Some(26710), zone(10), vec![]));
+        // EPSG:26732 is in Alaska, EPSG:26948 in Arizona.
+        for (number, datums, code) in [
+            (32, " 3 1", None),
+            (48, " 3 1", None),
+            (60, " 3 1", Some(3371)),
+            (48, " 3 4", None),
+            (48, " 3 2", Some(32248)),
+            (48, " 3 3", Some(32648)),
+            (-33, " 3 3", Some(32733)),
+            (-33, " 3 1", None),
+        ] {
+            assert_eq!(found(number, datums), (code, zone(number), vec![]), "{number} {datums}");
+        }
+        for (number, beyond) in [(10, false), (48, true)] {
+            let (_, _, notes) = found(number, "    ");
+            assert!(notes[0].contains("NAD27") && notes[0].contains("beyond") == beyond, "{notes:?}");
+        }
+        assert!(raster(&model_in_zone(61, 2, " 3 1")).expect_err("no zone").contains("zone 61"));
     }
 
     #[test]

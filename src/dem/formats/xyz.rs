@@ -40,7 +40,8 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
         .map_err(|error| FORMAT.broken(format!("byte {} is not UTF-8 text", error.valid_up_to())))?;
     let text = PointText::new(text);
     let lattice = XyzLattice::find(&text)?;
-    let XyzGrid { values, are_whole, low, high } = XyzGrid::fill(&text, &lattice)?;
+    let XyzGrid { values, are_whole, low, high, without_height } = XyzGrid::fill(&text, &lattice)?;
+    let left_out = format!("{without_height} of its points have no height, and there is no data");
     let north_west = DVec2::new(lattice.min.x, lattice.max.y);
     Ok(Raster {
         driver: "XYZ",
@@ -51,6 +52,7 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
             _ => "Float32",
         },
         crs: file.crs()?,
+        notes: if without_height > 0 { vec![left_out] } else { Vec::new() },
         ..Raster::new(lattice.columns as u32, Samples::F32(values))
             .placed(north_up_nodes(north_west, lattice.cell))
     })
@@ -140,13 +142,15 @@ struct XyzGrid {
     are_whole: bool,
     low: f64,
     high: f64,
+    without_height: u64,
 }
 
 impl XyzGrid {
     fn fill(text: &PointText, lattice: &XyzLattice) -> Result<Self, DemErrorKind> {
         let (columns, rows) = (lattice.columns as usize, lattice.rows as usize);
         let values = vec![f32::NAN; columns * rows];
-        let mut grid = Self { values, are_whole: true, low: f64::INFINITY, high: f64::NEG_INFINITY };
+        let (low, high) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut grid = Self { values, are_whole: true, low, high, without_height: 0 };
         for point in points(text) {
             let DVec3 { x, y, z } = point?;
             let at = DVec2::new(x - lattice.min.x, lattice.max.y - y) / lattice.cell;
@@ -163,6 +167,8 @@ impl XyzGrid {
                 grid.values[index] = z as f32;
                 grid.are_whole &= z.fract() == 0.0;
                 (grid.low, grid.high) = (grid.low.min(z), grid.high.max(z));
+            } else {
+                grid.without_height += 1;
             }
         }
         Ok(grid)
@@ -207,6 +213,14 @@ mod tests {
     fn a_node_without_a_point_is_no_data() {
         let raster = grid("0 10 1\n5 10 2\n10 10 3\n0 0 4\n10 0 -1").expect("a grid");
         assert!(raster.at(1, 1).is_nan() && raster.at(2, 1) == -1.0 && raster.data_type == "Int16");
+        assert!(raster.notes.is_empty());
+    }
+
+    #[test]
+    fn a_point_whose_height_is_a_word_for_none_is_no_data_and_is_told() {
+        let raster = grid("0 10 1\n5 10 null\n0 0 NaN\n5 0 4\n").expect("a grid");
+        assert!(raster.at(1, 0).is_nan() && raster.at(0, 1).is_nan() && raster.at(1, 1) == 4.0);
+        assert!(raster.notes[0].starts_with("2 of its points have no height"), "{:?}", raster.notes);
     }
 
     #[test]

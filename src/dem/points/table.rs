@@ -1,6 +1,6 @@
 //! Points as text (`.xyz`, `.csv`, `.txt`): a point a line, with or without a header that names the columns.
 //!
-//! A point without a height (an empty field or NaN) is left out and counted; any other line that is not a point is an
+//! A point without a height (an empty field, NaN, or a word such as `null`) is left out and counted; any other line that is not a point is an
 //! error with its number: a line dropped silently would leave a hole.
 
 use crate::point_text::PointText;
@@ -90,8 +90,9 @@ mod tests {
 
     #[test]
     fn points_without_a_height_are_left_out_and_counted() {
-        let cloud = read(b"x,y,z\n1,2,3\n4,5,\n6,7,nan\n", &PointHints::default()).expect("one point");
+        let text = b"x,y,z\n1,2,3\n4,5,\n6,7,nan\n8,9,null\n";
+        let cloud = read(text, &PointHints::default()).expect("one point");
         assert_eq!(cloud.points.len(), 1);
-        assert_eq!(cloud.notes, ["2 points without a height were left out"]);
+        assert_eq!(cloud.notes, ["3 points without a height were left out"]);
     }
 }

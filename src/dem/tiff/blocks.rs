@@ -1,4 +1,5 @@
-//! Decodes strips and tiles of a TIFF's first band to rows of elevations.
+//! Decodes strips and tiles of a TIFF's first band to rows of elevations. Where another band is alpha, what it makes fully
+//! transparent has no data.
 //!
 //! Blocks are independent, so rows of blocks are unpacked in parallel, each straight into its own rows of the raster:
 //!
@@ -27,7 +28,7 @@ use sandtable_raster::raster::{SampleFloat, Samples};
 /// Tasks for each thread: several, since blocks over flat ground are done sooner; few, since each sets up decompressors.
 const TASKS_PER_THREAD: usize = 6;
 
-/// The elevations of an image in memory, `nodata` as NaN.
+/// The elevations of an image in memory, NaN where they are `nodata` or transparent.
 pub(crate) fn decode(bytes: &[u8], storage: &Storage, nodata: Option<f64>) -> Result<Samples, DemErrorKind> {
     if storage.elevation_type()?.is_wide() {
         elevations::<f64>(bytes, storage, nodata)
@@ -86,7 +87,7 @@ fn fill<E: SampleFloat>(
     Ok(())
 }
 
-/// The elevations of one block alone, row by row, `nodata` as NaN.
+/// The elevations of one block alone, row by row, NaN where they are `nodata` or transparent.
 pub(crate) fn block(
     file: &mut impl BlockBytes,
     storage: &Storage,
@@ -110,17 +111,28 @@ pub(crate) struct BlockDecoder<'a> {
     nodata: Option<f64>,
     unpacker: Unpacker<'a>,
     rows: RowDecoder,
+    alpha: Option<AlphaDecoder>,
     unpacked: Vec<u8>,
     words: RowWords,
 }
 
+/// Decodes the band that states how opaque pixels are.
+struct AlphaDecoder {
+    band: u16,
+    rows: RowDecoder,
+    row: Vec<f32>,
+}
+
 impl<'a> BlockDecoder<'a> {
     pub fn new(storage: &'a Storage, nodata: Option<f64>) -> Result<Self, DemErrorKind> {
+        let rows = RowDecoder::new(storage, nodata)?;
+        let of_band = |band: u16| AlphaDecoder { band, rows: rows.of_band(band), row: Vec::new() };
         Ok(Self {
             storage,
             nodata,
             unpacker: Unpacker::new(storage),
-            rows: RowDecoder::new(storage, nodata)?,
+            rows,
+            alpha: storage.alpha.map(of_band),
             unpacked: Vec::new(),
             words: RowWords::default(),
         })
@@ -134,17 +146,53 @@ impl<'a> BlockDecoder<'a> {
         out: &mut [E],
         stride: usize,
     ) -> Result<(), DemErrorKind> {
-        let rows = out.chunks_mut(stride).take(block.window.height as usize);
-        let rows = rows.map(|row| &mut row[..block.window.width as usize]);
-        if !self.storage.is_written(block.index) {
+        if self.storage.is_written(block.index) {
+            self.unpacker.unpack(file, block, &mut self.unpacked)?;
+            let packed = self.unpacked.chunks_exact(self.storage.row_bytes().max(1));
+            for (packed, row) in packed.zip(rows_of(block, out, stride)) {
+                self.rows.decode(packed, &mut self.words, row);
+            }
+        } else if self.nodata.is_some() {
             // As in GDAL, what was never written is no data where the file states a value for that, else 0.
-            rows.filter(|_| self.nodata.is_some()).for_each(|row| row.fill(E::NODATA));
-            return Ok(());
+            rows_of(block, out, stride).for_each(|row| row.fill(E::NODATA));
         }
-        self.unpacker.unpack(file, block, &mut self.unpacked)?;
-        for (packed, row) in self.unpacked.chunks_exact(self.storage.row_bytes().max(1)).zip(rows) {
-            self.rows.decode(packed, &mut self.words, row);
+        self.hide(file, block, out, stride)
+    }
+
+    /// Makes samples without data of those that alpha makes transparent; what decodes them has just decoded the block.
+    fn hide<E: SampleFloat>(
+        &mut self,
+        file: &mut impl BlockBytes,
+        block: TiffBlock,
+        out: &mut [E],
+        stride: usize,
+    ) -> Result<(), DemErrorKind> {
+        let Some(AlphaDecoder { band, rows: decoder, row: alpha }) = &mut self.alpha else { return Ok(()) };
+        let of_alpha = self
+            .storage
+            .block_of_band(block, *band)
+            .filter(|of_alpha| self.storage.is_written(of_alpha.index));
+        let Some(of_alpha) = of_alpha else {
+            // What was never written is 0.
+            rows_of(block, out, stride).for_each(|row| row.fill(E::NODATA));
+            return Ok(());
+        };
+        if of_alpha != block {
+            self.unpacker.unpack(file, of_alpha, &mut self.unpacked)?;
+        }
+        alpha.resize(block.window.width as usize, 0.0);
+        let packed = self.unpacked.chunks_exact(self.storage.row_bytes().max(1));
+        for (packed, row) in packed.zip(rows_of(block, out, stride)) {
+            decoder.decode(packed, &mut self.words, alpha);
+            let hidden = row.iter_mut().zip(&*alpha).filter(|(_, alpha)| **alpha == 0.0 || alpha.is_nan());
+            hidden.for_each(|(value, _)| *value = E::NODATA);
         }
         Ok(())
     }
+}
+
+/// The rows of a block, `stride` apart.
+fn rows_of<E>(block: TiffBlock, out: &mut [E], stride: usize) -> impl Iterator<Item = &mut [E]> {
+    let rows = out.chunks_mut(stride).take(block.window.height as usize);
+    rows.map(move |row| &mut row[..block.window.width as usize])
 }

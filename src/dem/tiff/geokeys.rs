@@ -129,16 +129,8 @@ impl GeoKeys {
 
     /// EPSG's conversions 16001 to 16060 are the UTM zones north, 16101 to 16160 those south.
     fn utm(&self, code: u16, meters_per_unit: f64) -> Definition {
-        let south = code > 16100;
-        Definition {
-            method: MapProjection::TransverseMercator,
-            longitude_deg: f64::from(code % 100) * 6.0 - 183.0,
-            scale: 0.9996,
-            false_easting_m: 5e5,
-            false_northing_m: if south { 1e7 } else { 0.0 },
-            meters_per_unit,
-            ..self.base()
-        }
+        let zone = i64::from(code % 100);
+        self.base().in_utm(if code > 16100 { -zone } else { zone }, meters_per_unit)
     }
 
     fn by_parameters(&self, meters_per_unit: f64) -> Result<Definition, DemErrorKind> {

@@ -7,12 +7,14 @@ use tiff::decoder::{Decoder, ifd};
 use tiff::tags::Tag;
 
 use crate::dem_file::DemFile;
+use crate::formats::text::{number, unknown_nodata};
 use crate::tiff::fault;
 use crate::tiff::gdal_metadata::{BandMetadata, GDAL_METADATA};
 use crate::tiff::geokeys::GeoKeys;
 use crate::tiff::place::PlaceTags;
 use crate::tiff::storage::Storage;
 use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::file_bands::FileBands;
 use sandtable_raster::raster::{Raster, Samples};
 
 /// The most bytes of a text tag; GDAL's metadata takes a few kilobytes.
@@ -53,7 +55,8 @@ impl GeoTiffHeader {
             matrix: numbers(Tag::ModelTransformationTag),
             is_point: keys.is_point(),
         };
-        let nodata = text(decoder, Tag::GdalNodata).trim().trim_start_matches('+').parse().ok();
+        let stated = text(decoder, Tag::GdalNodata);
+        let nodata = number(stated.trim().as_bytes());
         let band = BandMetadata::first_band(&text(decoder, Tag::Unknown(GDAL_METADATA)))?;
         let meters_per_z = band.meters_per_z.or(keys.meters_per_z()?);
         let raster = Raster {
@@ -69,7 +72,13 @@ impl GeoTiffHeader {
             crs: file.crs_or(|| keys.crs())?,
             nodata,
             vertical_datum: keys.vertical_datum(),
+            ..Raster::without_place(storage.width, storage.height)
         };
+        let (count, mask) = (storage.bands.into(), storage.alpha.map(|band| u64::from(band) + 1));
+        let mut raster = raster.with_bands(FileBands { count, mask });
+        if nodata.is_none() && !stated.trim().is_empty() {
+            raster.notes.push(unknown_nodata(&stated));
+        }
         let raster = file.placed(raster, place.map_from_grid()?, &["tfw", "tifw", "wld"])?;
         Ok(Self { raster, scale: band.scale, offset: band.offset })
     }

@@ -1,5 +1,4 @@
-//! Decodes one unpacked row of a TIFF block to elevations: undoes the predictor, takes the first band, turns no data to
-//! NaN.
+//! Decodes one unpacked row of a TIFF block to elevations: undoes the predictor, takes one band, turns no data to NaN.
 //!
 //! Two passes over a row, both short enough to stay in the processor's nearest memory: bytes to words of a sample's
 //! width, then words to elevations. The first is a chain of sums, the second a loop without a branch.
@@ -18,6 +17,7 @@
 use crate::tiff::storage::{Predictor, Storage};
 use sandtable_base::bytes::ByteOrder;
 use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::nodata_span::NoDataSpan;
 use sandtable_raster::raster::SampleFloat;
 use sandtable_raster::sample_type::SampleType;
 
@@ -26,32 +26,34 @@ pub(crate) struct RowDecoder {
     sample: SampleType,
     predictor: Predictor,
     order: ByteOrder,
+    /// Bands side by side.
     bands: usize,
-    nodata: f64,
+    /// The one that is decoded, from 0.
+    band: usize,
+    nodata: NoDataSpan,
 }
 
 impl RowDecoder {
-    /// For an image whose no-data value is `nodata`.
+    /// For the first band of an image whose no-data value is `nodata`.
     pub fn new(storage: &Storage, nodata: Option<f64>) -> Result<Self, DemErrorKind> {
         let sample = storage.elevation_type()?;
         let Storage { predictor, order, bands_per_block, .. } = *storage;
-        Ok(Self {
-            sample,
-            predictor,
-            order,
-            bands: bands_per_block.into(),
-            nodata: sample.comparable(nodata),
-        })
+        let (bands, nodata) = (bands_per_block.into(), sample.nodata_span(nodata));
+        Ok(Self { sample, predictor, order, bands, band: 0, nodata })
+    }
+
+    /// For another band of the same image, all of whose values are data; `band` counts from 0.
+    pub fn of_band(self, band: u16) -> Self {
+        // Where bands lie in blocks of their own, each is the first of its block.
+        Self { band: usize::from(band).min(self.bands - 1), nodata: NoDataSpan::NONE, ..self }
     }
 
     /// Decodes a row's first samples, as many as `out` holds. `row` is a whole row of a block.
     pub fn decode<T: SampleFloat>(&self, row: &[u8], words: &mut RowWords, out: &mut [T]) {
-        // No sample equals a value that its type cannot hold.
-        let nodata = T::from_f64(self.nodata);
-        let nodata = if nodata.into() == self.nodata { nodata } else { T::NODATA };
+        let (low, high) = self.nodata.ends::<T>();
         let known = |value: f64| {
             let narrow = T::from_f64(value);
-            if narrow == nodata || !value.is_finite() { T::NODATA } else { narrow }
+            if (narrow >= low) & (narrow <= high) | !value.is_finite() { T::NODATA } else { narrow }
         };
         match self.sample {
             SampleType::U8 => self.convert(row, &mut words.bits_8, out, |w| known(w.into())),
@@ -98,8 +100,8 @@ pub(crate) struct RowWords {
 trait SampleWord: Copy + Default {
     fn from_bytes(bytes: &[u8], order: ByteOrder) -> Self;
     fn plus(self, other: Self) -> Self;
-    /// Undoes the floating-point predictor: the first of every `bands` samples of a row of them.
-    fn sum_planes(row: &[u8], bands: usize, words: &mut [Self]);
+    /// Undoes the floating-point predictor: the sample of `band` of every `bands` samples of a row of them.
+    fn sum_planes(row: &[u8], bands: usize, band: usize, words: &mut [Self]);
 }
 
 macro_rules! words {
@@ -113,14 +115,14 @@ macro_rules! words {
                 self.wrapping_add(other)
             }
 
-            fn sum_planes(row: &[u8], bands: usize, words: &mut [Self]) {
+            fn sum_planes(row: &[u8], bands: usize, band: usize, words: &mut [Self]) {
                 let plane = row.len() / $bytes;
                 let planes: [&[u8]; $bytes] = std::array::from_fn(|at| &row[at * plane..(at + 1) * plane]);
                 let mut sums = [0u8; $bytes];
                 let mut before = 0u8;
                 for (start, plane) in sums.iter_mut().zip(planes) {
                     *start = before;
-                    before = before.wrapping_add(sum(plane, bands));
+                    before = before.wrapping_add(sum(plane, bands, band));
                 }
                 if bands == 1 {
                     for (at, word) in words.iter_mut().enumerate().take(plane) {
@@ -131,7 +133,7 @@ macro_rules! words {
                     }
                     return;
                 }
-                for (word, at) in words.iter_mut().zip((0..plane).step_by(bands)) {
+                for (word, at) in words.iter_mut().zip((band..plane).step_by(bands)) {
                     for (sum, plane) in sums.iter_mut().zip(planes) {
                         *sum = sum.wrapping_add(plane[at]);
                     }
@@ -144,22 +146,23 @@ macro_rules! words {
 
 words!(u8: 1, u16: 2, u32: 4, u64: 8);
 
-/// The sum of every `bands`th byte.
-fn sum(plane: &[u8], bands: usize) -> u8 {
+/// The sum of every `bands`th byte from number `band` on.
+fn sum(plane: &[u8], bands: usize, band: usize) -> u8 {
     if bands == 1 {
         return plane.iter().fold(0u8, |sum, byte| sum.wrapping_add(*byte));
     }
-    plane.iter().step_by(bands).fold(0u8, |sum, byte| sum.wrapping_add(*byte))
+    plane.iter().skip(band).step_by(bands).fold(0u8, |sum, byte| sum.wrapping_add(*byte))
 }
 
-/// The first band's words of a row.
+/// One band's words of a row.
 fn words_of<'a, W: SampleWord>(rows: &RowDecoder, row: &[u8], words: &'a mut Vec<W>) -> &'a [W] {
     let bytes = size_of::<W>();
     words.resize(row.len() / (bytes * rows.bands), W::default());
-    let word_of = |sample: &[u8]| W::from_bytes(&sample[..bytes], rows.order);
+    let at = bytes * rows.band;
+    let word_of = |pixel: &[u8]| W::from_bytes(&pixel[at..at + bytes], rows.order);
     let samples = row.chunks_exact(bytes * rows.bands);
     match rows.predictor {
-        Predictor::FloatBytes => W::sum_planes(row, rows.bands, words),
+        Predictor::FloatBytes => W::sum_planes(row, rows.bands, rows.band, words),
         Predictor::Differences => {
             let mut sum = W::default();
             for (word, sample) in words.iter_mut().zip(samples) {
@@ -182,7 +185,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn rows(sample: SampleType, predictor: Predictor, order: ByteOrder, bands: usize) -> RowDecoder {
-        RowDecoder { sample, predictor, order, bands, nodata: f64::NAN }
+        RowDecoder { sample, predictor, order, bands, band: 0, nodata: NoDataSpan::NONE }
     }
 
     #[test]
@@ -202,11 +205,43 @@ mod tests {
         let row = [7f32, -9999.0, f32::INFINITY, 8.0].map(f32::to_le_bytes).concat();
         let mut out = [0f32; 4];
         let plain = rows(SampleType::F32, Predictor::Plain, ByteOrder::Little, 1);
-        RowDecoder { nodata: -9999.0, ..plain }.decode(&row, &mut RowWords::default(), &mut out);
+        let stated = |value: f64| RowDecoder { nodata: SampleType::F32.nodata_span(Some(value)), ..plain };
+        stated(-9999.0).decode(&row, &mut RowWords::default(), &mut out);
         assert!(out[0] == 7.0 && out[1].is_nan() && out[2].is_nan() && out[3] == 8.0);
-        // 0.1 is no float: no sample of 32 bits equals it.
-        RowDecoder { nodata: 0.1, ..plain }.decode(&row, &mut RowWords::default(), &mut out);
+        stated(-9999.1).decode(&row, &mut RowWords::default(), &mut out);
         assert_eq!(out[1], -9999.0);
+    }
+
+    #[test]
+    fn a_value_for_no_data_with_six_digits_is_met_by_samples_with_all_of_theirs() {
+        let mut out = [0f32; 2];
+        let row = [f32::MIN, -3.0].map(f32::to_le_bytes).concat();
+        let plain = rows(SampleType::F32, Predictor::Plain, ByteOrder::Little, 1);
+        let stated = RowDecoder { nodata: SampleType::F32.nodata_span(Some(-3.40282e38)), ..plain };
+        stated.decode(&row, &mut RowWords::default(), &mut out);
+        assert!(out[0].is_nan() && out[1] == -3.0);
+        // In 16 bits -9999 is -10000.
+        let row =
+            [half::f16::from_f32(-9999.0), half::f16::from_f32(-3.0)].map(half::f16::to_le_bytes).concat();
+        let plain = rows(SampleType::F16, Predictor::Plain, ByteOrder::Little, 1);
+        let stated = RowDecoder { nodata: SampleType::F16.nodata_span(Some(-9999.0)), ..plain };
+        stated.decode(&row, &mut RowWords::default(), &mut out);
+        assert!(out[0].is_nan() && out[1] == -3.0);
+    }
+
+    #[test]
+    fn another_band_of_a_row_is_decoded_alike() {
+        let mut out = [0f32; 2];
+        let row = [5u8, 0, 9, 0, 0xfe, 0xff, 1, 0];
+        for (predictor, first, second) in
+            [(Predictor::Plain, [5.0, -2.0], [9.0, 1.0]), (Predictor::Differences, [5.0, 3.0], [9.0, 10.0])]
+        {
+            let decoder = rows(SampleType::I16, predictor, ByteOrder::Little, 2);
+            decoder.decode(&row, &mut RowWords::default(), &mut out);
+            assert_eq!(out, first);
+            decoder.of_band(1).decode(&row, &mut RowWords::default(), &mut out);
+            assert_eq!(out, second);
+        }
     }
 
     proptest! {
@@ -221,12 +256,15 @@ mod tests {
                 chained[at] = chained[at].wrapping_add(chained[at - bands]);
             }
             let plane = row.len() / 8;
-            let wanted: Vec<u64> = (0..bytes.len())
-                .map(|at| u64::from_be_bytes(std::array::from_fn(|byte| chained[byte * plane + at * bands])))
-                .collect();
-            let mut words = vec![0u64; bytes.len()];
-            u64::sum_planes(&row, bands, &mut words);
-            prop_assert_eq!(words, wanted);
+            for band in 0..bands {
+                let word = |at: usize| {
+                    u64::from_be_bytes(std::array::from_fn(|byte| chained[byte * plane + at * bands + band]))
+                };
+                let wanted: Vec<u64> = (0..bytes.len()).map(word).collect();
+                let mut words = vec![0u64; bytes.len()];
+                u64::sum_planes(&row, bands, band, &mut words);
+                prop_assert_eq!(words, wanted);
+            }
         }
     }
 }

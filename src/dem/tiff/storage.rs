@@ -33,6 +33,10 @@ pub(crate) struct Storage {
     pub packing: Packing,
     pub predictor: Predictor,
     pub order: ByteOrder,
+    /// All bands of the image.
+    pub bands: u16,
+    /// The band, from 1 on, that states how opaque each pixel is: alpha, by the tag ExtraSamples; `None` where none does.
+    pub alpha: Option<u16>,
     /// Bands that lie side by side in one block.
     pub bands_per_block: u16,
     /// Columns of a block; the last one may reach beyond the image.
@@ -102,6 +106,8 @@ impl Storage {
         let is_planar = shorts(Tag::PlanarConfiguration, 1)?[0] == 2;
         let formats = shorts(Tag::SampleFormat, 1)?;
         let predictor = predictor(shorts(Tag::Predictor, 1)?[0])?;
+        // A tag of the wrong type counts as absent, as in GDAL.
+        let extra = shorts(Tag::ExtraSamples, 0).unwrap_or_default();
         let is_tiled = decoder.get_chunk_type() == ChunkType::Tile;
         let (across, down) = decoder.chunk_dimensions();
         let (starts, bytes) = match is_tiled {
@@ -129,6 +135,8 @@ impl Storage {
                 tiff::tags::ByteOrder::LittleEndian => ByteOrder::Little,
                 tiff::tags::ByteOrder::BigEndian => ByteOrder::Big,
             },
+            bands,
+            alpha: alpha_band(bands, &extra),
             bands_per_block: if is_planar { 1 } else { bands },
             block_width: if is_tiled { across.max(1) } else { width.max(1) },
             block_height: if is_tiled { down.max(1) } else { down.clamp(1, height.max(1)) },
@@ -210,6 +218,17 @@ impl Storage {
         }
     }
 
+    /// The block of another band, from 0 on, over the same pixels: the same one where bands lie side by side. `None` where
+    /// there can be none of that number.
+    pub fn block_of_band(&self, block: TiffBlock, band: u16) -> Option<TiffBlock> {
+        if self.bands_per_block > 1 {
+            return Some(block);
+        }
+        let (across, down) = self.blocks_across_and_down();
+        let before = across.checked_mul(down)?.checked_mul(band.into())?;
+        Some(TiffBlock { index: block.index.checked_add(before)?, ..block })
+    }
+
     /// The blocks of the first band that meet a window, row by row.
     pub fn blocks_meeting(&self, window: RasterWindow) -> impl Iterator<Item = TiffBlock> + '_ {
         let span = |first: u32, count: u32, block: u32| first / block..(first + count).div_ceil(block);
@@ -226,6 +245,15 @@ impl Storage {
     pub fn place(&self, index: u32) -> Option<(u64, u64)> {
         Some((*self.block_starts.get(index as usize)?, *self.block_bytes.get(index as usize)?))
     }
+}
+
+/// The first band that ExtraSamples calls alpha; the bands that it describes are the last.
+fn alpha_band(bands: u16, extra: &[u16]) -> Option<u16> {
+    /// Associated and unassociated alpha (TIFF 6.0, section 18).
+    const ALPHA: [u16; 2] = [1, 2];
+    let first = usize::from(bands).checked_sub(extra.len())?;
+    let at = extra.iter().position(|meaning| ALPHA.contains(meaning))?;
+    u16::try_from(first + at).ok().filter(|&band| band > 0)
 }
 
 fn number_kind(format: u16) -> Option<NumberKind> {

@@ -225,7 +225,10 @@ impl<R: FileContent> GeoTiffWindows<R> {
             let of_mask = self.mask.iter().flat_map(|mask| {
                 mask.blocks_meeting(at.window).filter_map(|at| range(mask, at)).collect::<Vec<_>>()
             });
-            for range in range(&self.heights, *at).into_iter().chain(of_mask) {
+            let of_alpha = self.heights.alpha.and_then(|band| self.heights.block_of_band(*at, band));
+            let of_image = [Some(*at), of_alpha].into_iter().flatten();
+            let of_image = of_image.filter_map(|at| range(&self.heights, at));
+            for range in of_image.chain(of_mask) {
                 ranges.insert(range.start, range);
             }
         }

@@ -163,6 +163,13 @@ fn shape(key: &KeyDeclaration) -> Value {
         KeyKind::Text => json!({ "type": "string", "maxLength": SCENE_TEXT.count() }),
         KeyKind::FilledText => text(),
         KeyKind::TextList => json!({ "anyOf": [text(), list(text(), 1, SCENE_LIST.count())] }),
+        KeyKind::FilesOrTables(keys) => {
+            let mut table = object(KeyDeclaration::flattened(keys));
+            table.insert("required".into(), json!(required_keys(keys)));
+            let one = [text(), Value::Object(table)];
+            let any = json!({ "anyOf": one });
+            json!({ "anyOf": [one[0], one[1], list(any, 1, SCENE_LIST.count())] })
+        }
         KeyKind::TextTable => {
             json!({ "type": "object", "additionalProperties": text(), "minProperties": 1, "maxProperties": SCENE_LIST.count() })
         }

@@ -14,13 +14,16 @@ pub(super) struct CrsTransform<'a> {
     /// The longitude of the raster's center in either system, where that is in degrees: results lie within 180° of it.
     from_center: Option<f64>,
     to_center: Option<f64>,
+    /// Whether the raster's system is in degrees, and the height of its cells.
+    degrees: Option<f64>,
 }
 
 impl<'a> CrsTransform<'a> {
     pub fn new(raster: &Raster, from: Option<&'a Crs>, to: Option<&'a Crs>) -> Self {
         let is_in_degrees = |crs: &&Crs| crs.is_geographic();
         let from_center = from.filter(is_in_degrees).map(|_| raster.center().x);
-        let transform = Self { from, to, from_center, to_center: None };
+        let degrees = from.filter(is_in_degrees).map(|_| raster.spacing().y);
+        let transform = Self { from, to, from_center, to_center: None, degrees };
         let center = to.filter(is_in_degrees).and_then(|_| transform.forward(raster.center()).ok());
         Self { to_center: center.map(|center| center.x), ..transform }
     }
@@ -28,7 +31,10 @@ impl<'a> CrsTransform<'a> {
     /// Transforms from the raster's system.
     pub fn forward(&self, at: DVec2) -> Result<DVec2, CrsError> {
         match (self.from, self.to) {
-            (Some(from), Some(to)) => from.transform(to, at).map(|at| nearest_turn(at, self.to_center)),
+            (Some(from), Some(to)) => {
+                let at = self.degrees.map_or(at, |cell| up_to_pole(at, cell));
+                from.transform(to, at).map(|at| nearest_turn(at, self.to_center))
+            }
             _ => Ok(at),
         }
     }
@@ -61,6 +67,17 @@ impl<'a> CrsTransform<'a> {
         };
         if contains(90.0) || contains(-90.0) { Err(WarpError::Pole(to.name().into())) } else { Ok(()) }
     }
+}
+
+/// A position in the raster's system `own`; one in degrees that lies less than a cell beyond a pole, as the border of samples
+/// on the pole does, is on the pole.
+pub(super) fn on_earth(raster: &Raster, own: &Crs, at: DVec2) -> DVec2 {
+    if own.is_geographic() { up_to_pole(at, raster.spacing().y) } else { at }
+}
+
+/// A position in degrees that lies less than `cell` beyond a pole, on the pole; others as they are.
+fn up_to_pole(at: DVec2, cell: f64) -> DVec2 {
+    if at.y.abs() - 90.0 < cell { DVec2::new(at.x, at.y.clamp(-90.0, 90.0)) } else { at }
 }
 
 /// The position by whole turns of 360° whose longitude is nearest to `center`.

@@ -1,16 +1,19 @@
-//! The system in which a raster's ground is in true meters: its own, a stated one, or a UTM zone.
+//! The system in which a raster's ground is in true meters: its own, a stated one, a UTM zone, or UPS near a pole.
 //!
 //! A system in meters may stretch lengths: Web Mercator by 1/cos φ, to twice their length at 60° north. Where lengths at the
-//! center of the raster are off by more than [`MOST_SCALE_ERROR`], the ground is made in the UTM zone there instead.
+//! center of the raster are off by more than [`MOST_SCALE_ERROR`], the ground is made in the UTM zone there instead. Where no
+//! zone suits, because zones end or are narrower than the raster, it is made in Universal Polar Stereographic if all of it lies
+//! near a pole.
 
 use std::fmt;
 
 use glam::DVec2;
 
 use crate::raster::Raster;
+use crate::warp::crs_transform::on_earth;
 use crate::warp::data_extent::{data_extent, outline};
 use crate::warp::error::{WarpError, check_source};
-use sandtable_geom::crs::Crs;
+use sandtable_geom::crs::{Crs, UTM_LATITUDES_DEG};
 use sandtable_geom::rect::Rect;
 use sandtable_geom::scale_factors::ScaleFactors;
 
@@ -21,8 +24,9 @@ pub const MOST_SCALE_ERROR: f64 = 0.01;
 /// How far from its meridian a UTM zone is used where no system is chosen; at 9° lengths are off by up to 1.2 %.
 const UTM_REACH_DEG: f64 = 9.0;
 
-/// UTM ends at 84° north and 80° south.
-const UTM_LATITUDES_DEG: (f64, f64) = (-80.0, 84.0);
+/// The latitude from which on UPS is used where no zone suits, at either pole: lengths are off by 1.1 % there, by nothing at
+/// 81°, and by 0.6 % at the pole.
+const UPS_LATITUDE_DEG: f64 = 75.0;
 
 /// A system in meters whose lengths are not those of the ground, and what is used instead. Its text is a note for the user.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,7 +35,7 @@ pub struct OffScale {
     pub stated: Crs,
     /// Its scale at the center of the raster.
     pub scale: ScaleFactors,
-    /// The UTM zone in which the ground is made; `None` where no zone covers the raster, which stays in `stated`.
+    /// The UTM zone, or UPS, in which the ground is made; `None` where neither covers the raster, which stays in `stated`.
     pub zone: Option<Crs>,
 }
 
@@ -113,11 +117,13 @@ pub(super) fn off_scale_around(
     Ok(Some(OffScale { stated: stated.clone(), scale, zone }))
 }
 
-/// The UTM zone of the raster's center, if its valid samples lie near enough.
+/// The UTM zone of the raster's center, if its valid samples lie near enough; else UPS, if they lie near a pole.
 fn utm_zone(raster: &Raster, own: &Crs, valid: &dyn Fn() -> Option<Rect>) -> Result<Crs, WarpError> {
     let valid = valid().ok_or(WarpError::Empty)?;
     let degrees = Crs::wgs84();
-    let at = |grid: DVec2| own.transform(&degrees, raster.map_from_grid.transform_point2(grid));
+    let at = |grid: DVec2| {
+        own.transform(&degrees, on_earth(raster, own, raster.map_from_grid.transform_point2(grid)))
+    };
     let center = at(valid.center())?;
     let border = outline(valid).map(at).collect::<Result<Vec<_>, _>>()?;
     // Measured from the center, so that a raster across the date line stays in one piece.
@@ -131,6 +137,10 @@ fn utm_zone(raster: &Raster, own: &Crs, valid: &dyn Fn() -> Option<Rect>) -> Res
         if own.is_geographic() { valid.size().x * raster.map_from_grid.matrix2.x_axis.x.abs() } else { 0.0 };
     let (south, north) = UTM_LATITUDES_DEG;
     if reach > UTM_REACH_DEG || span > 2.0 * UTM_REACH_DEG || around.min.y < south || around.max.y > north {
+        // A pole lies within its border: all samples lie nearer to it.
+        if around.min.y >= UPS_LATITUDE_DEG || around.max.y <= -UPS_LATITUDE_DEG {
+            return Ok(Crs::ups_at(around.min.y));
+        }
         let (west, east) = (around.min.x, around.max.x.max(around.min.x + span));
         return Err(WarpError::NoZone { west, east, south: around.min.y, north: around.max.y });
     }
@@ -176,6 +186,31 @@ mod tests {
         assert_eq!(found(&utm, Some(32616)), Some(32616), "a neighboring zone is off by less");
         let unnamed = Raster { crs: None, ..raster(3857, -8_998_000.0, 5_998_000.0, 30.0) };
         assert_eq!(found(&unnamed, Some(3857)), Some(32617), "a raster without a system lies in the target");
+    }
+
+    #[test]
+    fn near_a_pole_the_ground_is_made_in_polar_stereographic() {
+        let degrees = |west: f64, north: f64, cell: f64| found(&raster(4326, west, north, cell), None);
+        assert_eq!(degrees(10.0, 84.1, 0.1), Some(5041), "across the end of UTM");
+        assert_eq!(degrees(10.0, 84.0, 0.1), Some(32632));
+        assert_eq!(degrees(10.0, -79.9, 0.1), Some(5042));
+        assert_eq!(degrees(-180.0, 90.0, 5.0), Some(5041), "the pole, and 15 degrees beside it");
+        assert_eq!(degrees(-10.0, 80.0, 1.5), Some(32629));
+        let wide = |north: f64| {
+            let place = north_up(DVec2::new(-30.0, north), DVec2::new(10.0, 0.5));
+            Raster { map_from_grid: place, ..raster(4326, 0.0, 0.0, 1.0) }
+        };
+        assert_eq!(found(&wide(80.0), None), Some(5041), "wider than a zone");
+        assert!(metric_crs(&wide(70.0), None).is_err(), "wider than a zone, too far from the pole");
+        // Nodes lie on the pole: the border of their cells lies beyond it.
+        assert_eq!(degrees(-180.05, 90.05, 0.1), Some(5041));
+        // The pole in the polar systems of maps, which are 3 % shorter there.
+        for (code, ups) in [(3413, 5041), (3995, 5041), (3031, 5042)] {
+            let polar = raster(code, -150_000.0, 150_000.0, 100_000.0);
+            assert_eq!(found(&polar, None), Some(ups), "EPSG:{code}");
+            let note = off_scale(&polar, None).expect("metric").expect("off").to_string();
+            assert!(note.contains("shorter") && note.contains(&format!("EPSG:{ups}")), "{note}");
+        }
     }
 
     #[test]

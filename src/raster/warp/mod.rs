@@ -28,7 +28,7 @@ use sandtable_geom::rect::Rect;
 ///
 /// A raster in true meters, and in `target` where that is given, keeps its samples (its cells need not be square); one that
 /// only runs the other way along an axis is mirrored. Any other is resampled bilinearly to square cells in `target`, or in
-/// the UTM zone (WGS 84) of its center where none is given or its lengths are not true ([`metric_crs::off_scale`]): a cell's area is that of the source's cells at the center, the
+/// the UTM zone (WGS 84) of its center, near a pole UPS, where none is given or its lengths are not true ([`metric_crs::off_scale`]): a cell's area is that of the source's cells at the center, the
 /// grid lies on multiples of the cell size, its extent covers the valid samples, and cells outside them are NaN.
 ///
 /// A raster without a system is taken to be in `target`, or in plain meters.

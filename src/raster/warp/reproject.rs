@@ -34,6 +34,8 @@ pub enum Resampling {
     Bilinear,
     /// As the mean of the source's samples in each cell.
     Average,
+    /// Those of some tiles bilinearly or as means, when the tiles were joined.
+    OfTiles,
 }
 
 /// A raster in another system or with other cells.
@@ -78,6 +80,22 @@ pub fn reproject<'a>(
     Ok(Warped { raster: Cow::Owned(raster), method })
 }
 
+/// `raster` in its own system with square cells of `cell` units of it, on multiples of their size, so that rasters that lie
+/// beside each other fit: means of its samples from twice its cells on, else bilinear between them.
+///
+/// # Errors
+/// [`WarpError`]: as [`reproject`].
+pub fn to_cells(raster: &Raster, cell: f64) -> Result<Warped<'_>, WarpError> {
+    check_source(raster)?;
+    let source = if raster.is_axis_aligned() { raster.turned_north_up() } else { Cow::Borrowed(raster) };
+    let own = raster.crs.as_ref();
+    let transform = CrsTransform::new(&source, own, own);
+    let (resampler, method) =
+        coarser_or_finer(&source, &transform, false, Some(cell), &|| data_extent(&source))?;
+    let raster = if method == Resampling::Average { resampler.average() } else { resampler.bilinear() };
+    Ok(Warped { raster: Cow::Owned(raster), method })
+}
+
 /// The result of [`reproject`] in memory, for a raster that stays on disk; `None` where its samples are kept, or
 /// mirrored.
 ///
@@ -102,7 +120,7 @@ pub fn reproject_windows(
         searched(source, |_, search| coarser_or_finer(&whole, &transform, stays, cell, &|| search.valid()))?;
     let raster = match method {
         Resampling::Average => average(source, &resampler)?,
-        Resampling::Kept | Resampling::Bilinear => {
+        Resampling::Kept | Resampling::Bilinear | Resampling::OfTiles => {
             let cells = resampler.cells();
             let window = RasterWindow::all((cells.width(), cells.height()));
             resampler.raster(bilinear_window(source, &resampler, window)?)

@@ -207,8 +207,7 @@ impl Field {
             ),
             georeferenced: true,
             crs: None,
-            nodata: None,
-            vertical_datum: None,
+            ..Raster::without_place(1, 1)
         };
         let service = HeightService::new(Arc::new(raster), Crs::local(), Arc::new(lattice));
         let extent = f64::from(n - 1) * CELL_M;

@@ -53,8 +53,7 @@ impl Rolling {
             map_from_grid: DAffine2 { matrix2: axes, translation: DVec2::new(5e5, 4e6) },
             georeferenced: true,
             crs: None,
-            nodata: None,
-            vertical_datum: None,
+            ..Raster::without_place(1, 1)
         };
         let wave = |posts: f64| (0..POSTS).map(move |at| libm::sin(f64::from(at) / posts) as f32);
         let along =

@@ -41,8 +41,7 @@ pub fn raster(width: u32, height: u32, seed: u64, holes: u32) -> Raster {
         map_from_grid: DAffine2 { matrix2: axes, translation: DVec2::new(5e5, 4e6) },
         georeferenced: true,
         crs: None,
-        nodata: None,
-        vertical_datum: None,
+        ..Raster::without_place(1, 1)
     }
 }
 

@@ -175,3 +175,26 @@ fn a_large_file_is_copied_with_the_bytes_of_one_that_is_held() {
     let names = std::fs::read_dir(scratch.folder()).expect("a folder").flatten();
     assert!(names.into_iter().all(|entry| !entry.file_name().to_string_lossy().contains(".part")));
 }
+
+#[test]
+fn tiles_of_several_cells_are_joined_where_they_nest_or_in_a_stated_cell() {
+    let scratch = Scratch::new();
+    let tile = |west: u32, cell: u32, value: u32| {
+        let rows = format!("{value} {value}\n{value} {value}\n");
+        format!("ncols 2\nnrows 2\nxllcorner {west}\nyllcorner 0\ncellsize {cell}\n{rows}")
+    };
+    scratch.write("fine.asc", tile(500_000, 10, 1));
+    scratch.write("wide.asc", tile(500_000, 30, 5));
+    scratch.write("odd.asc", tile(500_020, 25, 9));
+    let out = run_in(scratch.folder(), &["dem", "convert", "wide.asc", "fine.asc", "-o", "nested.asc"]).ok();
+    assert!(out.contains("6 columns, 6 rows") && out.contains("tiles of other cells"), "{out}");
+    assert!(out.contains("1 of 2 tiles have cells 3 times as large as the finest, 10 by -10"), "{out}");
+    let grid = std::fs::read_to_string(scratch.at("nested.asc")).expect("written");
+    assert!(grid.ends_with("5 5 5 5 5 5\n1 1 5 5 5 5\n1 1 5 5 5 5\n"), "{grid}");
+
+    let both = ["dem", "convert", "fine.asc", "odd.asc", "-o", "odd_out.asc"];
+    let refused = run_in(scratch.folder(), &both).failed(1);
+    assert!(refused.contains("do not nest") && refused.contains("--cell"), "{refused}");
+    let out = run_in(scratch.folder(), &[&both[..], &["--cell", "5"]].concat()).ok();
+    assert!(out.contains("14 columns, 10 rows") && out.contains("resampled to cells of 5"), "{out}");
+}

@@ -192,3 +192,33 @@ fn a_raw_file_is_what_the_command_line_says() {
     let wrong = run_in(scratch.folder(), &["dem", "info", "a.raw", "--raw", "2x1"]).failed(2);
     assert!(wrong.contains("1201x1201:i16be"), "{wrong}");
 }
+
+#[test]
+fn dem_info_tells_what_was_guessed_of_a_file() {
+    let scratch = Scratch::new();
+    let head = "ncols 4\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 10\n";
+    scratch.write("word.asc", format!("{head}NODATA_value -9999\n1 2 null 4\n5 6 7 8\n9 10 11 -9999\n"));
+    let out = run_in(scratch.folder(), &["dem", "info", "word.asc", "--json"]).ok();
+    let about: Value = serde_json::from_str(&out).expect("JSON");
+    assert_eq!((about["valid"].as_u64(), about["bands"].as_u64()), (Some(10), Some(1)));
+    assert_eq!(about["mask_band"], Value::Null);
+    assert!(about["notes"][0].as_str().is_some_and(|note| note.contains("'null'")), "{about}");
+
+    scratch
+        .write("usual.asc", format!("{head}NODATA_value -1\n1 2 32767 32767\n5 6 32767 32767\n9 10 11 12\n"));
+    let table = run_in(scratch.folder(), &["dem", "info", "usual.asc"]).ok();
+    assert!(table.contains("4 samples (33.3 %) are 32767; the others are from 1 to 12"), "{table}");
+    assert!(table.contains("say --nodata 32767") && table.contains("bands    1: elevation"), "{table}");
+    let stated = run_in(scratch.folder(), &["dem", "info", "usual.asc", "--nodata", "32767"]).ok();
+    assert!(stated.contains("8 of 12 samples") && !stated.contains("if that means"), "{stated}");
+
+    // Two bands of bytes by pixel.
+    scratch.write("two.bip", [5u8, 0, 6, 1, 7, 0, 8, 1]);
+    scratch.write("two.hdr", "NROWS 2\nNCOLS 2\nNBANDS 2\nNBITS 8\nLAYOUT BIP\nNODATA none\n");
+    let table = run_in(scratch.folder(), &["dem", "info", "two.bip"]).ok();
+    assert!(table.contains("bands    2: elevation, and one that is not read"), "{table}");
+    assert!(
+        table.contains("the first of its 2 bands is read") && table.contains("'none' is no number"),
+        "{table}"
+    );
+}

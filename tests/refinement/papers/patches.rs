@@ -333,7 +333,6 @@ fn raster(world: &World) -> Raster {
         },
         georeferenced: true,
         crs: None,
-        nodata: None,
-        vertical_datum: None,
+        ..Raster::without_place(1, 1)
     }
 }

@@ -74,6 +74,7 @@ fn kind_and_range(kind: KeyKind) -> (String, String) {
         KeyKind::Switch => any("true or false"),
         KeyKind::Text | KeyKind::FilledText => any("text"),
         KeyKind::TextList => any("text or list of texts"),
+        KeyKind::FilesOrTables(_) => any("text, table, or list of them"),
         KeyKind::TextTable | KeyKind::Styles => any("table with names of yours"),
         KeyKind::Expression => any("expression"),
         KeyKind::Word(words) => (listed(&words()), String::new()),
