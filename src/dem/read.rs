@@ -203,7 +203,7 @@ fn format_of(file: &DemFile) -> Result<&'static DemFormat, DemErrorKind> {
 }
 
 fn find(is_wanted: impl Fn(&DemFormat) -> bool) -> Option<&'static DemFormat> {
-    FORMATS.into_iter().find(|format| is_wanted(format))
+    FORMATS.iter().copied().find(|format| is_wanted(format))
 }
 
 fn by_extension(extension: &str) -> Option<&'static DemFormat> {
@@ -224,9 +224,8 @@ fn unknown(found: impl Into<String>) -> DemErrorKind {
 }
 
 fn describe(bytes: &[u8], extension: &str) -> String {
-    const KNOWN: [(&[u8], &str); 6] = [
-        (b"SQLite format 3", "it is an SQLite database, perhaps a GeoPackage"),
-        (b"EHFA_HEADER_TAG", "it is an Erdas Imagine file"),
+    const KNOWN: [(&[u8], &str); 5] = [
+        (b"SQLite format 3", "it is an SQLite database, but no GeoPackage of elevation"),
         (b"\xff\xd8\xff", "it is a JPEG picture"),
         (b"\x89HDF", "it is an HDF 5 or NetCDF file"),
         (b"CDF", "it is a NetCDF file"),
