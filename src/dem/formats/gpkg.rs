@@ -34,10 +34,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     name: "GeoPackage",
     extensions: &[],
     shared_extensions: &["gpkg"],
-    recognition: Recognition::Content {
-        matches: has_coverage,
-        start: "an SQLite database with a table of coverages (gpkg_2d_gridded_coverage_ancillary)",
-    },
+    recognition: Recognition::Content { matches: has_coverage, start: "'SQLite format 3'" },
     reader: read,
     windows: None,
     most_bytes: any_size,
@@ -104,10 +101,11 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
     let matrix = GpkgMatrix::finest(&database, &coverage)?;
     let window = matrix.window();
     let size = size(&database, file, &coverage, &matrix, &window)?;
-    let is_whole = !coverage.is_float && coverage.precision == WHOLE;
-    let is_wide = !coverage.is_float && !is_whole;
+    let integer = integer_type(&database, &coverage)?;
+    // What neither is stored as a float nor is a whole number needs 64 bits.
+    let is_wide = !coverage.is_float && coverage.precision != WHOLE && integer.is_none();
     let mut samples = Samples::absent((size.0 as usize) * (size.1 as usize), is_wide);
-    let is_plain = read_tiles(&database, &coverage, &matrix, &window, &mut samples)?;
+    read_tiles(&database, &coverage, &matrix, &window, &mut samples)?;
     let start = DVec2::new(window.columns.start as f64, -(window.rows.start as f64));
     let meters_per_z = match &coverage.unit {
         None => 1.0,
@@ -117,11 +115,7 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
     };
     Ok(Raster {
         driver: "GPKG",
-        data_type: match (is_plain && is_whole && coverage.scale == 1.0, coverage.offset) {
-            (true, 0.0) => "UInt16",
-            (true, -32768.0) => "Int16",
-            _ => "Float32",
-        },
+        data_type: integer.unwrap_or("Float32"),
         meters_per_z,
         nodata: coverage.nodata,
         crs: file.crs_or(|| crs(&database, coverage.srs_id))?,
@@ -244,6 +238,23 @@ impl GpkgMatrix {
     }
 }
 
+/// The type of heights that are integers, as GDAL has it; `None` for others, and where a tile has a scale or an offset.
+fn integer_type(
+    database: &Connection,
+    coverage: &GpkgCoverage,
+) -> Result<Option<&'static str>, DemErrorKind> {
+    let integer = match (coverage.is_float, coverage.scale, coverage.offset) {
+        (false, 1.0, 0.0) => "UInt16",
+        (false, 1.0, -32768.0) => "Int16",
+        _ => return Ok(None),
+    };
+    let query = "SELECT count(*) FROM gpkg_2d_gridded_tile_ancillary WHERE tpudt_name = ?1 AND (scale <> 1 OR offset <> 0)";
+    let scaled: i64 = database
+        .query_row(query, [&coverage.name], |row| row.get(0))
+        .map_err(refused("its table gpkg_2d_gridded_tile_ancillary"))?;
+    Ok((scaled == 0).then_some(integer))
+}
+
 /// Columns and rows of the window, which the file can hold.
 fn size(
     database: &Connection,
@@ -265,14 +276,14 @@ fn size(
     Ok((size.x, size.y))
 }
 
-/// Fills `samples` from all tiles of a level; returns whether no tile has a scale or an offset of its own.
+/// Fills `samples` from all tiles of a level.
 fn read_tiles(
     database: &Connection,
     coverage: &GpkgCoverage,
     matrix: &GpkgMatrix,
     window: &GpkgWindow,
     samples: &mut Samples,
-) -> Result<bool, DemErrorKind> {
+) -> Result<(), DemErrorKind> {
     let refused = |error| refused("its tiles")(error);
     let query = format!(
         "SELECT t.tile_column, t.tile_row, a.scale, a.offset, t.tile_data FROM {} t \
@@ -282,7 +293,6 @@ fn read_tiles(
     );
     let mut statement = database.prepare(&query).map_err(refused)?;
     let mut rows = statement.query((&coverage.name, matrix.zoom)).map_err(refused)?;
-    let mut is_plain = true;
     while let Some(row) = rows.next().map_err(refused)? {
         let index = |at: usize| row.get::<_, i64>(at).map(|index| u64::try_from(index).unwrap_or(u64::MAX));
         let number =
@@ -293,7 +303,6 @@ fn read_tiles(
             scale: number(2, 1.0).map_err(refused)?,
             offset: number(3, 0.0).map_err(refused)?,
         };
-        is_plain &= tile.scale == 1.0 && tile.offset == 0.0;
         let name = format!("tile {}, {} of level {}", tile.column, tile.row, matrix.zoom);
         let ValueRef::Blob(bytes) = row.get_ref(4).map_err(refused)? else {
             return Err(FORMAT.broken(format!("{name} holds no bytes")));
@@ -316,7 +325,7 @@ fn read_tiles(
             tile.copy(&values, coverage, window, samples);
         }
     }
-    Ok(is_plain)
+    Ok(())
 }
 
 /// The values of a tile as they are stored.
@@ -496,7 +505,7 @@ mod tests {
         let mut features = Connection::open_in_memory().expect("memory");
         features.execute_batch("CREATE TABLE gpkg_geometry_columns (a)").expect("sound SQL");
         let features = features.serialize("main").expect("memory").to_vec();
-        assert!(raster(&features).expect_err("features").contains("table of coverages"));
+        assert!(raster(&features).expect_err("features").contains("no GeoPackage of elevation"));
         assert_eq!(read::format_by_head("a.gpkg", &features, &DemHints::default()), None);
     }
 

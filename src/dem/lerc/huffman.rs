@@ -143,7 +143,7 @@ impl WordBits<'_> {
         let mut taken = 0_u64;
         for _ in 0..count {
             // The bytes of a word lie in the other order.
-            let byte = self.bytes.get(self.position / 8 ^ 3)?;
+            let byte = self.bytes.get((self.position / 8) ^ 3)?;
             taken = taken << 1 | u64::from(byte >> (7 - self.position % 8) & 1);
             self.position += 1;
         }

@@ -35,9 +35,9 @@ pub(super) fn read(
     let mut steps = Vec::new();
     for rows in spans(header.rows) {
         for columns in spans(header.columns) {
-            for depth in 0..header.depth {
+            for (depth, greatest) in greatest.iter().enumerate().take(header.depth) {
                 let tile = LercTile { rows: rows.clone(), columns: columns.clone(), depth };
-                tile.read(cursor, header, greatest[depth], block, &mut steps)?;
+                tile.read(cursor, header, *greatest, block, &mut steps)?;
             }
         }
     }

@@ -5,6 +5,7 @@
 //!         ├── RasterDMS (Edms_State)    where each block lies, and whether it is packed
 //!         ├── Eimg_NonInitializedValue  the value for no data
 //!         ├── Map_Info (Eprj_MapInfo)   the centers of the first and the last sample, the size of a cell
+//!         ├── MapToPixelXForm           the same of a layer that is turned, see [`turned`]
 //!         ├── Projection, ProjectionX   the coordinate system, see [`projection`]
 //!         └── Statistics, overviews …   not read
 //! ```
@@ -17,6 +18,7 @@
 mod blocks;
 mod projection;
 mod tree;
+mod turned;
 
 use glam::{DAffine2, DVec2};
 
@@ -92,10 +94,10 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
     let samples = blocks.samples(file.bytes, &header, nodata)?;
     let place = HfaPlace::read(&tree, &layer)?;
     let raster = Raster::new(header.columns, samples);
-    let stated = place.as_ref().map(HfaPlace::map_from_grid);
-    if stated.is_none() && tree.child(&layer, |node| node.name == "MapToPixelXForm")?.is_some() {
-        return Err(FORMAT.unsupported("a place that is turned or bent (MapToPixelXForm)", TO_TIFF));
-    }
+    let stated = match &place {
+        Some(place) => Some(place.map_from_grid()),
+        None => turned::map_from_grid(&tree, &layer)?,
+    };
     let raster = file.placed(raster, stated, &["igw", "imgw", "wld"])?;
     Ok(Raster {
         driver: "HFA",

@@ -104,13 +104,15 @@ pub(super) fn crs(
     if let Some(code) = projection.code(&datum) {
         return Ok(Some(Crs::from_epsg(code)?));
     }
-    if let Some(wkt) = wkt {
-        return Ok(Some(Crs::parse(&wkt)?));
+    let parsed = wkt.map(|wkt| Crs::parse(&wkt));
+    if let Some(Ok(crs)) = parsed {
+        return Ok(Some(crs));
     }
     let is_metric = place.is_none_or(|place| matches!(&*place.units, "" | "meters" | "dd" | "ds"));
-    match projection.proj_text(&datum).filter(|_| is_metric) {
-        Some(text) => Ok(Some(Crs::parse(&text)?)),
-        None => Err(DemErrorKind::Georeference {
+    match (projection.proj_text(&datum).filter(|_| is_metric), parsed) {
+        (Some(text), _) => Ok(Some(Crs::parse(&text)?)),
+        (None, Some(Err(error))) => Err(error.into()),
+        (None, _) => Err(DemErrorKind::Georeference {
             reason: format!(
                 "projection {} of Erdas Imagine ('{}') on '{}' in '{}' is not known",
                 projection.number,
