@@ -253,7 +253,7 @@ mod tests {
 
     #[test]
     fn tiles_are_named_by_extensions_that_nothing_else_has() {
-        for name in ["a.tif", "d/B.TIFF", "n1.hgt.zip", "a.bt.gz", "a.btz", "a.dt0", "a.xyz"] {
+        for name in ["a.tif", "d/B.TIFF", "n1.hgt.zip", "a.bt.gz", "a.btz", "a.dt0", "a.xyz", "a.img"] {
             assert!(is_tile_name(name), "{name}");
         }
         for name in ["a.png", "a.csv", "a.zip", "a.gz", ".a.tif", "a.tif.aux.xml", "a.hdr", "tif"] {

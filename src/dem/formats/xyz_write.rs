@@ -28,8 +28,8 @@ pub(super) fn write(raster: &Raster, _name: &str) -> Result<WrittenDem, WriteErr
         Samples::F32(values) => write_points(&mut text, raster, values),
         Samples::F64(values) => write_points(&mut text, raster, values),
     }
-    let voids = raster.samples.len() - raster.samples.valid().count();
-    let notes = (voids > 0).then(|| format!("{voids} points without data have the height nan"));
+    let (all, valid) = (raster.samples.len(), raster.samples.valid().count());
+    let notes = (valid < all).then(|| format!("{} of {all} points have no data, written as nan", all - valid));
     Ok(WrittenDem {
         companions: projection_file_of(raster).into_iter().collect(),
         notes: notes.into_iter().collect(),

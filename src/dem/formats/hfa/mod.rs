@@ -33,8 +33,8 @@ use sandtable_raster::sample_type::SampleType;
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "Erdas Imagine file",
-    extensions: &[],
-    shared_extensions: &["img"],
+    extensions: &["img"],
+    shared_extensions: &[],
     recognition: Recognition::Content {
         matches: |bytes| bytes.starts_with(tree::MAGIC),
         start: "EHFA_HEADER_TAG",
