@@ -283,7 +283,7 @@ fn what_a_format_rounds_or_leaves_open_is_told() {
         assert_eq!(written.notes, ["heights are rounded to 32-bit floats"]);
     }
     let written = write(&third, format("xyz"), "a.xyz").expect("a grid");
-    assert_eq!(written.notes, ["1 points without data have the height nan"]);
+    assert_eq!(written.notes, ["1 of 4 points have no data, written as nan"]);
 }
 
 #[test]

@@ -56,13 +56,13 @@ fn whatever_way_a_raster_is_stored_it_reads_as_the_plain_file_does() {
 
 #[test]
 fn windows_of_packed_files_hold_what_the_whole_holds() {
-    for (stored, _) in STORED.iter().filter(|(name, _)| name.ends_with(".tif")) {
+    for (stored, _) in STORED.iter().filter(|(name, _)| !name.ends_with(".gpkg")) {
         let bytes = bytes(stored);
         let whole = raster(stored, &bytes).expect("sound");
         let content = Box::new(Cursor::new(bytes.clone()));
         let opened = open_windows(stored, &bytes, content, &DemHints::default(), 1 << 20).expect("sound");
         let window = RasterWindow { column: 3, row: 2, width: 30, height: 20 };
-        let samples = opened.expect("a GeoTIFF has windows").samples(window).expect("sound");
+        let samples = opened.expect("it has windows").samples(window).expect("sound");
         for at in 0..window.samples() {
             let (column, row) = (3 + at as u32 % 30, 2 + at as u32 / 30);
             let (found, wanted) = (samples.get(at), whole.at(column, row));

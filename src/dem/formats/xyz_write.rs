@@ -29,7 +29,8 @@ pub(super) fn write(raster: &Raster, _name: &str) -> Result<WrittenDem, WriteErr
         Samples::F64(values) => write_points(&mut text, raster, values),
     }
     let (all, valid) = (raster.samples.len(), raster.samples.valid().count());
-    let notes = (valid < all).then(|| format!("{} of {all} points have no data, written as nan", all - valid));
+    let notes =
+        (valid < all).then(|| format!("{} of {all} points have no data, written as nan", all - valid));
     Ok(WrittenDem {
         companions: projection_file_of(raster).into_iter().collect(),
         notes: notes.into_iter().collect(),

@@ -10,7 +10,11 @@
 //!
 //! Values are whole numbers above the least; of floats they are the bits.
 
+use std::ops::Range;
+
 use sandtable_base::bytes::ByteOrder;
+use sandtable_base::limits::work_limit::WorkLimit;
+use sandtable_raster::content::FileContent;
 use sandtable_raster::error::DemErrorKind;
 use sandtable_raster::limits::SizeClaim;
 use sandtable_raster::raster::Samples;
@@ -41,8 +45,13 @@ struct HfaBlock {
 }
 
 impl HfaBlocks {
-    /// Reads the table of blocks of a layer, whose size the file can hold.
-    pub fn read(tree: &HfaTree, state: &HfaNode, layer: &HfaLayer) -> Result<Self, DemErrorKind> {
+    /// Reads the table of blocks of a layer, which the file can hold and which has at most `most` samples.
+    pub fn read(
+        tree: &HfaTree<impl FileContent>,
+        state: &HfaNode,
+        layer: &HfaLayer,
+        most: &'static WorkLimit,
+    ) -> Result<Self, DemErrorKind> {
         let mut fields = tree.fields(state)?;
         let (across, down) = layer.blocks_across_and_down();
         let wanted = across * down;
@@ -50,13 +59,13 @@ impl HfaBlocks {
             (fields.u32()?, fields.u32()?, fields.u32()?, fields.u16()?);
         let listed = u64::from(fields.pointer()?);
         // Each block takes an entry of this table, which lies in the file.
-        SizeClaim::new(layer.columns.into(), layer.rows.into(), 0).check(usize::MAX)?;
+        let claim = SizeClaim::new(layer.columns.into(), layer.rows.into(), layer.sample.bytes() as u64);
+        let claim = SizeClaim { most_samples: most, ..claim };
+        SizeClaim { bytes_per_sample: 0, ..claim }.check(usize::MAX)?;
         if listed < wanted {
             return Err(FORMAT.broken(format!("its table lists {listed} of {wanted} blocks")));
         }
-        let block_bytes =
-            u64::from(layer.block_columns) * u64::from(layer.block_rows) * layer.sample.bytes() as u64;
-        if block_bytes > LARGEST_BLOCK {
+        if layer.block_bytes() > LARGEST_BLOCK {
             let what = format!("blocks of {} x {} samples", layer.block_columns, layer.block_rows);
             return Err(FORMAT.unsupported(what, TO_TIFF));
         }
@@ -69,72 +78,50 @@ impl HfaBlocks {
             }
             blocks.push(HfaBlock { start, bytes, is_valid, is_packed });
         }
+        let block = u64::from(layer.block_columns) * u64::from(layer.block_rows);
+        let absent = blocks.iter().filter(|block| !block.is_valid).count() as u64 * block;
+        let has_packed = blocks.iter().any(|block| block.is_packed);
+        let expansion = if has_packed { EXPANSION } else { 1 };
+        let length = usize::try_from(tree.length).unwrap_or(usize::MAX);
+        SizeClaim { absent, expansion, ..claim }.check(length)?;
         Ok(Self(blocks))
     }
 
-    /// The samples, `nodata` as NaN. Blocks that were never written are no data, or 0 where the file states no value for that,
-    /// as in GDAL.
+    /// The bytes of the file that hold a block; `None` for one that was never written.
+    pub fn stored(&self, index: usize, layer: &HfaLayer) -> Option<Range<u64>> {
+        let block = self.0[index];
+        let bytes = if block.is_packed { block.bytes.into() } else { layer.block_bytes() };
+        let start = u64::from(block.start);
+        block.is_valid.then_some(start..start + bytes)
+    }
+
+    /// The samples of a block, those beyond the layer among them, `nodata` as NaN. One that was never written is no data, or 0
+    /// where the file states no value for that, as in GDAL.
     pub fn samples(
         &self,
-        file: &[u8],
+        tree: &HfaTree<impl FileContent>,
+        index: usize,
         layer: &HfaLayer,
         nodata: Option<f64>,
     ) -> Result<Samples, DemErrorKind> {
-        let (columns, rows) = (layer.columns as usize, layer.rows as usize);
-        let (block_columns, block_rows) = (layer.block_columns as usize, layer.block_rows as usize);
-        self.check(file, layer)?;
-        let mut samples = Samples::absent(columns * rows, layer.sample.is_wide());
+        let count = layer.block_columns as usize * layer.block_rows as usize;
+        let Some(stored) = self.stored(index, layer) else {
+            let mut samples = Samples::absent(count, layer.sample.is_wide());
+            if nodata.is_none() {
+                (0..count).for_each(|at| samples.set(at, 0.0));
+            }
+            return Ok(samples);
+        };
+        let broken = || FORMAT.broken(format!("block {index} breaks off, or lies beyond its end"));
+        let mut bytes = tree.bytes(stored.start, stored.end - stored.start)?.ok_or_else(broken)?;
+        if self.0[index].is_packed {
+            let mut unpacked = Vec::new();
+            unpack(&bytes, layer.sample, count, &mut unpacked).ok_or_else(broken)?;
+            bytes = unpacked;
+        }
         let sides = (layer.block_columns.into(), layer.block_rows.into());
         let layout = SampleLayout::dense(sides, layer.sample, ByteOrder::Little, 0);
-        let (across, _) = layer.blocks_across_and_down();
-        let mut unpacked = Vec::new();
-        for (index, block) in self.0.iter().enumerate() {
-            let (left, top) = (index % across as usize * block_columns, index / across as usize * block_rows);
-            let (width, height) = (block_columns.min(columns - left), block_rows.min(rows - top));
-            if !block.is_valid && nodata.is_some() {
-                continue;
-            }
-            let bytes = block
-                .samples(file, layer, &mut unpacked)
-                .ok_or_else(|| FORMAT.broken(format!("block {index} breaks off, or lies beyond its end")))?;
-            let values = layout.samples(bytes, NoData::Value(nodata));
-            for row in 0..height {
-                let to = (top + row) * columns + left;
-                samples.copy_from(to..to + width, &values, row * block_columns..row * block_columns + width);
-            }
-        }
-        Ok(samples)
-    }
-
-    /// Refuses a layer that the file cannot hold.
-    fn check(&self, file: &[u8], layer: &HfaLayer) -> Result<(), DemErrorKind> {
-        let block = u64::from(layer.block_columns) * u64::from(layer.block_rows);
-        let absent = self.0.iter().filter(|block| !block.is_valid).count() as u64 * block;
-        let has_packed = self.0.iter().any(|block| block.is_packed);
-        let claim = SizeClaim::new(layer.columns.into(), layer.rows.into(), layer.sample.bytes() as u64);
-        let expansion = if has_packed { EXPANSION } else { 1 };
-        SizeClaim { absent, expansion, ..claim }.check(file.len()).map(|_| ())
-    }
-}
-
-impl HfaBlock {
-    /// The bytes of all samples of the block; zeros where it was never written.
-    fn samples<'a>(&self, file: &'a [u8], layer: &HfaLayer, unpacked: &'a mut Vec<u8>) -> Option<&'a [u8]> {
-        let count = layer.block_columns as usize * layer.block_rows as usize;
-        let needed = count * layer.sample.bytes();
-        if !self.is_valid {
-            unpacked.clear();
-            unpacked.resize(needed, 0);
-            return Some(unpacked);
-        }
-        let stored = file.get(self.start as usize..)?;
-        if !self.is_packed {
-            return stored.get(..needed);
-        }
-        let packed = stored.get(..self.bytes as usize)?;
-        unpacked.clear();
-        unpack(packed, layer.sample, count, unpacked)?;
-        Some(unpacked)
+        Ok(layout.samples(&bytes, NoData::Value(nodata)))
     }
 }
 

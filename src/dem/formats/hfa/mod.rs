@@ -20,16 +20,23 @@ mod projection;
 mod tree;
 mod turned;
 
-use glam::{DAffine2, DVec2};
+use std::io::Cursor;
+
+use glam::{DAffine2, DVec2, U64Vec2};
 
 use crate::dem_file::DemFile;
 use crate::dem_format::{DemFormat, Recognition, any_size};
 use crate::formats::hfa::blocks::HfaBlocks;
 use crate::formats::hfa::projection::HfaPlace;
 use crate::formats::hfa::tree::{HfaFields, HfaNode, HfaTree};
+use sandtable_base::limits::work_limit::WorkLimit;
+use sandtable_base::limits::{RASTER_SAMPLES, WINDOWED_SAMPLES};
+use sandtable_raster::cache::LruCache;
+use sandtable_raster::content::FileContent;
 use sandtable_raster::error::DemErrorKind;
-use sandtable_raster::raster::{Raster, north_up};
+use sandtable_raster::raster::{Raster, Samples, north_up};
 use sandtable_raster::sample_type::SampleType;
+use sandtable_raster::windows::{RasterWindow, Windows};
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "Erdas Imagine file",
@@ -40,7 +47,9 @@ pub(super) static FORMAT: DemFormat = DemFormat {
         start: "EHFA_HEADER_TAG",
     },
     reader: read,
-    windows: None,
+    windows: Some(|file, content, cache_bytes| {
+        Ok(Box::new(HfaWindows::open(file, content, cache_bytes, &WINDOWED_SAMPLES)?))
+    }),
     most_bytes: any_size,
     writer: None,
     windows_writer: None,
@@ -75,41 +84,115 @@ struct HfaLayer {
 }
 
 fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
-    let tree = HfaTree::new(file.bytes)?;
-    let layer = tree.children(tree.root()?).find_map(|node| match node {
-        Ok(node) if node.kind != "Eimg_Layer" => None,
-        other => Some(other),
-    });
-    let layer = layer.ok_or_else(|| FORMAT.broken("it has no layer of samples"))??;
-    let header = HfaLayer::read(&tree, &layer)?;
-    let child = |kind: &str| tree.child(&layer, |node| node.kind == kind);
-    let nodata = match child("Eimg_NonInitializedValue")? {
-        Some(node) => Some(value(&mut tree.fields(&node)?)?),
-        None => None,
-    };
-    let blocks = match child("Edms_State")? {
-        Some(state) => HfaBlocks::read(&tree, &state, &header)?,
-        None => return Err(elsewhere(&tree, &layer)?),
-    };
-    let samples = blocks.samples(file.bytes, &header, nodata)?;
-    let place = HfaPlace::read(&tree, &layer)?;
-    let raster = Raster::new(header.columns, samples);
-    let stated = match &place {
-        Some(place) => Some(place.map_from_grid()),
-        None => turned::map_from_grid(&tree, &layer)?,
-    };
-    let raster = file.placed(raster, stated, &["igw", "imgw", "wld"])?;
-    Ok(Raster {
-        driver: "HFA",
-        data_type: header.sample.gdal_name(),
-        crs: file.crs_or(|| projection::crs(&tree, &layer, place.as_ref()))?,
-        nodata,
-        ..raster
-    })
+    let mut windows = HfaWindows::open(file, Cursor::new(file.bytes), 0, &RASTER_SAMPLES)?;
+    let samples = windows.samples(RasterWindow::all(windows.size()))?;
+    Ok(Raster { samples, ..windows.raster })
+}
+
+/// The first layer of a file, read in windows.
+struct HfaWindows<R> {
+    tree: HfaTree<R>,
+    layer: HfaLayer,
+    blocks: HfaBlocks,
+    /// The raster without its samples.
+    raster: Raster,
+    kept: LruCache<u32, Samples>,
+}
+
+impl<R: FileContent> HfaWindows<R> {
+    /// Opens a file of at most `most` samples, of which up to `cache_bytes` are kept.
+    fn open(
+        file: &DemFile,
+        content: R,
+        cache_bytes: usize,
+        most: &'static WorkLimit,
+    ) -> Result<Self, DemErrorKind> {
+        let tree = HfaTree::new(content)?;
+        let node = tree.children(tree.root()?).find_map(|node| match node {
+            Ok(node) if node.kind != "Eimg_Layer" => None,
+            other => Some(other),
+        });
+        let node = node.ok_or_else(|| FORMAT.broken("it has no layer of samples"))??;
+        let layer = HfaLayer::read(&tree, &node)?;
+        let child = |kind: &str| tree.child(&node, |node| node.kind == kind);
+        let nodata = match child("Eimg_NonInitializedValue")? {
+            Some(node) => Some(value(&mut tree.fields(&node)?)?),
+            None => None,
+        };
+        let blocks = match child("Edms_State")? {
+            Some(state) => HfaBlocks::read(&tree, &state, &layer, most)?,
+            None => return Err(elsewhere(&tree, &node)?),
+        };
+        let place = HfaPlace::read(&tree, &node)?;
+        let stated = match &place {
+            Some(place) => Some(place.map_from_grid()),
+            None => turned::map_from_grid(&tree, &node)?,
+        };
+        let raster = Raster::without_place(layer.columns, layer.rows);
+        let raster = file.placed(raster, stated, &["igw", "imgw", "wld"])?;
+        let raster = Raster {
+            driver: "HFA",
+            data_type: layer.sample.gdal_name(),
+            samples: Samples::absent(0, layer.sample.is_wide()),
+            crs: file.crs_or(|| projection::crs(&tree, &node, place.as_ref()))?,
+            nodata,
+            ..raster
+        };
+        Ok(Self { tree, layer, blocks, raster, kept: LruCache::new(cache_bytes) })
+    }
+
+    /// Copies the samples that a block shares with a window.
+    fn copy(
+        &mut self,
+        block: RasterWindow,
+        index: u32,
+        window: RasterWindow,
+        out: &mut Samples,
+    ) -> Result<(), DemErrorKind> {
+        let decoded = match self.kept.take(index) {
+            Some(kept) => kept,
+            None => self.blocks.samples(&self.tree, index as usize, &self.layer, self.raster.nodata)?,
+        };
+        for (to, from) in window.shared_rows(block) {
+            out.copy_from(to, &decoded, from);
+        }
+        let bytes = decoded.bytes();
+        self.kept.put(index, decoded, bytes);
+        Ok(())
+    }
+}
+
+impl<R: FileContent> Windows for HfaWindows<R> {
+    fn metadata(&self) -> &Raster {
+        &self.raster
+    }
+
+    fn samples(&mut self, window: RasterWindow) -> Result<Samples, DemErrorKind> {
+        window.assert_within(self.size());
+        let (width, height) = (self.layer.block_columns, self.layer.block_rows);
+        let (across, _) = self.layer.blocks_across_and_down();
+        let span = |first: u32, count: u32, block: u32| first / block..(first + count).div_ceil(block);
+        let columns = span(window.column, window.width, width);
+        let met: Vec<(u32, u32)> = span(window.row, window.height, height)
+            .flat_map(|down| columns.clone().map(move |across| (across, down)))
+            .collect();
+        let index = |(column, row): (u32, u32)| row * across as u32 + column;
+        let missing = met.iter().map(|&at| index(at)).filter(|&index| !self.kept.contains(index));
+        let mut announced: Vec<_> =
+            missing.filter_map(|index| self.blocks.stored(index as usize, &self.layer)).collect();
+        announced.sort_by_key(|range| range.start);
+        self.tree.announce(&announced);
+        let mut samples = Samples::absent(window.samples(), self.layer.sample.is_wide());
+        for at in met {
+            let block = RasterWindow { column: at.0 * width, row: at.1 * height, width, height };
+            self.copy(block, index(at), window, &mut samples)?;
+        }
+        Ok(samples)
+    }
 }
 
 /// Why a layer has no samples in this file.
-fn elsewhere(tree: &HfaTree, layer: &HfaNode) -> Result<DemErrorKind, DemErrorKind> {
+fn elsewhere(tree: &HfaTree<impl FileContent>, layer: &HfaNode) -> Result<DemErrorKind, DemErrorKind> {
     let external = tree.child(layer, |node| node.kind == "ImgExternalRaster")?;
     Ok(match external {
         Some(_) => FORMAT.unsupported("samples in another file, of the extension .ige", TO_TIFF),
@@ -138,14 +221,26 @@ fn sample_type(number: u16) -> Result<SampleType, DemErrorKind> {
 }
 
 impl HfaLayer {
-    fn read(tree: &HfaTree, layer: &HfaNode) -> Result<Self, DemErrorKind> {
+    fn read(tree: &HfaTree<impl FileContent>, layer: &HfaNode) -> Result<Self, DemErrorKind> {
         let mut fields = tree.fields(layer)?;
         let (columns, rows, _use, kind) = (fields.u32()?, fields.u32()?, fields.u16()?, fields.u16()?);
         let (block_columns, block_rows) = (fields.u32()?, fields.u32()?);
         if block_columns == 0 || block_rows == 0 {
             return Err(FORMAT.broken(format!("its blocks have {block_columns} x {block_rows} samples")));
         }
+        let reach = [(columns, block_columns), (rows, block_rows)];
+        if reach.iter().any(|(count, block)| count.checked_next_multiple_of(*block).is_none()) {
+            return Err(DemErrorKind::TooLarge {
+                size: U64Vec2::new(columns.into(), rows.into()),
+                most: &WINDOWED_SAMPLES,
+            });
+        }
         Ok(Self { columns, rows, sample: sample_type(kind)?, block_columns, block_rows })
+    }
+
+    /// Bytes of an unpacked block.
+    fn block_bytes(&self) -> u64 {
+        u64::from(self.block_columns) * u64::from(self.block_rows) * self.sample.bytes() as u64
     }
 
     /// Blocks side by side, and above each other.

@@ -13,6 +13,7 @@
 use glam::DVec2;
 
 use sandtable_geom::crs::Crs;
+use sandtable_raster::content::FileContent;
 use sandtable_raster::error::DemErrorKind;
 use sandtable_raster::georef::utm_code;
 
@@ -59,7 +60,7 @@ struct HfaDatum {
 
 impl HfaPlace {
     /// `None` where the layer has none.
-    pub fn read(tree: &HfaTree, layer: &HfaNode) -> Result<Option<Self>, DemErrorKind> {
+    pub fn read(tree: &HfaTree<impl FileContent>, layer: &HfaNode) -> Result<Option<Self>, DemErrorKind> {
         let Some(node) = tree.child(layer, |node| node.kind == "Eprj_MapInfo")? else { return Ok(None) };
         let mut fields = tree.fields(&node)?;
         let _projection = fields.text()?;
@@ -85,7 +86,7 @@ fn pair(fields: &mut HfaFields) -> Result<DVec2, DemErrorKind> {
 
 /// The coordinate system of a layer; `None` where it names none.
 pub(super) fn crs(
-    tree: &HfaTree,
+    tree: &HfaTree<impl FileContent>,
     layer: &HfaNode,
     place: Option<&HfaPlace>,
 ) -> Result<Option<Crs>, DemErrorKind> {

@@ -7,7 +7,12 @@
 //!
 //! A field that is a pointer is a count and a place, which its data follow at once.
 
-use sandtable_base::bytes::{ByteCursor, ByteFields};
+use std::cell::RefCell;
+use std::io::{self, SeekFrom};
+use std::ops::Range;
+
+use sandtable_base::bytes::{ByteFields, bytes_at};
+use sandtable_raster::content::FileContent;
 use sandtable_raster::error::DemErrorKind;
 use sandtable_raster::sample_type::SampleType;
 
@@ -22,8 +27,9 @@ const NODE_BYTES: usize = 120;
 /// The most children of a node that are looked at: files have some ten, and a chain may lead back to its start.
 const MOST_CHILDREN: usize = 10_000;
 
-pub(super) struct HfaTree<'a> {
-    bytes: &'a [u8],
+pub(super) struct HfaTree<R> {
+    content: RefCell<R>,
+    pub length: u64,
 }
 
 /// A node without its data.
@@ -31,34 +37,59 @@ pub(super) struct HfaTree<'a> {
 pub(super) struct HfaNode {
     pub name: String,
     pub kind: String,
-    next: usize,
-    child: usize,
-    data: usize,
-    data_bytes: usize,
+    next: u32,
+    child: u32,
+    data: u32,
+    data_bytes: u32,
 }
 
 /// The fields of a node's data, in their order.
-pub(super) struct HfaFields<'a>(ByteCursor<'a>);
+pub(super) struct HfaFields {
+    bytes: Vec<u8>,
+    taken: usize,
+}
 
-impl<'a> HfaTree<'a> {
-    pub fn new(bytes: &'a [u8]) -> Result<Self, DemErrorKind> {
-        if !bytes.starts_with(MAGIC) {
+impl<R: FileContent> HfaTree<R> {
+    pub fn new(mut content: R) -> Result<Self, DemErrorKind> {
+        let length = content.seek(SeekFrom::End(0)).map_err(unread)?;
+        let tree = Self { content: RefCell::new(content), length };
+        if tree.bytes(0, MAGIC.len() as u64)?.as_deref() != Some(MAGIC) {
             return Err(FORMAT.broken("it does not start with EHFA_HEADER_TAG"));
         }
-        Ok(Self { bytes })
+        Ok(tree)
+    }
+
+    /// Bytes from a place on; `None` beyond the end, before anything is allocated.
+    pub fn bytes(&self, at: u64, count: u64) -> Result<Option<Vec<u8>>, DemErrorKind> {
+        if at.checked_add(count).is_none_or(|end| end > self.length) {
+            return Ok(None);
+        }
+        let mut bytes = vec![0; count as usize];
+        let mut content = self.content.borrow_mut();
+        content.seek(SeekFrom::Start(at)).and_then(|_| content.read_exact(&mut bytes)).map_err(unread)?;
+        Ok(Some(bytes))
+    }
+
+    /// Announces bytes that are read next.
+    pub fn announce(&self, ranges: &[Range<u64>]) {
+        self.content.borrow_mut().announce(ranges);
     }
 
     pub fn root(&self) -> Result<HfaNode, DemErrorKind> {
-        let fields = ByteFields::little_endian(self.bytes);
-        let root = fields.u32(16).and_then(|header| fields.u32(header as usize + 8));
-        self.node(root.ok_or_else(|| FORMAT.broken("it ends before its header"))? as usize)
+        let place = |at: u64| {
+            let word = self.bytes(at, 4)?.and_then(|bytes| bytes_at(&bytes, 0));
+            let word = word.map(u32::from_le_bytes);
+            word.ok_or_else(|| FORMAT.broken("it ends before its header"))
+        };
+        let header = place(16)?;
+        self.node(place(u64::from(header) + 8)?)
     }
 
-    fn node(&self, at: usize) -> Result<HfaNode, DemErrorKind> {
-        let node = self.bytes.get(at..).and_then(|rest| rest.get(..NODE_BYTES));
+    fn node(&self, at: u32) -> Result<HfaNode, DemErrorKind> {
+        let node = self.bytes(at.into(), NODE_BYTES as u64)?;
         let node = node.ok_or_else(|| FORMAT.broken(format!("its node at byte {at} lies beyond its end")))?;
-        let fields = ByteFields::little_endian(node);
-        let place = |at: usize| fields.u32(at).unwrap_or_default() as usize;
+        let fields = ByteFields::little_endian(&node);
+        let place = |at: usize| fields.u32(at).unwrap_or_default();
         Ok(HfaNode {
             name: text(&node[24..88]),
             kind: text(&node[88..]),
@@ -99,37 +130,50 @@ impl<'a> HfaTree<'a> {
     }
 
     /// The fields of a node's data.
-    pub fn fields(&self, of: &HfaNode) -> Result<HfaFields<'a>, DemErrorKind> {
-        let data = self.bytes.get(of.data..).and_then(|rest| rest.get(..of.data_bytes));
-        data.map(|data| HfaFields(ByteCursor::new(data)))
+    pub fn fields(&self, of: &HfaNode) -> Result<HfaFields, DemErrorKind> {
+        let data = self.bytes(of.data.into(), of.data_bytes.into())?;
+        data.map(|bytes| HfaFields { bytes, taken: 0 })
             .ok_or_else(|| FORMAT.broken(format!("the data of its node '{}' reach beyond its end", of.name)))
     }
 }
 
-impl<'a> HfaFields<'a> {
+fn unread(fault: io::Error) -> DemErrorKind {
+    DemErrorKind::unread(FORMAT.name, fault)
+}
+
+impl HfaFields {
     fn taken<T>(field: Option<T>) -> Result<T, DemErrorKind> {
         field.ok_or_else(|| FORMAT.broken("a node's data end before its last field"))
     }
 
     /// The bytes that are left.
-    pub fn rest(&self) -> &'a [u8] {
-        self.0.rest()
+    pub fn rest(&self) -> &[u8] {
+        &self.bytes[self.taken..]
+    }
+
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], DemErrorKind> {
+        let array = Self::taken(bytes_at(&self.bytes, self.taken))?;
+        self.taken += N;
+        Ok(array)
     }
 
     pub fn u16(&mut self) -> Result<u16, DemErrorKind> {
-        Self::taken(self.0.array().map(u16::from_le_bytes))
+        self.array().map(u16::from_le_bytes)
     }
 
     pub fn u32(&mut self) -> Result<u32, DemErrorKind> {
-        Self::taken(self.0.u32_le())
+        self.array().map(u32::from_le_bytes)
     }
 
     pub fn f64(&mut self) -> Result<f64, DemErrorKind> {
-        Self::taken(self.0.f64_le())
+        self.array().map(f64::from_le_bytes)
     }
 
-    pub fn bytes(&mut self, count: usize) -> Result<&'a [u8], DemErrorKind> {
-        Self::taken(self.0.take(count))
+    pub fn bytes(&mut self, count: usize) -> Result<&[u8], DemErrorKind> {
+        let start = self.taken;
+        let bytes = self.bytes.get(start..).and_then(|rest| rest.get(..count));
+        self.taken += bytes.map_or(0, <[u8]>::len);
+        Self::taken(bytes)
     }
 
     /// Takes the count of a pointer, and its place.
@@ -148,7 +192,7 @@ impl<'a> HfaFields<'a> {
     /// Takes a pointer to numbers; at most `most` are kept.
     pub fn numbers(&mut self, most: usize) -> Result<Vec<f64>, DemErrorKind> {
         let count = self.pointer()? as usize;
-        let bytes = Self::taken(count.checked_mul(8).and_then(|length| self.0.take(length)))?;
+        let bytes = self.bytes(count.saturating_mul(8))?;
         let (numbers, _) = bytes.as_chunks::<8>();
         Ok(numbers.iter().take(most).map(|number| f64::from_le_bytes(*number)).collect())
     }
@@ -178,6 +222,8 @@ fn text(bytes: &[u8]) -> String {
 
 #[cfg(test)]
 pub(super) mod tests {
+    use std::io::Cursor;
+
     use super::*;
 
     /// A file of one node below the root, and its children.
@@ -251,7 +297,7 @@ pub(super) mod tests {
         file.node("a", "b", &[]);
         let mut bytes = file.bytes();
         bytes[BEFORE..BEFORE + 4].copy_from_slice(&(BEFORE as u32).to_le_bytes());
-        let tree = HfaTree::new(&bytes).expect("a tree");
+        let tree = HfaTree::new(Cursor::new(&bytes)).expect("a tree");
         assert_eq!(tree.children(tree.root().expect("a root")).count(), MOST_CHILDREN);
     }
 }

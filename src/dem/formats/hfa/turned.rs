@@ -11,6 +11,7 @@ use glam::{DAffine2, DMat2, DVec2};
 
 use crate::formats::hfa::tree::{HfaFields, HfaNode, HfaTree};
 use crate::formats::hfa::{FORMAT, TO_TIFF};
+use sandtable_raster::content::FileContent;
 use sandtable_raster::error::DemErrorKind;
 use sandtable_raster::georef::checked;
 
@@ -18,7 +19,10 @@ use sandtable_raster::georef::checked;
 const F64: u16 = 10;
 
 /// The place of a layer by its polynomial; `None` where it has none.
-pub(super) fn map_from_grid(tree: &HfaTree, layer: &HfaNode) -> Result<Option<DAffine2>, DemErrorKind> {
+pub(super) fn map_from_grid(
+    tree: &HfaTree<impl FileContent>,
+    layer: &HfaNode,
+) -> Result<Option<DAffine2>, DemErrorKind> {
     let Some(header) = tree.child(layer, |node| node.name == "MapToPixelXForm")? else { return Ok(None) };
     let steps = tree.children(header.clone()).collect::<Result<Vec<_>, _>>()?;
     let bent = || FORMAT.unsupported("a place that is bent (MapToPixelXForm)", TO_TIFF);
