@@ -7,12 +7,13 @@
 //! | 2 (`.dt2`) | 3601 | 1″ |
 //!
 //! Columns are as far apart as rows up to 50° from the equator, and 2, 3, 4 and 6 times as far from 50°, 70°, 75° and 80°
-//! on: of a raster with more of them, the ones that the standard has are kept as they are.
+//! on: of a raster with more of them, the ones that the standard has are kept as they are. A raster that is part of a degree
+//! is written as a whole one, without data around it.
 
 use glam::DVec2;
 
 use crate::file_name::split_extension;
-use crate::formats::degree_square::{degree_corner, nodes_in_words};
+use crate::formats::degree_square::nodes_in_words;
 use crate::formats::dted::{FORMAT, LABELS, SENTINEL, VOID};
 use crate::written::{WriteError, WrittenDem};
 use sandtable_raster::raster::Raster;
@@ -36,17 +37,17 @@ const LEVELS: [DtedLevel; 3] = [
     DtedLevel {
         extension: "dt0",
         intervals: 120,
-        wanted: "one degree of EPSG:4326 or EPSG:4322 with nodes on whole degrees and, as .dt0, 121 rows 30″ apart and as many columns (61, 41, 31 or 21 from 50°, 70°, 75° or 80° on)",
+        wanted: "nodes within one degree of EPSG:4326 or EPSG:4322, as .dt0 on its 121 rows 30″ apart and as many columns (61, 41, 31 or 21 from 50°, 70°, 75° or 80° on)",
     },
     DtedLevel {
         extension: "dt1",
         intervals: 1200,
-        wanted: "one degree of EPSG:4326 or EPSG:4322 with nodes on whole degrees and, as .dt1, 1201 rows 3″ apart and as many columns (601, 401, 301 or 201 from 50°, 70°, 75° or 80° on)",
+        wanted: "nodes within one degree of EPSG:4326 or EPSG:4322, as .dt1 on its 1201 rows 3″ apart and as many columns (601, 401, 301 or 201 from 50°, 70°, 75° or 80° on)",
     },
     DtedLevel {
         extension: "dt2",
         intervals: 3600,
-        wanted: "one degree of EPSG:4326 or EPSG:4322 with nodes on whole degrees and, as .dt2, 3601 rows 1″ apart and as many columns (1801, 1201, 901 or 601 from 50°, 70°, 75° or 80° on)",
+        wanted: "nodes within one degree of EPSG:4326 or EPSG:4322, as .dt2 on its 3601 rows 1″ apart and as many columns (1801, 1201, 901 or 601 from 50°, 70°, 75° or 80° on)",
     },
 ];
 
@@ -54,6 +55,7 @@ const LEVELS: [DtedLevel; 3] = [
 struct DtedCell<'a> {
     raster: &'a Raster,
     level: u32,
+    /// The south-west corner of the degree.
     corner: DVec2,
     /// The standard's name of the horizontal datum.
     datum: &'static str,
@@ -63,6 +65,19 @@ struct DtedCell<'a> {
     columns: u32,
     /// Columns of the raster from one of the cell to the next.
     step: u32,
+    /// Columns of the raster's spacing from the western border to its first.
+    west: u32,
+    /// Rows from the southern border to the raster's last.
+    south: u32,
+}
+
+/// How far, in samples, the nodes of a raster may lie from those of the cell.
+const OFF_SAMPLES: f64 = 1e-3;
+
+/// `value` as a whole number from 0 on, from which it is hardly off.
+fn whole(value: f64) -> Option<u32> {
+    let near = value.round();
+    ((value - near).abs() < OFF_SAMPLES && (0.0..1e6).contains(&near)).then_some(near as u32)
 }
 
 pub(super) fn write(raster: &Raster, name: &str) -> Result<WrittenDem, WriteError> {
@@ -82,38 +97,79 @@ pub(super) fn write(raster: &Raster, name: &str) -> Result<WrittenDem, WriteErro
 
 impl<'a> DtedCell<'a> {
     fn of(raster: &'a Raster, extension: &str) -> Result<Self, WriteError> {
-        let level = LEVELS.iter().position(|level| level.extension.eq_ignore_ascii_case(extension));
+        let of_rows = |level: &&DtedLevel| whole(raster.spacing().y * f64::from(level.intervals)) == Some(1);
+        let named = LEVELS.iter().position(|level| level.extension.eq_ignore_ascii_case(extension));
         // Without an extension, the level that the rows are of.
-        let level = level.or_else(|| LEVELS.iter().position(|level| level.intervals + 1 == raster.height));
+        let level = named.or_else(|| LEVELS.iter().position(|level| of_rows(&level)));
         let level = level.unwrap_or(LEVELS.len() - 1);
         let refused = || {
-            let named = LEVELS.iter().find(|level| level.intervals + 1 == raster.height);
-            let hint = named.map_or(String::new(), |level| format!(", rows of a .{}", level.extension));
+            let hint = LEVELS.iter().find(of_rows).map(|level| format!(", rows of a .{}", level.extension));
             WriteError::Shape {
                 format: FORMAT.name,
                 wanted: LEVELS[level].wanted,
-                found: nodes_in_words(raster) + &hint,
+                found: nodes_in_words(raster) + &hint.unwrap_or_default(),
             }
         };
         let code = raster.crs.as_ref().map_or(Some(SYSTEMS[0].0), |crs| crs.epsg());
         let system = SYSTEMS.iter().find(|system| Some(system.0) == code).ok_or_else(refused)?;
-        let corner = degree_corner(raster).ok_or_else(refused)?;
-        let intervals = LEVELS[level].intervals;
-        let columns = intervals / column_factor(corner.y);
-        let step = (raster.width - 1) / columns;
-        if raster.height != intervals + 1 || step * columns != raster.width - 1 {
-            return Err(refused());
-        }
-        Ok(Self {
+        let cell = Self {
             raster,
             level: level as u32,
-            corner,
             datum: system.1,
             vertical: vertical_datum(raster.vertical_datum.as_deref()),
-            rows: intervals + 1,
+            ..Self::around(raster, LEVELS[level].intervals).ok_or_else(refused)?
+        };
+        Ok(cell)
+    }
+
+    /// The cell that all nodes of a raster are nodes of; `None` where there is none.
+    fn around(raster: &'a Raster, intervals: u32) -> Option<Self> {
+        let (nodes, spacing) = (raster.node_extent(), raster.spacing());
+        let corner = (nodes.min + OFF_SAMPLES * spacing).floor();
+        let is_on_earth = (-180.0..180.0).contains(&corner.x) && (-90.0..90.0).contains(&corner.y);
+        if !is_on_earth {
+            return None;
+        }
+        let columns = intervals / column_factor(corner.y);
+        let step = whole((f64::from(columns) * spacing.x).recip())?.max(1);
+        let (per_degree, rows) = (step * columns, intervals);
+        let is_within = |node: DVec2| {
+            let at = (node - corner) * DVec2::new(per_degree.into(), rows.into());
+            Some((whole(at.x).filter(|&x| x <= per_degree)?, whole(at.y).filter(|&y| y <= rows)?))
+        };
+        let ((west, south), (east, north)) = (is_within(nodes.min)?, is_within(nodes.max)?);
+        if east - west != raster.width - 1 || north - south != raster.height - 1 {
+            return None;
+        }
+        Some(Self {
+            raster,
+            level: 0,
+            corner,
+            datum: "",
+            vertical: "",
+            rows: rows + 1,
             columns: columns + 1,
             step,
+            west,
+            south,
         })
+    }
+
+    /// The height at a column and a row from the south-west; NaN where there is none.
+    fn height(&self, column: u32, row: u32) -> f64 {
+        let column = (column * self.step).checked_sub(self.west).filter(|&column| column < self.raster.width);
+        let up = row.checked_sub(self.south).filter(|&up| up < self.raster.height);
+        column.zip(up).map_or(f64::NAN, |(column, up)| self.raster.at(column, self.raster.height - 1 - up))
+    }
+
+    /// Percent of the degree that the raster covers, 0 for all of it.
+    fn partial_cell(&self) -> u32 {
+        let share = |samples: u32, of: u32| f64::from(samples) / f64::from(of);
+        let columns = share(self.raster.width, (self.columns - 1) * self.step + 1);
+        match columns * share(self.raster.height, self.rows) {
+            1.0.. => 0,
+            part => ((100.0 * part) as u32).clamp(1, 99),
+        }
     }
 
     fn notes(&self) -> Vec<String> {
@@ -122,11 +178,13 @@ impl<'a> DtedCell<'a> {
         if is_rounded {
             notes.push("heights are rounded to whole meters".to_owned());
         }
+        if self.partial_cell() > 0 {
+            notes.push("the rest of the degree has no data".to_owned());
+        }
         if self.step > 1 {
             notes.push(format!(
-                "every {} of {} columns is kept: DTED has fewer of them far from the equator",
-                ordinal(self.step),
-                self.raster.width
+                "every {} column is kept: DTED has fewer of them far from the equator",
+                ordinal(self.step)
             ));
         }
         if let (Some(datum), "") = (&self.raster.vertical_datum, self.vertical) {
@@ -155,8 +213,8 @@ impl<'a> DtedCell<'a> {
         let origin = |text: &str| format!("{}.0{}", &text[..text.len() - 1], &text[text.len() - 1..]);
         identification.put(185, &format!("{}{}", origin(&south), origin(&west)));
         identification.put(204, &format!("{south}{west}{north}{west}{north}{east}{south}{east}"));
-        identification
-            .put(264, &format!("0000000.0{:04}{:04}{rows:04}{columns:04}00", intervals[1], intervals[0]));
+        let (counts, part) = (format!("{rows:04}{columns:04}"), self.partial_cell());
+        identification.put(264, &format!("0000000.0{:04}{:04}{counts}{part:02}", intervals[1], intervals[0]));
         let mut accuracy = DtedLabel::new("ACC");
         accuracy.put(3, "NA  NA  NA  NA  ");
         accuracy.put(55, "00");
@@ -171,8 +229,8 @@ impl<'a> DtedCell<'a> {
         bytes.extend(&column.to_be_bytes()[1..]);
         bytes.extend((column as u16).to_be_bytes());
         bytes.extend([0, 0]);
-        for row in (0..self.rows).rev() {
-            let height = self.raster.at(column * self.step, row);
+        for row in 0..self.rows {
+            let height = self.height(column, row);
             let height = if height.is_nan() { VOID } else { height.round() as i16 };
             let sign = if height < 0 { 0x8000 } else { 0 };
             bytes.extend((height.unsigned_abs() | sign).to_be_bytes());
@@ -288,13 +346,29 @@ mod tests {
     }
 
     #[test]
+    fn a_part_of_a_degree_lies_in_a_whole_one() {
+        for (corner, columns) in [(DVec2::new(7.0, 43.0), 121), (DVec2::new(-8.0, -62.0), 61)] {
+            let cell = DVec2::new(1.0 / f64::from(columns - 1), 1.0 / 120.0);
+            let values = (0..5 * 4).map(|at| at as f32).collect();
+            let north_west = corner + DVec2::new(10.0, 33.0) * cell;
+            let part = Raster {
+                crs: Some(Crs::wgs84()),
+                ..Raster::new(5, Samples::F32(values)).placed(north_up_nodes(north_west, cell))
+            };
+            let written = written(&part, "a.dt0").expect("it has the nodes of a degree");
+            assert_eq!(written.notes, ["the rest of the degree has no data"]);
+            assert_eq!(&written.bytes[80 + 289..80 + 291], b"01");
+            let again = read("a.dt0", &written.bytes, &DemHints::default()).expect("our own");
+            assert_eq!((again.width, again.height, again.samples.valid().count()), (columns, 121, 20));
+            assert!((0..20).all(|at| again.at(10 + at % 5, 120 - 33 + at / 5) == f64::from(at)));
+        }
+    }
+
+    #[test]
     fn far_from_the_equator_columns_lie_further_apart() {
         let one = degree(DVec2::new(20.0, 60.0), 121, 121);
         let written_ = written(&one, "n60.dt0").expect("a degree");
-        assert_eq!(
-            written_.notes,
-            ["every 2nd of 121 columns is kept: DTED has fewer of them far from the equator"]
-        );
+        assert_eq!(written_.notes, ["every 2nd column is kept: DTED has fewer of them far from the equator"]);
         let again = read("n60.dt0", &written_.bytes, &DemHints::default()).expect("our own");
         assert_eq!((again.width, again.height), (61, 121));
         assert_eq!([again.at(1, 0), again.at(60, 3)], [2.0, 117.0]);
@@ -328,8 +402,10 @@ mod tests {
         assert!(message.contains("3601 rows 1″ apart") && message.contains("rows of a .dt0"), "{message}");
         let utm = Raster { crs: Some(Crs::from_epsg(32632).expect("known")), ..one.clone() };
         assert!(refused(&utm, "n43.dt0").contains("EPSG:4326"));
-        let beside = degree(DVec2::new(7.25, 43.0), 121, 121);
-        assert!(refused(&beside, "n43.dt0").contains("whole degrees"));
+        for west in [7.25, 7.001, 200.0] {
+            let beside = degree(DVec2::new(west, 43.0), 121, 121);
+            assert!(refused(&beside, "n43.dt0").contains("nodes within one degree"), "{west}");
+        }
         let mut high = one.clone();
         high.samples.set(0, 9001.0);
         assert!(refused(&high, "n43.dt0").contains("-12000 to 9000"));
