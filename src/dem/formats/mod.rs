@@ -13,6 +13,8 @@ mod ehdr_write;
 mod envi;
 #[cfg(feature = "gpkg")]
 mod gpkg;
+#[cfg(feature = "gpkg")]
+mod gpkg_tiles;
 mod header;
 pub mod height_encoding;
 mod hfa;
