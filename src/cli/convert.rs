@@ -36,7 +36,7 @@ pub struct ConvertArguments {
     /// The elevation files, tiles of one raster where there are several, and without -o the file to write
     #[arg(required = true, num_args = 1.., value_names = ["IN", "OUT"])]
     pub files: Vec<PathBuf>,
-    /// The file to write: .tif, .asc, .bt, .hgt or .png [default: the last of the files, where it is no elevation yet]
+    /// The file to write: .tif, .asc, .flt, .bil, .bt, .xyz, .hgt, .dt0, .dt1, .dt2 or .png [default: the last of the files, where it is no elevation yet]
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
     /// Write over the last of the files although it is elevation

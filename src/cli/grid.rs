@@ -26,7 +26,7 @@ use sandtable_raster::unstated_unit;
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub struct GridArguments {
-    /// Files of points, one or more, then the grid to write: .tif, .asc, .bt, .hgt or .png
+    /// Files of points, one or more, then the grid to write: .tif, .asc, .flt, .bil, .bt, .xyz, .hgt, .dt0, .dt1, .dt2 or .png
     #[arg(value_names = ["POINTS", "OUT"], num_args = 2.., required = true)]
     pub files: Vec<PathBuf>,
     /// The side of a cell, in the unit of the points' x and y
@@ -70,6 +70,9 @@ take points along breaklines instead of edges.
 
 Heights are written in meters.";
 
+/// The format that files of points may have as well.
+const POINTS_FORMAT: &str = "XYZ grid";
+
 /// A method of gridding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum MethodWord {
@@ -110,6 +113,12 @@ pub fn run(arguments: &GridArguments) -> Result<(), CliError> {
     let method = method(arguments)?;
     let inputs: Vec<PathBuf> = points.iter().chain(&arguments.breaklines).cloned().collect();
     let format = raster_format(out, &inputs)?;
+    if format.name == POINTS_FORMAT && out.exists() {
+        return Err(CliError::input(format!(
+            "{}: it may be points to read, and would be written over; name the grid after the points, or remove the file",
+            out.display()
+        )));
+    }
     let crs = arguments.crs.as_deref().map(Crs::parse).transpose();
     let crs = crs.map_err(|error| CliError::input(format!("--crs: {error}")))?;
     let steps = StepTimer::default();

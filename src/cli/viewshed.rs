@@ -44,7 +44,7 @@ pub struct ViewshedArguments {
     /// Look only between two azimuths, in degrees clockwise from north
     #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true, value_parser = number_pair)]
     pub sector: Option<[f64; 2]>,
-    /// Write the answer to this file: a map as .png, or a raster as .tif, .asc or .bt
+    /// Write the answer to this file: a map as .png, or a raster as .tif, .asc, .flt, .bil, .bt or .xyz
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
 }

@@ -13,6 +13,7 @@ use sandtable_raster::error::DemErrorKind;
 use sandtable_raster::raster::Raster;
 use sandtable_raster::windows::Windows;
 
+/// Writes a raster under the name of a file.
 type DemWriter = fn(&Raster, &str) -> Result<WrittenDem, WriteError>;
 
 /// Opens the content of a file, of whose bytes only the first are given; the number is that of the bytes to be cached.
@@ -37,10 +38,18 @@ pub struct DemFormat {
     pub(crate) windows: Option<WindowsOpener>,
     /// The most bytes that a file has which starts with these: a packed one is unpacked no further.
     pub(crate) most_bytes: fn(&[u8]) -> u64,
-    /// Writes a raster; `None` where the format is only read. The text is the stem of the file's name.
-    pub(crate) writer: Option<DemWriter>,
+    /// `None` where the format is only read.
+    pub(crate) writer: Option<FormatWriter>,
     /// Writes a raster that is read in windows: the bytes of `writer`; `None` where the format is written from memory.
     pub windows_writer: Option<WindowsWriter>,
+}
+
+/// How files of a format are written.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FormatWriter {
+    /// The extensions that are written, in lower case, without the dot.
+    pub extensions: &'static [&'static str],
+    pub write: DemWriter,
 }
 
 /// How files of a format are recognized.

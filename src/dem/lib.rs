@@ -9,6 +9,7 @@ pub mod formats;
 pub mod gridding;
 pub mod hints;
 pub mod imagery;
+mod lerc;
 mod point_text;
 pub mod points;
 pub mod read;

@@ -15,6 +15,9 @@ use sandtable_raster::error::{DemError, DemErrorKind};
 use sandtable_raster::raster::{Raster, Samples};
 use sandtable_raster::windows::{RasterWindow, Windows};
 
+/// The start of a database, which may be a GeoPackage of anything.
+const SQLITE: &[u8] = b"SQLite format 3";
+
 /// The bytes of a packed file that are unpacked before it is known what it is.
 pub const HEAD_BYTES: u64 = 64 << 10;
 
@@ -203,7 +206,7 @@ fn format_of(file: &DemFile) -> Result<&'static DemFormat, DemErrorKind> {
 }
 
 fn find(is_wanted: impl Fn(&DemFormat) -> bool) -> Option<&'static DemFormat> {
-    FORMATS.into_iter().find(|format| is_wanted(format))
+    FORMATS.iter().copied().find(|format| is_wanted(format))
 }
 
 fn by_extension(extension: &str) -> Option<&'static DemFormat> {
@@ -211,7 +214,10 @@ fn by_extension(extension: &str) -> Option<&'static DemFormat> {
 }
 
 fn not_recognized(bytes: &[u8], extension: &str) -> DemErrorKind {
-    let Some(format) = by_extension(extension) else { return unknown(describe(bytes, extension)) };
+    let is_database = bytes.starts_with(SQLITE);
+    let Some(format) = by_extension(extension).filter(|_| !is_database) else {
+        return unknown(describe(bytes, extension));
+    };
     match format.recognition {
         Recognition::Content { start, .. } => format.broken(format!("it does not start with {start}")),
         Recognition::HeaderFile { .. } => DemErrorKind::NoHeader(format.name),
@@ -224,9 +230,8 @@ fn unknown(found: impl Into<String>) -> DemErrorKind {
 }
 
 fn describe(bytes: &[u8], extension: &str) -> String {
-    const KNOWN: [(&[u8], &str); 6] = [
-        (b"SQLite format 3", "it is an SQLite database, perhaps a GeoPackage"),
-        (b"EHFA_HEADER_TAG", "it is an Erdas Imagine file"),
+    const KNOWN: [(&[u8], &str); 5] = [
+        (SQLITE, "it is an SQLite database, but no GeoPackage of elevation"),
         (b"\xff\xd8\xff", "it is a JPEG picture"),
         (b"\x89HDF", "it is an HDF 5 or NetCDF file"),
         (b"CDF", "it is a NetCDF file"),
@@ -248,7 +253,7 @@ mod tests {
 
     #[test]
     fn tiles_are_named_by_extensions_that_nothing_else_has() {
-        for name in ["a.tif", "d/B.TIFF", "n1.hgt.zip", "a.bt.gz", "a.btz", "a.dt0", "a.xyz"] {
+        for name in ["a.tif", "d/B.TIFF", "n1.hgt.zip", "a.bt.gz", "a.btz", "a.dt0", "a.xyz", "a.img"] {
             assert!(is_tile_name(name), "{name}");
         }
         for name in ["a.png", "a.csv", "a.zip", "a.gz", ".a.tif", "a.tif.aux.xml", "a.hdr", "tif"] {

@@ -58,7 +58,7 @@ pub fn add(
     path: &Path,
     inputs: &[PathBuf],
 ) -> Result<WrittenDem, WriteRasterError> {
-    let written = write::write(raster, format, &disk::file_stem(path)).map_err(FileError::at(path))?;
+    let written = write::write(raster, format, &disk::file_name(path)).map_err(FileError::at(path))?;
     for companion in &written.companions {
         check_companion(&path.with_extension(companion.extension), companion, inputs)?;
     }

@@ -164,6 +164,19 @@ pub const HEIGHTS: ApiAddress = ApiAddress {
     ],
 };
 
+pub const LOOKUP: ApiAddress = ApiAddress {
+    path: "/api/v1/lookup",
+    methods: ApiMethods::GetOrPost,
+    summary: "heights, as in the Open-Elevation API; of all datasets the first that has one",
+    answer: "application/json",
+    parameters: &[parameter(
+        "locations",
+        Text("LAT,LNG|LAT,LNG"),
+        Required,
+        "the positions; in JSON also [{\"latitude\": LAT, \"longitude\": LNG}]",
+    )],
+};
+
 pub const LOS: ApiAddress = ApiAddress {
     path: "/v1/los",
     methods: ApiMethods::GetOrPost,
@@ -233,11 +246,12 @@ pub const VIEWSHED: ApiAddress = ApiAddress {
 };
 
 /// Every address.
-pub const ADDRESSES: [ApiAddress; 9] = [
+pub const ADDRESSES: [ApiAddress; 10] = [
     HEIGHTS,
     LOS,
     PROFILE,
     VIEWSHED,
+    LOOKUP,
     page("/datasets", "the datasets with their systems, extents and cells", "application/json"),
     page(health::PATH, "version, and whether the datasets are ready", "application/json"),
     page(ready::PATH, "whether requests should be sent here: 200, or 503", "application/json"),

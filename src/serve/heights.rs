@@ -209,8 +209,8 @@ fn samples(
 
 /// An answer, and the index of the dataset that gave it.
 #[derive(Clone, Copy)]
-struct FoundHeight {
-    answer: Answer,
+pub struct FoundHeight {
+    pub answer: Answer,
     dataset: usize,
 }
 
@@ -224,13 +224,32 @@ fn rank(answer: Answer) -> u8 {
 }
 
 impl HeightsQuery {
+    /// The query for heights as the datasets have them, between samples by the default interpolation.
+    pub fn plain(datasets: Vec<usize>, coordinates: Coordinates, positions: Vec<DVec2>) -> Self {
+        Self {
+            datasets,
+            coordinates,
+            positions,
+            surface: None,
+            interpolation: Interpolation::default(),
+            above: None,
+            missing: MissingHeight::Null,
+            format: HeightsFormat::Json,
+        }
+    }
+
+    /// The positions that it is about.
+    pub fn positions(&self) -> &[DVec2] {
+        &self.positions
+    }
+
     fn surface_of(&self, served: &ServedDataset) -> Surface {
         self.surface.unwrap_or_else(|| served.dataset.default_surface())
     }
 
     /// For each position the height of the first dataset that has one; without any, `NoData` of the first dataset that
     /// covers the position; without any, `Outside` of the first dataset.
-    fn heights(&self, service: &Service) -> Result<Vec<FoundHeight>, HttpError> {
+    pub fn heights(&self, service: &Service) -> Result<Vec<FoundHeight>, HttpError> {
         let first = self.datasets[0];
         let answers = self.answers(service, first, &self.positions)?;
         let mut heights: Vec<FoundHeight> =

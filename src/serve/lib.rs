@@ -26,6 +26,7 @@ mod heights;
 mod help;
 mod host;
 mod listener;
+mod lookup;
 mod los;
 mod openapi;
 mod parameters;

@@ -1,7 +1,7 @@
 //! The parameters of a request: from its query and from a body that is a form, in parts or not, or a JSON object.
 //!
-//! A JSON object has the same names as a form. Its values are strings, numbers, or lists of strings, which are joined
-//! with `|`. A later value replaces an earlier one, and a value of the body one of the query.
+//! A JSON object has the same names as a form. Its values are strings, numbers, lists of strings, which are joined with
+//! `|`, or lists of objects of a latitude and a longitude, which become `lat,lng`. A later value replaces an earlier one, and a value of the body one of the query.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -57,13 +57,33 @@ pub struct Parameters(BTreeMap<String, String>);
 #[derive(serde::Deserialize)]
 #[serde(
     untagged,
-    expecting = "expected a string, a number, or a list of strings such as [\"56,123\", \"57,124\"]"
+    expecting = "expected a string, a number, a list of strings such as [\"56,123\", \"57,124\"], or one of objects such as [{\"latitude\": 56, \"longitude\": 123}]"
 )]
 enum ParameterValue {
     Text(String),
     Number(serde_json::Number),
     List(Vec<String>),
+    Positions(Vec<JsonPosition>),
     Null(()),
+}
+
+/// A position as the Open-Elevation API has it in a body: an object, never a list.
+#[derive(serde::Deserialize)]
+#[serde(try_from = "serde_json::Map<String, serde_json::Value>")]
+struct JsonPosition {
+    latitude: f64,
+    longitude: f64,
+}
+
+impl TryFrom<serde_json::Map<String, serde_json::Value>> for JsonPosition {
+    type Error = &'static str;
+
+    fn try_from(object: serde_json::Map<String, serde_json::Value>) -> Result<Self, Self::Error> {
+        let number = |key: &str| object.get(key)?.as_f64();
+        let position = number("latitude").zip(number("longitude"));
+        let (latitude, longitude) = position.ok_or("a position has the numbers latitude and longitude")?;
+        Ok(Self { latitude, longitude })
+    }
 }
 
 impl ParameterValue {
@@ -72,6 +92,10 @@ impl ParameterValue {
             Self::Text(text) => Some(text),
             Self::Number(number) => Some(number.to_string()),
             Self::List(items) => Some(items.join("|")),
+            Self::Positions(items) => {
+                let pairs = items.iter().map(|at| format!("{},{}", at.latitude, at.longitude));
+                Some(pairs.collect::<Vec<_>>().join("|"))
+            }
             Self::Null(()) => None,
         }
     }

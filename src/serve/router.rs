@@ -33,6 +33,7 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use crate::clients::Connection;
 use crate::heights::HeightsQuery;
 use crate::listener::RequestConnection;
+use crate::lookup::LookupQuery;
 use crate::los::LosQuery;
 use crate::parameters::Parameters;
 use crate::profile::ProfileQuery;
@@ -64,6 +65,7 @@ pub fn router(service: Arc<Service>) -> Router {
         .route(&at("/openapi.json"), page(openapi::page))
         .route(&at(health::PATH), page(health::page))
         .route(&at(ready::PATH), page(ready::page))
+        .route(&at(api::LOOKUP.path), query::<LookupQuery>())
         .route(&at("/v1/los"), query::<LosQuery>())
         .route(&at("/v1/profile"), query::<ProfileQuery>())
         .route(&at("/v1/viewshed"), query::<ViewshedQuery>())

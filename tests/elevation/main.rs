@@ -10,5 +10,6 @@ mod gridding;
 mod mosaics;
 mod paging;
 mod raster_writers;
+mod stored;
 mod straight_edges;
 mod virtual_rasters;

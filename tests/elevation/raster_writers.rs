@@ -127,6 +127,47 @@ proptest! {
     }
 
     #[test]
+    fn a_float_grid_gives_32_bit_heights_back_to_the_last_bit(values in f32s()) {
+        let one = raster(3, Samples::F32(values), Some("EPSG:32612"));
+        match write(&one, format("flt"), "a.flt") {
+            Ok(written) => {
+                assert_eq!((&*written.stored, written.notes.len()), ("float32", 0));
+                assert_same(&back("a.flt", &written, DemHints::default()), &one);
+            }
+            Err(error) => assert!(matches!(error, WriteError::NoDataTaken { .. }), "{error}"),
+        }
+    }
+
+    #[test]
+    fn a_binary_grid_gives_integers_and_32_bit_floats_back_to_the_last_bit(narrow in f32s(), wide in f64s()) {
+        for samples in [Samples::F32(narrow), Samples::F64(wide)] {
+            let one = raster(3, samples, Some("EPSG:4326"));
+            let written = match write(&one, format("bil"), "a.bil") {
+                Ok(written) => written,
+                Err(error) => {
+                    assert!(matches!(error, WriteError::NoDataTaken { .. }), "{error}");
+                    continue;
+                }
+            };
+            let again = back("a.bil", &written, DemHints::default());
+            if written.notes.is_empty() && again.samples.is_wide() == one.samples.is_wide() {
+                assert_same(&again, &one);
+            } else {
+                assert_eq!((&*written.stored, one.samples.is_wide()), ("float32", true));
+                let rounded = one.samples.iter().map(|value| f64::from(value as f32));
+                assert!(again.samples.iter().zip(rounded).all(|(again, one)| again == one || one.is_nan() && again.is_nan()));
+            }
+        }
+    }
+
+    #[test]
+    fn points_give_32_bit_heights_back_to_the_last_bit(values in f32s()) {
+        let one = raster(4, Samples::F32(values), Some("EPSG:32612"));
+        let written = write(&one, format("xyz"), "a.xyz").expect("every grid can be");
+        assert_same(&back("a.xyz", &written, DemHints::default()), &one);
+    }
+
+    #[test]
     fn a_picture_gives_heights_back_to_half_a_step(values in proptest::collection::vec(-500f32..9000.0, 12)) {
         let mut values = values;
         values[5] = f32::NAN;
@@ -216,14 +257,43 @@ fn what_a_format_cannot_hold_is_refused_with_what_can() {
     let mut one = raster(2, Samples::F32(vec![-32768.0, 2.0, 3.0, 4.0]), Some("EPSG:32612"));
     assert!(matches!(write(&one, format("bt"), "a"), Err(WriteError::NoDataTaken { .. })));
     one.map_from_grid.matrix2.y_axis.x = 5.0;
-    for format in [format("asc"), format("bt"), format("hgt")] {
+    for format in [format("asc"), format("bt"), format("flt"), format("xyz"), format("hgt"), format("dt1")] {
         let refused = write(&one, format, "a").expect_err("askew").to_string();
         assert!(refused.contains("GeoTIFF"), "{refused}");
     }
     one.georeferenced = false;
-    assert!(matches!(write(&one, format("asc"), "a"), Err(WriteError::NoPlace(_))));
+    for format in [format("asc"), format("flt"), format("xyz"), format("dt1")] {
+        assert!(matches!(write(&one, format, "a"), Err(WriteError::NoPlace(_))));
+    }
     one.samples = Samples::F32(vec![f32::NAN; 4]);
     assert_eq!(write(&one, format("png"), "a"), Err(WriteError::Empty));
+    let row = raster(4, Samples::F32(vec![1.0, 2.0, 3.0, 4.0]), Some("EPSG:32612"));
+    assert!(matches!(write(&row, format("xyz"), "a.xyz"), Err(WriteError::Shape { .. })));
+    let high = raster(2, Samples::F64(vec![1e300, 2.0]), Some("EPSG:32612"));
+    for name in ["a.flt", "a.bil"] {
+        assert!(matches!(write(&high, format("flt"), name), Err(WriteError::OutOfRange { .. })));
+    }
+}
+
+#[test]
+fn what_a_format_rounds_or_leaves_open_is_told() {
+    let third = raster(2, Samples::F64(vec![1.0 / 3.0, 2.0, 3.0, f64::NAN]), Some("EPSG:32612"));
+    for name in ["a.flt", "a.bil"] {
+        let written = write(&third, format("bil"), name).expect("rounded");
+        assert_eq!(written.notes, ["heights are rounded to 32-bit floats"]);
+    }
+    let written = write(&third, format("xyz"), "a.xyz").expect("a grid");
+    assert_eq!(written.notes, ["1 of 4 points have no data, written as nan"]);
+}
+
+#[test]
+fn cells_that_are_not_square_come_back() {
+    let mut one = raster(3, Samples::F32(vec![1.0, 2.5, 3.0, 4.0, 5.0, 6.0]), Some("EPSG:32612"));
+    one.map_from_grid.matrix2.y_axis.y = -6.25;
+    for name in ["a.flt", "a.bil", "a.xyz"] {
+        let written = write(&one, format(name.rsplit('.').next().expect("named")), name).expect("a grid");
+        assert_same(&back(name, &written, DemHints::default()), &one);
+    }
 }
 
 #[test]
@@ -232,7 +302,7 @@ fn rows_from_south_to_north_are_mirrored_where_a_format_has_north_up() {
     let mut mirrored = raster(2, Samples::F32(vec![3.0, 4.0, 1.0, 2.0]), Some("EPSG:32612"));
     mirrored.map_from_grid.translation.y = upright.extent().min.y;
     mirrored.map_from_grid.matrix2.y_axis.y *= -1.0;
-    for format in [format("asc"), format("bt")] {
+    for format in [format("asc"), format("bt"), format("flt"), format("xyz")] {
         let [one, other] = [&upright, &mirrored].map(|raster| write(raster, format, "a").expect("written"));
         assert!(one.bytes == other.bytes, "{}", format.name);
     }
@@ -282,8 +352,9 @@ fn gdal_reads_what_is_written_as_we_do() {
         ),
     ] {
         let one = hills(crs);
-        for (name, format) in [("a.tif", format("tif")), ("a.asc", format("asc")), ("a.bt", format("bt"))] {
-            let file = put(&scratch, name, &write(&one, format, "a").expect("it can be"));
+        for name in ["a.tif", "a.asc", "a.bt", "a.flt", "a.bil"] {
+            let extension = name.rsplit('.').next().expect("named");
+            let file = put(&scratch, name, &write(&one, format(extension), name).expect("it can be"));
             let said = gdalinfo(&file);
             assert_eq!(said["size"], serde_json::json!([300, 270]), "{name}");
             let wkt = said["coordinateSystem"]["wkt"].as_str().expect("a system");

@@ -13,8 +13,15 @@ use sandtable_query::service::{NamedFile, RequestLog, ServiceLimits, ServiceOpti
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// Starts of requests: what follows is a query.
-const ADDRESSES: [&str; 6] =
-    ["/v1/hill?locations=", "/v1/hill?", "/v1/profile?", "/v1/los?", "/v1/viewshed?", "/v1/"];
+const ADDRESSES: [&str; 7] = [
+    "/v1/hill?locations=",
+    "/v1/hill?",
+    "/v1/profile?",
+    "/v1/los?",
+    "/v1/viewshed?",
+    "/v1/",
+    "/api/v1/lookup?",
+];
 
 /// Forms in which a body may come.
 const FORMS: [&str; 4] = [

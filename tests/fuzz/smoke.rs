@@ -65,6 +65,12 @@ fn mutant(seed: &[u8], numbers: &mut Numbers) -> Vec<u8> {
     bytes
 }
 
+/// A file of the project, after the byte that picks its name.
+fn whole(name: u8, path: &str) -> Vec<u8> {
+    let bytes = std::fs::read(Path::new(env!("SANDTABLE_ROOT")).join(path)).expect("a file of the project");
+    [&[name], &bytes[..]].concat()
+}
+
 /// The start of a file of the project, after the byte that picks its name.
 fn file(name: u8, path: &str) -> Vec<u8> {
     const MOST: usize = 6000;
@@ -87,6 +93,11 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
             text(7, "DSAA\n3 2\n0 20\n0 10\n1 6\n1 2 3\n4 5 6\n"),
             text(8, "0 0 1\n5 0 2\n0 5 3\n5 5 4\n"),
             file(9, "assets/jacksboro/hills.png"),
+            whole(0, "tests/elevation/stored/meters_lzma.tif"),
+            whole(0, "tests/elevation/stored/near_lerc.tif"),
+            whole(0, "tests/elevation/stored/bytes_lerc.tif"),
+            whole(12, "tests/elevation/stored/levels_packed.img"),
+            whole(13, "tests/elevation/stored/hills.gpkg"),
             text(10, "NROWS 2\nNCOLS 2\nNBITS 16\nBYTEORDER I\nULXMAP 0\nULYMAP 9\nXDIM 1\nYDIM 1\n"),
         ],
         "points" => vec![
@@ -146,6 +157,8 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
                 asked(8, "{\"locations\":\"36.143,-87.0\",\"interpolation\":\"nearest\"}"),
                 asked(24, "locations=36.143,-87.0&format=geojson"),
                 asked(40, "--b\r\nContent-Disposition: form-data; name=\"locations\"\r\n\r\n36.143,-87.0\r\n--b--\r\n"),
+                asked(6, "locations=36.143,-87.0|1,2"),
+                asked(14, "{\"locations\":[{\"latitude\":36.143,\"longitude\":-87.0}]}"),
                 asked(7, "GET /health HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"),
                 asked(7, "POST /v1/hill HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n5\r\nlocat\r\n0\r\n\r\n"),
             ]

@@ -44,8 +44,9 @@ pub const TARGETS: [Target; 11] = [
 ];
 
 /// The names under which a rasters's bytes are read: some formats are known by the name alone.
-const RASTERS: [&str; 12] = [
-    "a.tif", "a.asc", "a.hgt", "a.dt1", "a.dem", "a.bt", "a.ter", "a.grd", "a.xyz", "a.png", "a.bil", "a.zip",
+const RASTERS: [&str; 14] = [
+    "a.tif", "a.asc", "a.hgt", "a.dt1", "a.dem", "a.bt", "a.ter", "a.grd", "a.xyz", "a.png", "a.bil",
+    "a.zip", "a.img", "a.gpkg",
 ];
 
 /// The names of vector files.

@@ -14,7 +14,7 @@ use glam::DVec2;
 
 use crate::companion::projection_file_of;
 use crate::dem_file::DemFile;
-use crate::dem_format::{DemFormat, Recognition};
+use crate::dem_format::{DemFormat, FormatWriter, Recognition};
 use crate::formats::header::HeaderFields;
 use crate::formats::text::{TextWords, is_missing, number, quote};
 use crate::written::{WriteError, WrittenDem};
@@ -31,7 +31,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     reader: read,
     windows: None,
     most_bytes,
-    writer: Some(write),
+    writer: Some(FormatWriter { extensions: &["asc"], write }),
     windows_writer: None,
 };
 
@@ -213,7 +213,7 @@ fn values(words: &mut TextWords, count: usize, stated: &StatedMissing) -> Result
     Ok(read)
 }
 
-fn write(raster: &Raster, _stem: &str) -> Result<WrittenDem, WriteError> {
+fn write(raster: &Raster, _name: &str) -> Result<WrittenDem, WriteError> {
     let raster = &raster.in_meters();
     let raster = &FORMAT.north_up(raster)?;
     let nodata = nodata_to_write(raster)?;

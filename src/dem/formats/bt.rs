@@ -25,7 +25,7 @@ use glam::DVec2;
 
 use crate::companion::projection_file_of;
 use crate::dem_file::DemFile;
-use crate::dem_format::{DemFormat, Recognition};
+use crate::dem_format::{DemFormat, FormatWriter, Recognition};
 use crate::formats::plain_raster::{self, PlainRaster};
 use crate::formats::sample_layout::{FileSize, NoData, SampleLayout};
 use crate::written::{WriteError, WrittenDem};
@@ -49,7 +49,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     reader: |file| plain_raster::read(file, plain),
     windows: Some(|file, content, _| plain_raster::windows(file, content, plain)),
     most_bytes,
-    writer: Some(write),
+    writer: Some(FormatWriter { extensions: &["bt"], write }),
     windows_writer: None,
 };
 
@@ -222,7 +222,7 @@ fn geographic_code(datum: i16) -> Result<u32, DemErrorKind> {
     }
 }
 
-fn write(raster: &Raster, _stem: &str) -> Result<WrittenDem, WriteError> {
+fn write(raster: &Raster, _name: &str) -> Result<WrittenDem, WriteError> {
     let raster = &FORMAT.north_up(raster)?;
     if raster.width.min(raster.height) < 2 {
         let found = format!("{} x {}", raster.width, raster.height);

@@ -16,7 +16,8 @@
 use glam::DVec2;
 
 use crate::dem_file::DemFile;
-use crate::dem_format::{DemFormat, Recognition, any_size};
+use crate::dem_format::{DemFormat, FormatWriter, Recognition, any_size};
+use crate::formats::dted_write::write;
 use sandtable_base::bytes::ByteFields;
 use sandtable_geom::crs::Crs;
 use sandtable_raster::error::DemErrorKind;
@@ -31,20 +32,20 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     reader: read,
     windows: None,
     most_bytes: any_size,
-    writer: None,
+    writer: Some(FormatWriter { extensions: &["dt0", "dt1", "dt2"], write }),
     windows_writer: None,
 };
 
-const VOID: i16 = -32767;
+pub(super) const VOID: i16 = -32767;
 
 /// Bytes of each label before the records.
-const LABELS: [usize; 3] = [80, 648, 2700];
+pub(super) const LABELS: [usize; 3] = [80, 648, 2700];
 
 /// Bytes of a record besides its heights: eight before and four after.
 const AROUND: usize = 12;
 
 /// The first byte of every record.
-const SENTINEL: u8 = 0xaa;
+pub(super) const SENTINEL: u8 = 0xaa;
 
 /// No depth in sign and magnitude is greater; beyond it, the height is in two's complement.
 const DEEPEST: i16 = -16_000;

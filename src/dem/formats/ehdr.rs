@@ -8,7 +8,8 @@
 use glam::{DAffine2, DVec2};
 
 use crate::dem_file::DemFile;
-use crate::dem_format::{DemFormat, Recognition, any_size};
+use crate::dem_format::{DemFormat, FormatWriter, Recognition, any_size};
+use crate::formats::ehdr_write::write;
 use crate::formats::header::{HeaderFields, StatedNoData};
 use crate::formats::plain_raster::{self, PlainRaster};
 use crate::formats::sample_layout::{FileSize, NoData, SampleLayout};
@@ -26,7 +27,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     reader: |file| plain_raster::read(file, plain),
     windows: Some(|file, content, _| plain_raster::windows(file, content, plain)),
     most_bytes: any_size,
-    writer: None,
+    writer: Some(FormatWriter { extensions: &["flt", "bil"], write }),
     windows_writer: None,
 };
 

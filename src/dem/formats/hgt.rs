@@ -6,7 +6,8 @@
 use glam::DVec2;
 
 use crate::dem_file::DemFile;
-use crate::dem_format::{DemFormat, Recognition};
+use crate::dem_format::{DemFormat, FormatWriter, Recognition};
+use crate::formats::degree_square::{degree_corner, nodes_in_words};
 use crate::formats::plain_raster::{self, PlainRaster};
 use crate::formats::sample_layout::{FileSize, NoData, SampleLayout};
 use crate::written::{WriteError, WrittenDem};
@@ -24,7 +25,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     reader: |file| plain_raster::read(file, plain),
     windows: Some(|file, content, _| plain_raster::windows(file, content, plain)),
     most_bytes,
-    writer: Some(write),
+    writer: Some(FormatWriter { extensions: &["hgt"], write }),
     windows_writer: None,
 };
 
@@ -32,9 +33,6 @@ const VOID: i16 = -32768;
 
 /// Columns and rows of tiles: 3″, 1″, 1″ north of 50° with every other column, and 0.5″.
 const SIZES: [(u32, u32); 4] = [(1201, 1201), (3601, 3601), (1801, 3601), (7201, 7201)];
-
-/// How far, in samples, the nodes of a raster may lie from those of the tile that is written.
-const OFF_SAMPLES: f64 = 1e-3;
 
 /// The largest tile.
 fn most_bytes(_: &[u8]) -> u64 {
@@ -87,33 +85,27 @@ fn corner(stem: &str) -> Option<DVec2> {
         .then_some(DVec2::new(longitude, latitude))
 }
 
-fn name(corner: DVec2) -> String {
+fn tile_name(corner: DVec2) -> String {
     let letter = |value: f64, plus: char, minus: char| if value < 0.0 { minus } else { plus };
     let (north, east) = (letter(corner.y, 'N', 'S'), letter(corner.x, 'E', 'W'));
     format!("{north}{:02}{east}{:03}", corner.y.abs(), corner.x.abs())
 }
 
-fn write(raster: &Raster, stem: &str) -> Result<WrittenDem, WriteError> {
+fn write(raster: &Raster, name: &str) -> Result<WrittenDem, WriteError> {
     let raster = &raster.in_meters();
     let raster = &FORMAT.north_up(raster)?;
     let size = (raster.width, raster.height);
     let is_wgs84 = raster.crs.as_ref().is_none_or(|crs| crs.epsg() == Some(4326));
-    let nodes = raster.node_extent();
-    let (corner, off) = (nodes.min.round(), raster.spacing() * OFF_SAMPLES);
-    let is_degree = (nodes.min - corner).abs().cmple(off).all()
-        && (nodes.max - corner - DVec2::ONE).abs().cmple(off).all();
-    if !is_wgs84 || !is_degree || !SIZES.contains(&size) {
+    let corner = degree_corner(raster).filter(|_| is_wgs84 && SIZES.contains(&size));
+    let Some(corner) = corner else {
         return Err(WriteError::Shape {
             format: FORMAT.name,
             wanted: "one degree of EPSG:4326 with nodes on whole degrees and 1201 x 1201, 3601 x 3601, 1801 x 3601 or 7201 x 7201 samples",
-            found: format!(
-                "{} x {} samples from ({}, {}) to ({}, {})",
-                size.0, size.1, nodes.min.x, nodes.min.y, nodes.max.x, nodes.max.y
-            ),
+            found: nodes_in_words(raster),
         });
-    }
-    let wanted = name(corner);
-    if !stem.to_ascii_uppercase().starts_with(&wanted) {
+    };
+    let wanted = tile_name(corner);
+    if !name.to_ascii_uppercase().starts_with(&wanted) {
         return Err(WriteError::Name(wanted));
     }
     let (least, greatest) = (f64::from(VOID) + 1.0, f64::from(i16::MAX));

@@ -5,11 +5,19 @@
 
 mod ascii;
 mod bt;
+mod degree_square;
 mod dted;
+mod dted_write;
 mod ehdr;
+mod ehdr_write;
 mod envi;
+#[cfg(feature = "gpkg")]
+mod gpkg;
+#[cfg(feature = "gpkg")]
+mod gpkg_tiles;
 mod header;
 pub mod height_encoding;
+mod hfa;
 mod hgt;
 mod plain_raster;
 mod png;
@@ -21,12 +29,13 @@ mod terragen;
 pub(crate) mod text;
 mod usgs;
 mod xyz;
+mod xyz_write;
 
 use crate::dem_format::{DemFormat, Recognition};
 use crate::tiff::geotiff;
 
 /// The formats, in the order in which their content is tried.
-pub static FORMATS: [&DemFormat; 13] = [
+pub static FORMATS: &[&DemFormat] = &[
     &geotiff::FORMAT,
     &ascii::FORMAT,
     &envi::FORMAT,
@@ -39,23 +48,28 @@ pub static FORMATS: [&DemFormat; 13] = [
     &surfer::FORMAT,
     &xyz::FORMAT,
     &png::FORMAT,
+    &hfa::FORMAT,
+    #[cfg(feature = "gpkg")]
+    &gpkg::FORMAT,
     &raw::FORMAT,
 ];
 
 /// The extensions of the formats that are written, for messages.
-pub const WRITTEN_EXTENSIONS: &str = ".tif, .asc, .bt, .hgt or .png";
+pub const WRITTEN_EXTENSIONS: &str = ".tif, .asc, .flt, .bil, .bt, .xyz, .hgt, .dt0, .dt1, .dt2 or .png";
 
 impl DemFormat {
     /// The format that files with an extension, in any case and without the dot, are written in; `None` where none is.
     pub fn to_write(extension: &str) -> Option<&'static Self> {
         let lower = extension.to_ascii_lowercase();
-        FORMATS.into_iter().find(|format| format.writer.is_some() && format.has_extension(&lower))
+        let writes =
+            |format: &&Self| format.writer.is_some_and(|writer| writer.extensions.contains(&&*lower));
+        FORMATS.iter().copied().find(writes)
     }
 }
 
 /// The formats that are read, for messages: `GeoTIFF (.tif, .tiff), …`.
 pub(crate) fn list() -> String {
-    let entries = FORMATS.map(|format| {
+    let entries = FORMATS.iter().map(|format| {
         let all = format.extensions.iter().chain(format.shared_extensions);
         let mut extensions: Vec<String> = all.map(|extension| format!(".{extension}")).collect();
         if matches!(format.recognition, Recognition::HeaderFile { .. }) {
@@ -63,7 +77,7 @@ pub(crate) fn list() -> String {
         }
         format!("{} ({})", format.name, extensions.join(", "))
     });
-    entries.join(", ")
+    entries.collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]
@@ -91,5 +105,19 @@ mod tests {
             (Some("GeoTIFF"), Some("PNG"), Some("BT terrain"))
         );
         assert_eq!((name("dem"), name("btz"), name("")), (None, None, None));
+        // Tables of points: a grid among them would pass for more of them.
+        assert_eq!((name("csv"), name("txt")), (None, None));
+    }
+
+    #[test]
+    fn messages_list_every_extension_that_is_written() {
+        let written = FORMATS.iter().filter_map(|format| format.writer).flat_map(|writer| writer.extensions);
+        let mut written: Vec<String> = written.map(|extension| format!(".{extension}")).collect();
+        let mut listed: Vec<&str> =
+            WRITTEN_EXTENSIONS.split([',', ' ']).filter(|word| word.starts_with('.')).collect();
+        written.retain(|extension| extension != ".tiff");
+        written.sort();
+        listed.sort_unstable();
+        assert_eq!(listed, written);
     }
 }

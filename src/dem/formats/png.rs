@@ -12,7 +12,7 @@ use png::{BitDepth, ColorType, Transformations};
 
 use crate::companion::{projection_file_of, world_file_of};
 use crate::dem_file::DemFile;
-use crate::dem_format::{DemFormat, Recognition, any_size};
+use crate::dem_format::{DemFormat, FormatWriter, Recognition, any_size};
 use crate::formats::height_encoding::HeightEncoding;
 use crate::written::{WriteError, WrittenDem};
 use sandtable_raster::error::DemErrorKind;
@@ -31,7 +31,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     reader: read,
     windows: None,
     most_bytes: any_size,
-    writer: Some(write),
+    writer: Some(FormatWriter { extensions: &["png"], write }),
     windows_writer: None,
 };
 
@@ -162,7 +162,7 @@ fn number(bytes: &[u8]) -> f32 {
     bytes.iter().fold(0.0, |number, byte| number * 256.0 + f32::from(*byte))
 }
 
-fn write(raster: &Raster, _stem: &str) -> Result<WrittenDem, WriteError> {
+fn write(raster: &Raster, _name: &str) -> Result<WrittenDem, WriteError> {
     let raster = &raster.in_meters();
     let least = raster.samples.valid().fold(f64::INFINITY, f64::min);
     let greatest = raster.samples.valid().fold(f64::NEG_INFINITY, f64::max);

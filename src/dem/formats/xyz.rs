@@ -7,7 +7,8 @@
 use glam::{DVec2, DVec3, U64Vec2};
 
 use crate::dem_file::DemFile;
-use crate::dem_format::{DemFormat, Recognition, any_size};
+use crate::dem_format::{DemFormat, FormatWriter, Recognition, any_size};
+use crate::formats::xyz_write::write;
 use crate::point_text::PointText;
 use sandtable_base::limits::RASTER_SAMPLES;
 use sandtable_raster::error::DemErrorKind;
@@ -21,7 +22,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     reader: read,
     windows: None,
     most_bytes: any_size,
-    writer: None,
+    writer: Some(FormatWriter { extensions: &["xyz"], write }),
     windows_writer: None,
 };
 

@@ -1,5 +1,5 @@
-//! GeoTIFF: strips and tiles, integers and floats of 8 to 64 bits, uncompressed, LZW, deflate, PackBits, Zstandard
-//! and JPEG (one band of 8 bits), with predictors, classic and BigTIFF in both byte orders.
+//! GeoTIFF: strips and tiles, integers and floats of 8 to 64 bits, uncompressed, LZW, deflate, PackBits, Zstandard, LZMA,
+//! LERC and JPEG (one band of 8 bits), with predictors, classic and BigTIFF in both byte orders.
 //!
 //! Blocks that were never written (GDAL's sparse files) are no data, or 0 where the file states no value for that, as in GDAL.
 //! Of several bands the first is read, and where another is alpha, what it makes transparent is no data; of several images
@@ -11,7 +11,7 @@ use std::io::Cursor;
 use tiff::decoder::Decoder;
 
 use crate::dem_file::DemFile;
-use crate::dem_format::{DemFormat, Recognition, any_size};
+use crate::dem_format::{DemFormat, FormatWriter, Recognition, any_size};
 use crate::tiff::blocks;
 use crate::tiff::decoder::limits;
 use crate::tiff::fault::{self, decode_error};
@@ -34,7 +34,7 @@ pub(crate) static FORMAT: DemFormat = DemFormat {
     reader: read,
     windows: Some(windows),
     most_bytes: any_size,
-    writer: Some(write),
+    writer: Some(FormatWriter { extensions: &["tif", "tiff"], write }),
     windows_writer: Some(write_windows),
 };
 

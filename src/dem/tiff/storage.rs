@@ -65,9 +65,24 @@ pub(crate) enum Packing {
     PackBits,
     /// A Zstandard frame (RFC 8878).
     Zstd,
+    /// An XZ stream.
+    Lzma,
+    /// A LERC block, which may be packed again.
+    Lerc(LercPacking),
     /// A JPEG stream (Adobe's Technical Note 2): pictures, and heights of one band and 8 bits.
     Jpeg,
 }
+
+/// How LERC blocks are packed again (the tag `LercParameters` of libtiff).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum LercPacking {
+    Plain,
+    Deflate,
+    Zstd,
+}
+
+/// The tag in which libtiff keeps the version of LERC and how its blocks are packed again.
+const LERC_PARAMETERS: Tag = Tag::Unknown(50674);
 
 /// How rows were transformed before they were packed (TIFF 6.0, section 14; Adobe's Technical Note 3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,12 +115,19 @@ impl Storage {
             let found = decoder.find_tag_unsigned_vec::<u16>(tag).map_err(decode_error)?;
             Ok::<_, DemErrorKind>(found.filter(|values| !values.is_empty()).unwrap_or_else(|| vec![default]))
         };
-        let packing = packing(shorts(Tag::Compression, 1)?[0])?;
+        let packing = match shorts(Tag::Compression, 1)?[0] {
+            34887 => Packing::Lerc(lerc_packing(shorts(LERC_PARAMETERS, 0)?.get(1).copied())?),
+            compression => packing(compression)?,
+        };
         let depths = shorts(Tag::BitsPerSample, 1)?;
         let bands = shorts(Tag::SamplesPerPixel, 1)?[0];
         let is_planar = shorts(Tag::PlanarConfiguration, 1)?[0] == 2;
         let formats = shorts(Tag::SampleFormat, 1)?;
-        let predictor = predictor(shorts(Tag::Predictor, 1)?[0])?;
+        let predictor = match packing {
+            // Neither holds differences, whatever the tag says.
+            Packing::Lerc(_) | Packing::Jpeg => Predictor::Plain,
+            _ => predictor(shorts(Tag::Predictor, 1)?[0])?,
+        };
         // A tag of the wrong type counts as absent, as in GDAL.
         let extra = shorts(Tag::ExtraSamples, 0).unwrap_or_default();
         let is_tiled = decoder.get_chunk_type() == ChunkType::Tile;
@@ -185,6 +207,11 @@ impl Storage {
 
     pub fn row_bytes(&self) -> usize {
         self.decoded_bytes(self.block_width.into()) as usize
+    }
+
+    /// The rows that a block was packed with: all of a tile, those within the image of a strip.
+    pub fn stored_rows(&self, block: TiffBlock) -> u32 {
+        if self.is_tiled { self.block_height } else { block.window.height }
     }
 
     /// The type of samples that are read as elevation.
@@ -274,19 +301,27 @@ fn predictor(code: u16) -> Result<Predictor, DemErrorKind> {
     }
 }
 
+fn lerc_packing(again: Option<u16>) -> Result<LercPacking, DemErrorKind> {
+    match again.unwrap_or(0) {
+        0 => Ok(LercPacking::Plain),
+        1 => Ok(LercPacking::Deflate),
+        2 => Ok(LercPacking::Zstd),
+        other => Err(fault::unsupported(format!("LERC packed by scheme {other}"), TO_DEFLATE)),
+    }
+}
+
 fn packing(compression: u16) -> Result<Packing, DemErrorKind> {
     let what = match compression {
         1 => return Ok(Packing::Plain),
         5 => return Ok(Packing::Lzw),
         8 | 32946 => return Ok(Packing::Deflate),
         32773 => return Ok(Packing::PackBits),
+        34925 => return Ok(Packing::Lzma),
         50000 => return Ok(Packing::Zstd),
         2..=4 => "fax compression".into(),
         7 => return Ok(Packing::Jpeg),
         6 => "old JPEG compression".into(),
         34712 => "JPEG 2000 compression".into(),
-        34887 => "LERC compression".into(),
-        34925 => "LZMA compression".into(),
         50001 => "WebP compression".into(),
         50002 | 52546 => "JPEG XL compression".into(),
         other => format!("compression scheme {other}"),
@@ -304,6 +339,10 @@ fn expansion(packing: Packing) -> u64 {
         Packing::PackBits => 64,
         // A block of 128 KiB that repeats one byte takes four.
         Packing::Zstd => 32_768,
+        // A match of 273 bytes takes a third of a bit at least.
+        Packing::Lzma => 7090,
+        // Level ground of any size takes a hundred bytes: the largest block of windows, 32 MiB, is so many times larger.
+        Packing::Lerc(_) => 1 << 18,
         // A macroblock of 16 × 16 pixels takes six codes of two bits at least.
         Packing::Jpeg => 512,
     }

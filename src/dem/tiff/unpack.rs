@@ -2,7 +2,8 @@
 //!
 //! The `tiff` crate reads the directory, but not blocks: it refuses valid LZW streams of small flat tiles, changes
 //! values by their photometric meaning, and unpacks Zstandard through C. So blocks go straight to the crates that
-//! unpack: `flate2`, `weezl`, `ruzstd` and `zune-jpeg`, each in one call from memory into a buffer that is kept.
+//! unpack: `flate2`, `weezl`, `ruzstd`, `lzma-rust2` and `zune-jpeg`, each in one call from memory into a buffer that is
+//! kept.
 
 use std::borrow::Cow;
 use std::io::Read;
@@ -15,7 +16,9 @@ use weezl::{BitOrder, LzwStatus};
 
 use crate::tiff::fault::{self, TO_DEFLATE};
 use crate::tiff::jpeg_block::{self, JpegBlock};
-use crate::tiff::storage::{Packing, Storage, TiffBlock};
+use crate::tiff::lerc_block;
+use crate::tiff::storage::{LercPacking, Packing, Storage, TiffBlock};
+use crate::tiff::xz;
 use sandtable_raster::error::DemErrorKind;
 
 /// Packed bytes beyond twice what a block unpacks to are ignored; no packing needs more.
@@ -63,7 +66,16 @@ enum Decompressor {
     Lzw(weezl::decode::Decoder),
     PackBits,
     Zstd(Box<FrameDecoder>),
+    Lzma,
     Jpeg,
+    /// What unpacks to a LERC block; none where blocks are such.
+    Lerc(Option<LercWrapping>),
+}
+
+/// What LERC blocks are packed by again.
+enum LercWrapping {
+    Deflate(Decompress),
+    Zstd(Box<FrameDecoder>),
 }
 
 impl<'a> Unpacker<'a> {
@@ -74,7 +86,13 @@ impl<'a> Unpacker<'a> {
             Packing::Lzw => Decompressor::Lzw(LzwDecoder::with_tiff_size_switch(BitOrder::Msb, 8)),
             Packing::PackBits => Decompressor::PackBits,
             Packing::Zstd => Decompressor::Zstd(Box::default()),
+            Packing::Lzma => Decompressor::Lzma,
             Packing::Jpeg => Decompressor::Jpeg,
+            Packing::Lerc(LercPacking::Plain) => Decompressor::Lerc(None),
+            Packing::Lerc(LercPacking::Deflate) => {
+                Decompressor::Lerc(Some(LercWrapping::Deflate(Decompress::new(true))))
+            }
+            Packing::Lerc(LercPacking::Zstd) => Decompressor::Lerc(Some(LercWrapping::Zstd(Box::default()))),
         };
         Self { storage, decompressor: Some(decompressor) }
     }
@@ -106,6 +124,17 @@ impl<'a> Unpacker<'a> {
             Decompressor::Lzw(decoder) => unpack_lzw(decoder, &packed, rows),
             Decompressor::PackBits => unpack_bits(&packed, rows),
             Decompressor::Zstd(decoder) => unpack_zstd(decoder, &packed, rows),
+            Decompressor::Lzma => xz::unpack(&packed, rows),
+            Decompressor::Lerc(wrapping) => {
+                let blob = match wrapping {
+                    None => packed,
+                    Some(wrapping) => {
+                        Cow::Owned(unwrapped(wrapping, &packed, most_packed(self.storage, block)))
+                    }
+                };
+                lerc_block::decode(&blob, self.storage, block, rows)?;
+                needed
+            }
             Decompressor::Jpeg => {
                 let JpegBlock { samples, row_bytes } =
                     jpeg_block::decode(&packed, self.storage, block, BLACK_IS_ZERO)?;
@@ -142,6 +171,23 @@ fn whole(block: TiffBlock, unpacked: usize, needed: usize) -> Result<(), DemErro
     Err(fault::broken(format!("block {index} holds {unpacked} of the {needed} bytes of its rows")))
 }
 
+/// The most bytes that a block is packed to: those of all rows that it was packed with.
+fn most_packed(storage: &Storage, block: TiffBlock) -> usize {
+    let unpacked = storage.row_bytes() * storage.stored_rows(block) as usize;
+    unpacked.saturating_mul(MOST_GROWTH).saturating_add(SLACK)
+}
+
+/// The LERC block that is packed again, of at most `most` bytes.
+fn unwrapped(wrapping: &mut LercWrapping, packed: &[u8], most: usize) -> Vec<u8> {
+    let mut blob = vec![0; most];
+    let length = match wrapping {
+        LercWrapping::Deflate(inflater) => inflate(inflater, packed, &mut blob),
+        LercWrapping::Zstd(decoder) => unpack_zstd(decoder, packed, &mut blob),
+    };
+    blob.truncate(length);
+    blob
+}
+
 /// Where the packed bytes of a block lie in a file; empty beyond its end.
 ///
 /// # Errors
@@ -153,8 +199,7 @@ pub(crate) fn packed_range(
 ) -> Result<Range<usize>, DemErrorKind> {
     let unlisted = || fault::broken(format!("its tables do not state where block {} lies", block.index));
     let (start, bytes) = storage.place(block.index).ok_or_else(unlisted)?;
-    let needed = storage.row_bytes() * block.window.height as usize;
-    let most = needed.saturating_mul(MOST_GROWTH).saturating_add(SLACK);
+    let most = most_packed(storage, block);
     let start = usize::try_from(start).unwrap_or(usize::MAX).min(file_bytes);
     let bytes = usize::try_from(bytes).unwrap_or(usize::MAX).min(most);
     Ok(start..start.saturating_add(bytes).min(file_bytes))

@@ -33,7 +33,7 @@ use sandtable_raster::windows::{ByteRows, RasterWindow, Windows};
 const TILE: u32 = 256;
 
 /// Writes a raster; every raster can be.
-pub(crate) fn write(raster: &Raster, _stem: &str) -> Result<WrittenDem, WriteError> {
+pub(crate) fn write(raster: &Raster, _name: &str) -> Result<WrittenDem, WriteError> {
     Ok(write_described(raster, ""))
 }
 

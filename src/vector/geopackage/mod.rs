@@ -8,16 +8,10 @@
 //!                 └ 1: byte order, 2–4: envelope, 5: empty, 6: extended
 //! ```
 //!
-//! A database is a program as much as data: views are queries, and they may run for ever. It is opened from memory and
-//! read only, without extensions or functions that have side effects, with limits on the length of values and
-//! statements, and it is stopped after more steps than real files take.
+//! `sandtable-database` opens the file within limits.
 
 mod wkb;
 
-use std::io::Read;
-use std::ops::Range;
-
-use rusqlite::limits::Limit;
 use rusqlite::types::ValueRef;
 use rusqlite::{Connection, ErrorCode, Row};
 use serde_json::{Number, Value};
@@ -28,15 +22,10 @@ use crate::feature::{Properties, VectorLayer};
 use crate::geopackage::wkb::WkbError;
 use crate::hints::VectorHints;
 use sandtable_base::bytes::ByteCursor;
+use sandtable_database::{open, quoted};
 use sandtable_geom::crs::Crs;
 
 const FORMAT: &str = "GeoPackage";
-/// Steps of SQLite's virtual machine between two looks at their number.
-const STEPS_BETWEEN_CHECKS: i32 = 100_000;
-/// Steps that any file may take: a second or two.
-const FREE_STEPS: u64 = 100_000_000;
-/// Steps for each byte of the file, of which reading takes less than one.
-const STEPS_PER_BYTE: u64 = 10;
 
 struct GpkgTable {
     name: String,
@@ -69,44 +58,6 @@ pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, Vec
     let mut layer = LayerBuilder::new(crs);
     read_features(&connection, &table, &mut layer)?;
     Ok(layer.finish())
-}
-
-fn open(bytes: &[u8]) -> rusqlite::Result<Connection> {
-    let mut connection = Connection::open_in_memory()?;
-    let longest_value = i32::try_from(bytes.len()).unwrap_or(i32::MAX).max(1 << 20);
-    let limits = [
-        (Limit::SQLITE_LIMIT_LENGTH, longest_value),
-        (Limit::SQLITE_LIMIT_SQL_LENGTH, 1 << 20),
-        (Limit::SQLITE_LIMIT_EXPR_DEPTH, 100),
-        (Limit::SQLITE_LIMIT_COMPOUND_SELECT, 50),
-        (Limit::SQLITE_LIMIT_ATTACHED, 0),
-        (Limit::SQLITE_LIMIT_TRIGGER_DEPTH, 1),
-        (Limit::SQLITE_LIMIT_WORKER_THREADS, 0),
-    ];
-    connection.deserialize_read_exact("main", without_log(bytes), bytes.len(), true)?;
-    for (limit, value) in limits {
-        connection.set_limit(limit, value)?;
-    }
-    let max_steps = FREE_STEPS.saturating_add(STEPS_PER_BYTE.saturating_mul(bytes.len() as u64));
-    let mut checks_left = max_steps / STEPS_BETWEEN_CHECKS.unsigned_abs() as u64;
-    let is_exhausted = move || {
-        checks_left = checks_left.saturating_sub(1);
-        checks_left == 0
-    };
-    connection.progress_handler(STEPS_BETWEEN_CHECKS, Some(is_exhausted))?;
-    connection
-        .execute_batch("PRAGMA trusted_schema = OFF; PRAGMA query_only = ON; PRAGMA cell_size_check = ON;")?;
-    Ok(connection)
-}
-
-/// The database marked as one without a write-ahead log (database file format, section 1.3: bytes 18 and 19), since no
-/// log lies beside it in memory. Changes that are only in such a log are not seen.
-fn without_log(bytes: &[u8]) -> impl Read {
-    const VERSIONS: Range<usize> = 18..20;
-    const NO_LOG: [u8; 2] = [1, 1];
-    let before = &bytes[..bytes.len().min(VERSIONS.start)];
-    let after = bytes.get(VERSIONS.end..).unwrap_or_default();
-    before.chain(&NO_LOG[..]).chain(after)
 }
 
 fn refused(place: &str, error: rusqlite::Error) -> VectorError {
@@ -204,10 +155,6 @@ fn read_features(
         layer.add(parts, properties)?;
     }
     Ok(())
-}
-
-fn quoted(name: &str) -> String {
-    format!("\"{}\"", name.replace('"', "\"\""))
 }
 
 /// Returns the columns of a table or view. The pragma is queried because the names that a statement reports may not be

@@ -51,6 +51,36 @@ fn there_and_back_the_heights_are_the_files() {
 }
 
 #[test]
+fn through_binary_grids_and_points_the_heights_stay_the_files() {
+    let scratch = grid();
+    let out = convert(&scratch, &["grid.asc", "a.flt"]).ok();
+    assert!(out.contains("format       ESRI binary grid, float32") && scratch.at("a.hdr").exists(), "{out}");
+    assert!(convert(&scratch, &["a.flt", "b.bil"]).ok().contains("ESRI binary grid, int16"));
+    let out = convert(&scratch, &["b.bil", "c.xyz"]).ok();
+    assert!(out.contains("1 of 12 points have no data, written as nan"), "{out}");
+    convert(&scratch, &["c.xyz", "d.asc"]).ok();
+    assert_eq!(std::fs::read_to_string(scratch.at("d.asc")).expect("it was written"), GRID);
+}
+
+#[test]
+fn a_degree_becomes_a_cell_of_dted_of_the_level_of_its_rows() {
+    let scratch = Scratch::new();
+    let rows =
+        (0..121).map(|row| (0..121).map(|column| format!("{}.4 ", row + column)).collect::<String>() + "\n");
+    let cell = 1.0 / 120.0;
+    let head =
+        format!("ncols 121\nnrows 121\nxllcenter 7\nyllcenter 43\ncellsize {cell}\nNODATA_value -9999\n");
+    scratch.write("n43.asc", head + &rows.collect::<String>());
+    scratch.write("n43.prj", "EPSG:4326");
+    let out = convert(&scratch, &["n43.asc", "n43.dt0"]).ok();
+    assert!(out.contains("DTED, int16") && out.contains("heights are rounded to whole meters"), "{out}");
+    let info = run_in(scratch.folder(), &["dem", "info", "n43.dt0"]).ok();
+    assert!(info.contains("121 columns, 121 rows") && info.contains("EPSG:4326"), "{info}");
+    let refused = convert(&scratch, &["n43.asc", "n43.dt2"]).failed(1);
+    assert!(refused.contains("3601 rows 1″ apart") && refused.contains("rows of a .dt0"), "{refused}");
+}
+
+#[test]
 fn a_cell_in_meters_for_a_raster_in_degrees_is_refused_with_its_zone() {
     let scratch = grid();
     let refused = convert(&scratch, &["degrees.asc", "out.tif", "--cell", "30"]).failed(1);
@@ -93,7 +123,8 @@ fn no_input_is_written_over_and_nothing_is_left_of_what_fails() {
     for (arguments, code) in [
         (&["grid.asc", "grid.asc"][..], 1),
         (&["grid.asc", "none/out.tif"], 1),
-        (&["grid.asc", "out.xyz"], 2),
+        (&["grid.asc", "out.dem"], 2),
+        (&["grid.asc", "out.dt1"], 1),
         (&["grid.asc", "out"], 2),
         (&["grid.asc"], 2),
         (&["grid.asc", "degrees.asc", "out.tif"], 1),

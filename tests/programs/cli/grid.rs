@@ -68,7 +68,7 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
     scratch.write("plane.geojson", LINE.replace(",25]", "]"));
     let grid = |more: &[&str]| run_in(scratch.folder(), &[&["dem", "grid"], more].concat()).failed(1);
     scratch.write("points.tif", "1,2,3");
-    for name in ["out.xyz", "points.csv"] {
+    for name in ["out.las", "points.csv"] {
         let arguments = ["dem", "grid", "points.csv", name, "--cell", "1"];
         assert!(
             run_in(scratch.folder(), &arguments).failed(2).contains("name a file that ends so"),
@@ -93,6 +93,10 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
         let said = grid(arguments);
         assert!(said.contains(wanted), "{arguments:?}: {said}");
     }
+    // The last file may be meant as points.
+    scratch.write("more.xyz", "1 2 3\n");
+    assert!(grid(&["points.csv", "more.xyz", "--cell", "1"]).contains("may be points to read"));
+    std::fs::remove_file(scratch.at("more.xyz")).expect("it is there");
     assert_eq!(run_in(scratch.folder(), &["dem", "grid", "points.csv", "--cell", "1"]).code, 2);
     assert_eq!(run_in(scratch.folder(), &["dem", "grid", "points.csv", "out.asc"]).code, 2);
     assert_eq!(scratch.names(), ["bad.csv", "line.geojson", "plane.geojson", "points.csv", "points.tif"]);

@@ -55,6 +55,49 @@ fn results_come_in_order_with_their_place_dataset_and_status() {
 }
 
 #[test]
+fn lookups_of_open_elevation_are_answered_in_its_form() {
+    let (_scratch, server) = server();
+    let got = server.get("/api/v1/lookup?locations=50.005,10.005|50.015,10.015|60,10");
+    assert_eq!(got.header("content-type"), "application/json");
+    let expected = json!({"results": [
+        {"latitude": 50.005, "longitude": 10.005, "elevation": 90.0},
+        // The first dataset has a hole here, the second a height.
+        {"latitude": 50.015, "longitude": 10.015, "elevation": 2.0},
+        {"latitude": 60.0, "longitude": 10.0, "elevation": null, "error": "outside the elevation that is served"},
+    ]});
+    assert_eq!(got.ok(), expected);
+    let objects = r#"{"locations": [{"latitude": 50.005, "longitude": 10.005},
+        {"latitude": 50.015, "longitude": 10.015}, {"longitude": 10, "latitude": 60}]}"#;
+    let typed = "application/json";
+    assert_eq!(server.post("/api/v1/lookup", typed, objects).body, got.body);
+    let texts = r#"{"locations": ["50.005,10.005", "50.015,10.015", "60,10"]}"#;
+    assert_eq!(server.post("/api/v1/lookup", typed, texts).body, got.body);
+    let topo = server.get("/v1/grid,other?locations=50.005,10.005|50.015,10.015|60,10").ok();
+    assert_eq!(elevations(&topo), elevations(&got.ok()), "both addresses return the same heights");
+    let object = r#"{"locations": [{"latitude": 50.005, "longitude": 10.005}]}"#;
+    assert_eq!(server.post("/v1/grid", typed, object).ok()["results"][0]["elevation"], 90.0);
+}
+
+#[test]
+fn wrong_lookups_are_refused_with_the_reason() {
+    let (_scratch, server) = server();
+    let json = "application/json";
+    for (body, reason) in [
+        (r#"{"locations": [{"latitude": 91, "longitude": 0}]}"#, "location 1 is '91,0'"),
+        (r#"{"locations": [{"latitude": "50", "longitude": 10}]}"#, "longitude"),
+        (r#"{"locations": [{"lat": 50, "lng": 10}]}"#, "longitude"),
+        (r#"{"locations": []}"#, "'locations' is missing"),
+        ("{}", "'locations' is missing"),
+    ] {
+        let refused = server.post("/api/v1/lookup", json, body).refused(400);
+        assert!(refused.contains(reason), "{body}: {refused}");
+    }
+    let plain = folder();
+    let local = Server::start(plain.folder(), &["plain.asc"]);
+    assert!(local.get("/api/v1/lookup?locations=1,2").refused(400).contains("crs=native"));
+}
+
+#[test]
 fn get_form_and_json_say_the_same() {
     let (_scratch, server) = server();
     let got = server.get("/v1/grid?locations=50.01,10.01%7C50.02,10.03&interpolation=bilinear").body;
