@@ -5,6 +5,7 @@
 //! thousandfold by them. Elements lie at most [`XML_DEPTH`] deep.
 
 use std::borrow::Cow;
+use std::cell::Cell;
 use std::error::Error;
 
 use quick_xml::XmlVersion;
@@ -25,6 +26,8 @@ pub(crate) struct XmlReader<'a> {
     text: &'a str,
     format: &'static str,
     depth: usize,
+    /// Bytes of the text whose line breaks are counted, and how many there are: places are asked for in order.
+    counted: Cell<(usize, usize)>,
 }
 
 /// An element: its name and attributes and, once [`XmlReader::read`], its content.
@@ -77,7 +80,7 @@ impl<'a> XmlReader<'a> {
     pub fn new(text: &'a str, format: &'static str) -> Self {
         let mut reader = Reader::from_str(text);
         reader.config_mut().expand_empty_elements = true;
-        Self { reader, text, format, depth: 0 }
+        Self { reader, text, format, depth: 0, counted: Cell::new((0, 0)) }
     }
 
     /// Returns the error that the document is broken where the reader stands.
@@ -94,13 +97,23 @@ impl<'a> XmlReader<'a> {
         VectorError::broken(self.format, self.line_at(element.offset), source)
     }
 
-    fn offset(&self) -> usize {
-        usize::try_from(self.reader.buffer_position()).unwrap_or(usize::MAX).min(self.text.len())
+    /// Returns the line of `element` as text.
+    pub fn line_of(&self, element: &XmlElement<'_>) -> String {
+        self.line_at(element.offset)
     }
 
-    fn line_at(&self, offset: usize) -> String {
-        let breaks = self.text.as_bytes()[..offset].iter().filter(|&&byte| byte == b'\n').count();
+    /// Returns the line of the byte at `offset` as text.
+    pub fn line_at(&self, offset: usize) -> String {
+        let (from, before) = Some(self.counted.get()).filter(|(from, _)| *from <= offset).unwrap_or_default();
+        let breaks =
+            before + self.text.as_bytes()[from..offset].iter().filter(|&&byte| byte == b'\n').count();
+        self.counted.set((offset, breaks));
         format!("line {}", breaks + 1)
+    }
+
+    /// Returns the bytes of the document up to where the reader is.
+    pub fn offset(&self) -> usize {
+        usize::try_from(self.reader.buffer_position()).unwrap_or(usize::MAX).min(self.text.len())
     }
 
     /// Opens the outermost element.
