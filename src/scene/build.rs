@@ -115,6 +115,7 @@ pub fn build_with(
     for sentence in attributes::notes(&collected.default_counts) {
         collected.findings.add(FindingCode::DefaultTaken, 0..0, sentence);
     }
+    collected.tag_notes.report(&mut collected.findings);
 
     graphics::lay(document, &sources, &lattice.extent(), &mut collected)?;
     let exact = ExactGround::new(&frame, &lattice, assets, loaded.all_samples)?;
@@ -131,6 +132,7 @@ pub fn build_with(
     let bounds = scale.ground(&lattice).bounds(height_range_m);
     let military = military::symbols(&sources, &lattice, &mut collected.findings)?;
     let cameras = views::cameras(&frame, &lattice)?;
+    sources.report_reading(&mut collected.findings);
     let reaches = sources.reaches();
     reaches
         .iter()

@@ -9,6 +9,7 @@ use crate::roads::profiles::{BridgeProfile, RoadProfile};
 use crate::scene_findings::SceneFindings;
 use crate::scene_graphic::SceneGraphic;
 use crate::symbols::LineSymbol;
+use crate::tag_notes::TagNotes;
 use crate::water::lake_level::LakeSurface;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::FeatureId;
@@ -39,6 +40,8 @@ pub struct SceneBuilder {
     pub findings: SceneFindings,
     /// The number of expressions without a value, by key and default.
     pub default_counts: DefaultCounts,
+    /// Properties that tables read by themselves and that were guessed at or not understood.
+    pub tag_notes: TagNotes,
     /// Measures of single features.
     pub report: SceneReport,
     /// The longitudinal profile of every road that the ground follows.
@@ -61,6 +64,7 @@ impl SceneBuilder {
             lakes: Vec::new(),
             findings,
             default_counts: DefaultCounts::new(),
+            tag_notes: TagNotes::default(),
             report: SceneReport::default(),
             profiles: Vec::new(),
             bridge_profiles: Vec::new(),

@@ -1,13 +1,15 @@
 //! Lines and polygons of a feature, from inline points or a vector file, in world coordinates.
 
 use std::cell::{Cell, RefCell};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 use std::sync::Arc;
 
 use glam::DVec2;
 
 use crate::assets::Assets;
 use crate::attributes::Attributes;
+use crate::scene_findings::SceneFindings;
 use crate::source_reach::SourceReach;
 use crate::world_frame::WorldFrame;
 use sandtable_base::limits::{ASSET_BYTES, RING_CROSSINGS};
@@ -15,6 +17,7 @@ use sandtable_base::message::suggest::quoted;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::expression::Expression;
 use sandtable_description::feature_source::FeatureSource;
+use sandtable_description::finding_code::FindingCode;
 use sandtable_description::scalar::Scalar;
 use sandtable_description::selection::Selection;
 use sandtable_description::stated::Stated;
@@ -42,6 +45,17 @@ pub struct Sources<'a> {
     crossings_left: Cell<usize>,
     /// Where the sources lie, by the first byte that states them.
     reaches: RefCell<BTreeMap<usize, SourceReach>>,
+    /// What reading the files left out or took for something else, in the order of reading.
+    reading: RefCell<Vec<ReadingNote>>,
+}
+
+/// A sentence on how a file was read.
+struct ReadingNote {
+    code: FindingCode,
+    /// The bytes of the scene file that name the file.
+    span: Range<usize>,
+    file: String,
+    text: String,
 }
 
 /// A shape with the properties of its feature.
@@ -65,6 +79,7 @@ impl<'a> Sources<'a> {
             overridden: RefCell::default(),
             crossings_left,
             reaches: RefCell::default(),
+            reading: RefCell::default(),
         }
     }
 
@@ -227,13 +242,27 @@ impl<'a> Sources<'a> {
         }
         match (filter.explain_no_match(layer), &source.selection) {
             (Some(reason), Some(selection)) => unmatched(selection).with_help(reason),
+            _ if layer.features.is_empty() => {
+                let message = match &source.layer {
+                    Some(wanted) => format!("the layer '{}' of '{name}' holds no features", wanted.as_str()),
+                    None => format!("'{name}' holds no features"),
+                };
+                let error = self.frame.document.error(file, message);
+                let reasons: Vec<&str> = layer.reading_notes().map(String::as_str).collect();
+                match reasons.is_empty() {
+                    true => error.with_help("name another file or layer, or remove the table"),
+                    false => error.with_help(reasons.join("; ")),
+                }
+            }
             _ => {
                 let message = format!("no feature of '{name}' that matches has the shape needed here");
-                let kinds: std::collections::BTreeSet<_> =
+                let kinds: BTreeSet<_> =
                     layer.features.iter().map(|feature| feature.geometry.kind()).collect();
                 let kinds: Vec<_> = kinds.into_iter().collect();
-                let count = layer.features.len();
-                let help = format!("the file's {count} features are {}", kinds.join(", "));
+                let help = match layer.features.len() {
+                    1 => format!("the file's only feature is of {}", kinds.join(", ")),
+                    count => format!("the file's {count} features are {}", kinds.join(" and ")),
+                };
                 self.frame.document.error(file, message).with_help(help)
             }
         }
@@ -259,8 +288,28 @@ impl<'a> Sources<'a> {
         let layer = read::read(file, &bytes, &hints);
         companions.check().map_err(|error| self.frame.document.error(file, error))?;
         let layer = Arc::new(layer.map_err(|error| self.unread(file, wanted, error))?);
+        self.note_reading(file, &layer);
         self.layers.borrow_mut().insert(key, Arc::clone(&layer));
         Ok(layer)
+    }
+
+    /// Keeps what reading a file left out. What several layers of a file have in common is kept once.
+    fn note_reading(&self, file: &Stated<String>, layer: &VectorLayer) {
+        let mut reading = self.reading.borrow_mut();
+        let faults = layer.faults.iter().map(|text| (FindingCode::RecordsBroken, text));
+        for (code, text) in faults.chain(layer.notes.iter().map(|text| (FindingCode::VectorRead, text))) {
+            if !reading.iter().any(|known| known.text == *text && known.file == file.as_str()) {
+                let span = file.span().unwrap_or_default();
+                reading.push(ReadingNote { code, span, file: file.to_string(), text: text.clone() });
+            }
+        }
+    }
+
+    /// Reports what reading the files left out, or took for something else, once.
+    pub fn report_reading(&self, findings: &mut SceneFindings) {
+        for ReadingNote { code, span, file, text } in self.reading.take() {
+            findings.add(code, span, format!("'{}': {text}", quoted(&file)));
+        }
     }
 
     /// The system that the file of a source states and that its `crs` takes the place of; `None` of a source that was not
