@@ -202,21 +202,23 @@ impl<'a> Sources<'a> {
             Some(Selection::Holding(condition)) => attributes.holds(condition),
             _ => true,
         };
-        let shapes: Vec<_> = filter
+        let (mut shapes, mut of_other_shape) = (Vec::new(), BTreeMap::<&str, usize>::new());
+        let matching = filter
             .select(&layer)
             .map(|(index, feature)| (Attributes::new(Arc::clone(&layer), index), feature))
-            .filter(|(attributes, _)| holds(attributes))
-            .flat_map(|(attributes, feature)| {
-                pick(&feature.geometry).into_iter().map(move |shape| Sourced {
-                    attributes: attributes.clone(),
-                    shape,
-                    crossings: 0,
-                })
-            })
-            .collect();
+            .filter(|(attributes, _)| holds(attributes));
+        for (attributes, feature) in matching {
+            let picked = pick(&feature.geometry);
+            if picked.is_empty() {
+                *of_other_shape.entry(feature.geometry.kind()).or_default() += 1;
+            }
+            let sourced = |shape| Sourced { attributes: attributes.clone(), shape, crossings: 0 };
+            shapes.extend(picked.into_iter().map(sourced));
+        }
         if shapes.is_empty() {
             return Err(self.nothing_found(source, file, &filter, &layer));
         }
+        self.note_other_shapes(file, &of_other_shape);
         Ok((layer.crs.clone(), shapes))
     }
 
@@ -228,6 +230,9 @@ impl<'a> Sources<'a> {
         layer: &Arc<VectorLayer>,
     ) -> Diagnostic {
         let name = file.as_str();
+        if layer.features.is_empty() {
+            return self.no_features(source, file, layer);
+        }
         let unmatched =
             |selection| self.frame.document.error(selection, format!("no feature of '{name}' matches"));
         if let Some(selection) = &source.selection
@@ -242,18 +247,6 @@ impl<'a> Sources<'a> {
         }
         match (filter.explain_no_match(layer), &source.selection) {
             (Some(reason), Some(selection)) => unmatched(selection).with_help(reason),
-            _ if layer.features.is_empty() => {
-                let message = match &source.layer {
-                    Some(wanted) => format!("the layer '{}' of '{name}' holds no features", wanted.as_str()),
-                    None => format!("'{name}' holds no features"),
-                };
-                let error = self.frame.document.error(file, message);
-                let reasons: Vec<&str> = layer.reading_notes().map(String::as_str).collect();
-                match reasons.is_empty() {
-                    true => error.with_help("name another file or layer, or remove the table"),
-                    false => error.with_help(reasons.join("; ")),
-                }
-            }
             _ => {
                 let message = format!("no feature of '{name}' that matches has the shape needed here");
                 let kinds: BTreeSet<_> =
@@ -266,6 +259,21 @@ impl<'a> Sources<'a> {
                 self.frame.document.error(file, message).with_help(help)
             }
         }
+    }
+
+    /// The error of a file or a layer without features, with what reading it left out.
+    fn no_features(&self, source: &FeatureSource, file: &Stated<String>, layer: &VectorLayer) -> Diagnostic {
+        let name = file.as_str();
+        let message = match &source.layer {
+            Some(wanted) => format!("the layer '{}' of '{name}' holds no features", wanted.as_str()),
+            None => format!("'{name}' holds no features"),
+        };
+        let reasons: Vec<&str> = layer.reading_notes().map(String::as_str).collect();
+        let help = match reasons.is_empty() {
+            true => "name another file or layer, or remove the table".to_owned(),
+            false => reasons.join("; "),
+        };
+        self.frame.document.error(file, message).with_help(help)
     }
 
     fn layer(
@@ -302,6 +310,24 @@ impl<'a> Sources<'a> {
                 let span = file.span().unwrap_or_default();
                 reading.push(ReadingNote { code, span, file: file.to_string(), text: text.clone() });
             }
+        }
+    }
+
+    /// Keeps how many features of a table match and are left out, because they have another shape than it draws.
+    fn note_other_shapes(&self, file: &Stated<String>, of_other_shape: &BTreeMap<&str, usize>) {
+        let count: usize = of_other_shape.values().sum();
+        if count == 0 {
+            return;
+        }
+        let kinds: Vec<&str> = of_other_shape.keys().copied().collect();
+        let (features, have) = if count == 1 { ("feature", "has") } else { ("features", "have") };
+        let kinds = kinds.join(" and ");
+        let text =
+            format!("left out: {count} {features} that {have} another shape than the table draws: {kinds}");
+        let (code, span) = (FindingCode::LeftOut, file.span().unwrap_or_default());
+        let mut reading = self.reading.borrow_mut();
+        if !reading.iter().any(|known| known.text == text && known.span == span) {
+            reading.push(ReadingNote { code, span, file: file.to_string(), text });
         }
     }
 

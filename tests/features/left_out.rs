@@ -282,3 +282,21 @@ fn a_file_of_which_two_layers_are_used_reports_what_they_share_once() {
     let read = Read::new(&tables, "a.osm", extract(&nodes, &rest));
     assert_eq!(read.messages(FindingCode::RecordsBroken).len(), 1);
 }
+
+#[test]
+fn features_of_another_shape_than_the_table_draws_are_counted() {
+    let at = degrees(200.0, 300.0);
+    let point = format!(
+        r#"{{"type":"Feature","properties":{{}},"geometry":{{"type":"Point","coordinates":[{}]}}}}"#,
+        written(at, ",")
+    );
+    let text =
+        format!(r#"{{"type":"FeatureCollection","features":[{},{point},{point}]}}"#, geojson_line(100.0));
+    Read::new(&roads("a.geojson"), "a.geojson", text).reports(
+        1,
+        FindingCode::LeftOut,
+        &["'a.geojson': left out: 2 features that have another shape than the table draws: points"],
+    );
+    let found = Read::new(&roads("a.geojson"), "a.geojson", point).findings();
+    assert_eq!(found[0].help.as_deref(), Some("the file's only feature is of points"));
+}
