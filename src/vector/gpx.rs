@@ -19,7 +19,7 @@ use crate::builder::{FeatureParts, LayerBuilder, Vertices, position};
 use crate::error::VectorError;
 use crate::feature::{Properties, VectorLayer};
 use crate::hints::VectorHints;
-use crate::xml::{self, XmlElement, XmlReader};
+use crate::xml::{self, DecodedXml, XmlElement, XmlReader};
 use sandtable_geom::crs::Crs;
 
 const FORMAT: &str = "GPX file";
@@ -41,7 +41,7 @@ const PROPERTIES: [&str; 7] = ["name", "cmt", "desc", "src", "sym", "type", "num
 /// # Errors
 /// [`VectorError`], also where no point of the layer is sound.
 pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
-    let text = xml::decode(bytes, FORMAT)?;
+    let DecodedXml { text, fault } = xml::decode(bytes, FORMAT)?;
     let wanted = hints.layer.map(|_| hints.choose_layer(&LAYERS)).transpose()?;
     let layers = LAYERS.map(|_| LayerBuilder::new(hints.crs_or_wgs84()));
     let is_geographic = hints.crs.is_none_or(Crs::is_geographic);
@@ -60,7 +60,9 @@ pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, Vec
             return Err(VectorError::which_layer(&names));
         }
     };
-    reader.layers.into_iter().nth(chosen).expect("an index of a layer").finish()
+    let mut layer = reader.layers.into_iter().nth(chosen).expect("an index of a layer");
+    fault.into_iter().for_each(|fault| layer.fault(fault));
+    layer.finish()
 }
 
 struct GpxReader<'a> {

@@ -17,7 +17,7 @@ use crate::error::{VectorError, shorten};
 use crate::feature::{Properties, VectorLayer};
 use crate::hints::VectorHints;
 use crate::tally::RecordTally;
-use crate::xml::{self, XmlElement, XmlReader};
+use crate::xml::{self, DecodedXml, XmlElement, XmlReader};
 
 const FORMAT: &str = "KML file";
 
@@ -27,7 +27,7 @@ const FORMAT: &str = "KML file";
 /// # Errors
 /// [`VectorError`], also where no placemark is sound.
 pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
-    let text = xml::decode(bytes, FORMAT)?;
+    let DecodedXml { text, fault } = xml::decode(bytes, FORMAT)?;
     let mut reader = KmlReader {
         xml: XmlReader::new(&text, FORMAT),
         wanted: hints.layer,
@@ -48,6 +48,7 @@ pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, Vec
             let (one, many) =
                 ("moment of a track without a position", "moments of tracks without a position");
             reader.layer.note_omitted(&reader.unplaced, one, many);
+            fault.into_iter().for_each(|fault| reader.layer.fault(fault));
             reader.layer.finish()
         }
     }
@@ -351,6 +352,14 @@ mod tests {
             );
         }
         assert_eq!(layer.features[1].lines(), [[DVec2::new(1.0, 2.0), DVec2::new(4.0, 5.0)]]);
+    }
+
+    #[test]
+    fn a_name_in_another_encoding_costs_its_letters_alone() {
+        let text = b"<kml><Placemark><name>Caf\xe9</name><Point><coordinates>1,2</coordinates></Point></Placemark></kml>";
+        let layer = read(text, &VectorHints::default()).expect("well-formed");
+        assert_eq!(layer.features[0].properties["name"], "Caf\u{fffd}");
+        assert_eq!(layer.faults.len(), 1);
     }
 
     #[test]

@@ -252,3 +252,27 @@ fn an_outline_that_its_parts_do_not_cover_is_drawn_as_well() {
     let expected = "1 building drawn beside parts (building:part), which do not cover the outline";
     assert_eq!(read.messages(FindingCode::LeftOut), [expected]);
 }
+
+#[test]
+fn heights_of_fences_and_layers_of_roads_are_read_alike() {
+    let line = |y: f64, properties: &str| {
+        let (from, to) = (written(degrees(50.0, y), ","), written(degrees(350.0, y), ","));
+        format!(
+            r#"{{"type":"Feature","properties":{{{properties}}},"geometry":{{"type":"LineString","coordinates":[[{from}],[{to}]]}}}}"#
+        )
+    };
+    let text = format!(
+        r#"{{"type":"FeatureCollection","features":[{},{},{}]}}"#,
+        line(100.0, r#""height":"2,5 m","layer":"1;2""#),
+        line(200.0, r#""height":"high","layer":"top""#),
+        line(300.0, ""),
+    );
+    let tables = "[[fence]]\nfile = \"a.geojson\"\nkind = \"wall\"\n[[road]]\nfile = \"a.geojson\"\n";
+    let read = Read::new(tables, "a.geojson", text);
+    let expected = [
+        "height: 1 feature has what is not understood, 'high'; the default was taken",
+        "layer: 1 feature has several numbers, '1;2'; the greatest was taken",
+        "layer: 1 feature has what is not understood, 'top'; the default was taken",
+    ];
+    assert_eq!(read.messages(FindingCode::DefaultTaken), expected);
+}

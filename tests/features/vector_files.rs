@@ -338,3 +338,25 @@ fn a_projected_file_comes_to_degrees_and_back() {
         assert!((there - here).abs() < 1e-4, "{there} {here}");
     }
 }
+
+#[test]
+fn a_broken_feature_of_a_flatgeobuf_file_is_left_out_and_the_others_are_read() {
+    let Some(path) = data("vector/poly_landmarks.fgb") else { return };
+    let bytes = std::fs::read(&path).expect("readable");
+    let local = Crs::local();
+    let hints = || VectorHints { crs: Some(&local), ..VectorHints::default() };
+    let count = read("a.fgb", &bytes, &hints()).expect("sound").features.len();
+    // Features are at the end, each with properties at its own end: a turned byte somewhere there breaks one.
+    let broken = (bytes.len() / 2..bytes.len()).step_by(11).find_map(|at| {
+        let mut turned = bytes.clone();
+        turned[at] ^= 0xff;
+        read("a.fgb", &turned, &hints()).ok().filter(|layer| !layer.faults.is_empty())
+    });
+    let layer = broken.expect("some byte breaks one feature");
+    assert_eq!(layer.features.len(), count - 1);
+    assert!(
+        layer.faults[0].starts_with("left out: 1 record that cannot be read: feature "),
+        "{:?}",
+        layer.faults
+    );
+}

@@ -80,6 +80,8 @@ pub(super) struct OsmData {
     pub deleted: RecordTally,
     /// Objects that cannot be read.
     pub broken: BrokenRecords,
+    /// A sentence about bytes that are not of the file's encoding.
+    pub fault: Option<String>,
     texts: Vec<Arc<str>>,
     text_ids: HashMap<Arc<str>, TextId>,
     bytes: usize,
@@ -139,6 +141,11 @@ impl OsmData {
 }
 
 impl OsmData {
+    /// Nothing yet, of a file with a fault in its encoding.
+    pub fn new(fault: Option<String>) -> Self {
+        Self { fault, ..Self::default() }
+    }
+
     /// Sorts nodes and ways by id, which lookups need. Files mostly are sorted already.
     pub fn sort(&mut self) {
         if !self.nodes.is_sorted_by_key(|node| node.id) {

@@ -137,9 +137,7 @@ impl OsmLayer {
         }
         let (one, many) = ("object marked as deleted", "objects marked as deleted");
         layer.note_omitted(&data.deleted, one, many);
-        if let Some(text) = data.broken.text() {
-            layer.fault(text);
-        }
+        data.broken.text().iter().chain(&data.fault).for_each(|text| layer.fault(text));
         layer.finish()
     }
 

@@ -4,13 +4,13 @@ use crate::error::{VectorError, shorten};
 use crate::osm::data::{
     OsmData, OsmMember, OsmMemoryExceeded, OsmNode, OsmRelation, OsmTags, OsmWay, UNITS_PER_DEGREE,
 };
-use crate::xml::{self, XmlElement, XmlReader};
+use crate::xml::{self, DecodedXml, XmlElement, XmlReader};
 
 const FORMAT: &str = "OpenStreetMap XML";
 
 /// Reads the file without objects that are marked as deleted and those that are broken, which are counted.
 pub(super) fn read(bytes: &[u8]) -> Result<OsmData, VectorError> {
-    let text = xml::decode(bytes, FORMAT)?;
+    let DecodedXml { text, fault } = xml::decode(bytes, FORMAT)?;
     let mut xml = XmlReader::new(&text, FORMAT);
     let root = xml.root()?;
     if root.name() != "osm" {
@@ -20,7 +20,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<OsmData, VectorError> {
             remedy: "apply changes first, for example with: osmium apply-changes",
         });
     }
-    let mut data = OsmData::default();
+    let mut data = OsmData::new(fault);
     while let Some(element) = xml.next_child()? {
         if matches!(element.name(), "node" | "way" | "relation") {
             let element = xml.read(element)?;
