@@ -124,7 +124,7 @@ impl Elevation {
         sampling: Sampling,
     ) -> Result<GroundProfile, Error> {
         let ground = self.dataset.ground(&GroundReach { crs, at: vertices, around_m: 0.0 })?;
-        let line = InputLine { vertices: vertices.to_vec(), crs: crs.clone() };
+        let line = InputLine { vertices: vertices.to_vec(), crs: crs.clone(), notes: Vec::new() };
         Ok(GroundProfile::new(&ground, line, sampling)?)
     }
 

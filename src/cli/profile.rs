@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use crate::error::CliError;
 use crate::options::{ChartArguments, DatasetArguments};
-use crate::output::{print, stream};
+use crate::output::{print, stream, warn};
 use crate::values::{PositionList, choice, positions};
 use sandtable_annotate::chart_profile::paint;
 use sandtable_files::disk;
@@ -72,13 +72,15 @@ pub fn run(arguments: &ProfileArguments) -> Result<(), CliError> {
 
 fn line(arguments: &ProfileArguments, dataset: &Dataset) -> Result<InputLine, CliError> {
     if let Some(path) = &arguments.points {
-        return Ok(read_line(path, arguments.dataset.crs.clone(), &dataset.crs())?);
+        let line = read_line(path, arguments.dataset.crs.clone(), &dataset.crs())?;
+        line.notes.iter().for_each(|note| warn(&format!("note: {}: {note}", disk::display_name(path))));
+        return Ok(line);
     }
     let vertices: Vec<DVec2> = arguments.line.iter().chain(&arguments.rest).flatten().copied().collect();
     if vertices.len() < 2 {
         return Err(CliError::usage("--line needs at least two positions: --line X,Y X,Y"));
     }
-    Ok(InputLine { vertices, crs: arguments.dataset.crs(dataset) })
+    Ok(InputLine { vertices, crs: arguments.dataset.crs(dataset), notes: Vec::new() })
 }
 
 fn write_csv(out: &mut dyn Write, profile: &GroundProfile) -> io::Result<()> {

@@ -186,14 +186,17 @@ table! {
         source: FeatureSource = table_key::source::<RING>(), inline;
         /// Height from the base to the ridge.
         height: Option<FeatureValue<f64>> = key::feature_number(SIZE, "m"),
-            otherwise "the property `height`, else 3 m for each of `building:levels` or `levels`, else 6 m";
+            otherwise "the property `height`, else 3 m for each of `building:levels` (or `levels`) and `roof:levels`, else 6 m";
         /// The height of the ground under the footprint at which the building stands.
         base: BaseRule = key::word::<BaseRule>(), default "lowest";
         /// The shape of the roof.
         roof: Option<FeatureValue<RoofShape>> = key::feature_word::<RoofShape>(), otherwise "the property `roof:shape`, else `flat`";
         /// How much of the height is roof.
         roof_height: Option<FeatureValue<f64>> = key::feature_number(STRIP, "m"),
-            otherwise "the property `roof:height`, else by a pitch of 30°";
+            otherwise "the property `roof:height`, else 3 m for each of `roof:levels`, else by `roof:angle`, else by a pitch of 30°";
+        /// Direction of the compass to which a slope of the roof falls.
+        roof_direction: Option<FeatureValue<f64>> = key::feature_number(Bounds::DIRECTION, "°"),
+            otherwise "the property `roof:direction`, else by `roof:orientation`, else across the longer sides";
         /// Color of the walls.
         wall_color: Option<Color> = key::color(),
             otherwise "the property `building:colour`, else one of a few plasters, chosen by the place";

@@ -55,6 +55,14 @@ finding_codes! {
          scene is to be trusted, allow the folder with `--allow`.";
     UnreadableFile = "unreadable-file", Error,
         "A file cannot be read: it is broken, cut short, too large, a folder, or of a kind that is not read here.";
+    RecordsBroken = "records-broken", Warning,
+        "Records of a vector file cannot be read and were left out: a position that is not numbers, a shape that is cut short, \
+         a coordinate off the Earth. The message states how many there are, and where the first ones are and why; all others \
+         are there. Mend these records, or export the file again.";
+    VectorRead = "vector-read", Note,
+        "Something of a vector file was left out, or taken for something else, although the file may be sound: features without \
+         a shape, deleted rows, relations and ways that leave an extract, rings that run the wrong way. The message states how \
+         many there are and which the first ones are. Take a larger extract, or mend the file, where one of them is missed.";
     WrongFormat = "wrong-format", Error,
         "A file is not what its name says, such as an HTML page saved as `.tif`. Most often a download went wrong. Fetch it \
          again, or name it for what it is.";
@@ -184,7 +192,8 @@ finding_codes! {
     ShapeMended = "shape-mended", Note,
         "An outline crosses itself and was taken apart into pieces that do not.";
     DefaultTaken = "default-taken", Note,
-        "A key's expression gives no value within its range for some features, and its default was taken.";
+        "A key's expression gives no value within its range for some features, and its default was taken; or a property such as \
+         `height` holds what is not understood, or several numbers, of which the greatest was taken.";
     TooMany = "too-many", Warning,
         "There are more than a picture can show; the rest was left out. Select fewer with `where`.";
     Tangled = "tangled", Warning,
@@ -206,7 +215,8 @@ finding_codes! {
         "A building stands without the level ground that its `base` asks for, because the ground there is shaped for something \
          else already: a lake, a road, or another building.";
     RoofReplaced = "roof-replaced", Note,
-        "A building has another roof than asked for, because its footprint does not take that one.";
+        "A building has another roof than asked for, because its footprint does not take that one, or because the shape that a \
+         property names is not drawn. The nearest shape that is was taken.";
     PylonsAdded = "pylons-added", Note,
         "Pylons were added to keep the wires of a power line off the ground.";
     Scattered = "scattered", Note,

@@ -215,6 +215,13 @@ words! {
         Gabled = "gabled": "two slopes and two gables",
         Hipped = "hipped": "four slopes",
         Pyramidal = "pyramidal": "slopes that meet in one point",
+        Skillion = "skillion": "one slope",
+        HalfHipped = "half-hipped": "two slopes, and gables that end in small hips",
+        Gambrel = "gambrel": "two slopes on each side, the lower the steeper, and two gables",
+        Saltbox = "saltbox": "a long slope and a short one, and two gables",
+        Mansard = "mansard": "four slopes, each steeper below",
+        Round = "round": "half a barrel",
+        Dome = "dome": "half a ball",
     }
 
     /// The shape of an earthwork.

@@ -304,8 +304,7 @@ pub(super) static RULES: &[TableRule] = &[
     )
     .keys(&["width = \"match(road_classification ?? class ?? CLASSIFICA, 'Motorway', 14, 9)\""]),
     // What stands on the ground.
-    rule("building", "Buildings", "polygons", "building or fclass = 'building'")
-        .keys(&["height = \"height ?? `building:levels` * 3 ?? levels * 3 ?? 6\""])
+    rule("building", "Buildings", "polygons", "building or `building:part` or fclass = 'building'")
         .named(&["building", "footprint", "house"]),
     rule(
         "building",

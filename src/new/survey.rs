@@ -289,7 +289,7 @@ mod tests {
             properties: serde_json::from_str(properties).expect("an object"),
         };
         let features = properties.iter().map(feature).collect();
-        let layer = VectorLayer { features, crs: Crs::wgs84(), notes: Vec::new() };
+        let layer = VectorLayer { features, crs: Crs::wgs84(), notes: Vec::new(), faults: Vec::new() };
         let found = survey(Arc::new(layer), None, title);
         let left = found.rest.iter().map(|rest| rest.count).sum();
         (found.matches.iter().map(|found| (found.rule.what, found.count)).collect(), left)

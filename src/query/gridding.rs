@@ -72,7 +72,13 @@ impl PointSources<'_> {
         if points.is_empty() {
             return Err(OpenPointsError::FlatPoints(path.to_owned()));
         }
-        Ok(PointCloud { points, ..cloud(layer) })
+        let vertices =
+            layer.features.iter().map(|feature| feature.geometry.vertices().count()).sum::<usize>();
+        let mut cloud = cloud(layer);
+        if let Some(without @ 1..) = vertices.checked_sub(points.len()) {
+            cloud.notes.push(format!("{without} points without a height were left out"));
+        }
+        Ok(PointCloud { points, ..cloud })
     }
 
     fn open_breaklines(&self, path: &Path) -> Result<PointCloud, OpenPointsError> {
@@ -81,7 +87,12 @@ impl PointSources<'_> {
         if breaklines.is_empty() {
             return Err(OpenPointsError::FlatLines(path.to_owned()));
         }
-        Ok(PointCloud { breaklines, ..cloud(layer) })
+        let parts = layer.features.iter().map(|feature| parts(&feature.geometry)).sum::<usize>();
+        let mut cloud = cloud(layer);
+        if let Some(without @ 1..) = parts.checked_sub(breaklines.len()) {
+            cloud.notes.push(format!("{without} lines with a vertex without a height were left out"));
+        }
+        Ok(PointCloud { breaklines, ..cloud })
     }
 
     fn read_layer(&self, path: &Path, bytes: &[u8]) -> Result<VectorLayer, OpenPointsError> {
@@ -93,7 +104,8 @@ impl PointSources<'_> {
 
 /// A cloud with the system and the notes of a layer, and no points yet.
 fn cloud(layer: VectorLayer) -> PointCloud {
-    PointCloud { crs: Some(layer.crs), notes: layer.notes, ..PointCloud::new(Vec::new()) }
+    let notes = layer.reading_notes().cloned().collect();
+    PointCloud { crs: Some(layer.crs), notes, ..PointCloud::new(Vec::new()) }
 }
 
 /// The vertices of a feature that have an elevation.
@@ -122,6 +134,15 @@ fn breaklines(feature: &Feature) -> Vec<Vec<DVec3>> {
         }
     };
     lines.into_iter().filter(|line| line.len() > 1 && line.iter().all(|vertex| vertex.is_finite())).collect()
+}
+
+/// The lines of a shape and the borders of its polygons.
+fn parts(geometry: &Geometry) -> usize {
+    match geometry {
+        Geometry::Points(_) => 0,
+        Geometry::Lines(lines) => lines.len(),
+        Geometry::Polygons(polygons) => polygons.iter().map(|polygon| polygon.rings().count()).sum(),
+    }
 }
 
 /// Two clouds in the system and the unit of the first.

@@ -12,6 +12,7 @@ use sandtable_files::disk::{self, ReadFileError};
 use sandtable_files::error::FileError;
 use sandtable_geom::crs::Crs;
 use sandtable_vector::error::VectorError;
+use sandtable_vector::feature::Feature;
 use sandtable_vector::hints::VectorHints;
 use sandtable_vector::read;
 
@@ -31,6 +32,8 @@ pub struct InputLine {
     pub vertices: Vec<DVec2>,
     /// The system of its coordinates.
     pub crs: Crs,
+    /// What the file holds besides, and what reading it left out.
+    pub notes: Vec<String>,
 }
 
 /// A text that is not a position.
@@ -155,7 +158,7 @@ pub fn read_line(path: &Path, stated: Option<Crs>, native: &Crs) -> Result<Input
     let vertices: Vec<DVec2> = parse_positions(&name, &text)?.iter().map(|position| position.at).collect();
     match vertices.len() {
         found @ 0..2 => Err(ReadLineError::TooShort { name, found }),
-        _ => Ok(InputLine { vertices, crs: stated.unwrap_or_else(|| native.clone()) }),
+        _ => Ok(InputLine { vertices, crs: stated.unwrap_or_else(|| native.clone()), notes: Vec::new() }),
     }
 }
 
@@ -164,9 +167,13 @@ fn first_line(path: &Path, stated: Option<Crs>) -> Result<InputLine, ReadLineErr
     let hints =
         VectorHints { crs: stated.as_ref(), companions: &disk::beside(path), ..VectorHints::default() };
     let layer = read::read(&disk::file_name(path), &bytes, &hints).map_err(FileError::at(path))?;
-    let line = layer.features.iter().find_map(|feature| feature.lines().first().cloned());
-    let vertices = line.ok_or_else(|| ReadLineError::NoLine(path.to_owned()))?;
-    Ok(InputLine { vertices, crs: layer.crs })
+    let mut lines = layer.features.iter().flat_map(Feature::lines);
+    let vertices = lines.next().cloned().ok_or_else(|| ReadLineError::NoLine(path.to_owned()))?;
+    let mut notes: Vec<String> = layer.reading_notes().cloned().collect();
+    if let more @ 1.. = lines.count() {
+        notes.push(format!("it holds {} lines, of which the first is followed", more + 1));
+    }
+    Ok(InputLine { vertices, crs: layer.crs, notes })
 }
 
 /// `x, y` for a reader: degrees with five decimals (about a meter), meters without.

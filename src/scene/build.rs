@@ -120,6 +120,7 @@ pub fn build_with(
     for sentence in attributes::notes(&collected.default_counts) {
         collected.findings.add(FindingCode::DefaultTaken, 0..0, sentence);
     }
+    collected.tag_notes.report(&mut collected.findings);
 
     graphics::lay(document, &sources, &lattice.extent(), &mut collected);
     let exact = ExactGround::new(&frame, &lattice, assets, loaded.all_samples)?;
@@ -147,6 +148,7 @@ pub fn build_with(
     let (Some(ramp), Some(imagery), Some(sunlight)) = (ramp, imagery, sunlight) else {
         unreachable!("each error was kept")
     };
+    sources.report_reading(&mut collected.findings);
     let reaches = sources.reaches();
     reaches
         .iter()

@@ -10,6 +10,7 @@ use crate::roads::profiles::{BridgeProfile, RoadProfile};
 use crate::scene_findings::SceneFindings;
 use crate::scene_graphic::SceneGraphic;
 use crate::symbols::LineSymbol;
+use crate::tag_notes::TagNotes;
 use crate::water::lake_level::LakeSurface;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::FeatureId;
@@ -42,6 +43,8 @@ pub struct SceneBuilder {
     pub errors: BuildErrorSink,
     /// The number of expressions without a value, by key and default.
     pub default_counts: DefaultCounts,
+    /// Properties that tables read by themselves and that were guessed at or not understood.
+    pub tag_notes: TagNotes,
     /// Measures of single features.
     pub report: SceneReport,
     /// The longitudinal profile of every road that the ground follows.
@@ -65,6 +68,7 @@ impl SceneBuilder {
             errors: BuildErrorSink::new(findings.source()),
             findings,
             default_counts: DefaultCounts::new(),
+            tag_notes: TagNotes::default(),
             report: SceneReport::default(),
             profiles: Vec::new(),
             bridge_profiles: Vec::new(),

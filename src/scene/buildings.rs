@@ -6,11 +6,16 @@
 //!  lay_out: footprints, pads leveled ─► (roads conform) ─► raise: bases from the ground as it is now, solids
 //! ```
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
 use glam::DVec2;
 
 use crate::attributes::Attributes;
 use crate::builder::SceneBuilder;
 use crate::building_colors::color_named;
+use crate::building_parts::BuildingParts;
+use crate::building_tags::{BuildingHeights, RoofWish, heights};
 use crate::crossed_shapes::CrossedShapes;
 use crate::feature::FeatureKind;
 use crate::feature_meshes::{Coat, FeatureSolid, Solid};
@@ -18,38 +23,29 @@ use crate::report::BuildingPadRow;
 use crate::scene_findings::SceneFindings;
 use crate::sources::{Sourced, Sources};
 use crate::vertical_scale::DrawnGround;
-use sandtable_base::message::choice::Choice;
 use sandtable_description::color::Color;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::features::BuildingTable;
 use sandtable_description::finding_code::FindingCode;
-use sandtable_description::scalar::Scalar;
 use sandtable_description::words::{BaseRule, RoofShape as RoofWord};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::FeatureId;
 use sandtable_earthworks::leveling;
 use sandtable_geom::polygon;
-use sandtable_structure::building::{BuildingLevels, Paint, STORY_M, check, raise as raised};
+use sandtable_structure::building::{BuildingLevels, Paint, check, raise as raised};
 use sandtable_structure::building_footing::WallFooting;
 use sandtable_structure::building_footprint::BuildingFootprint;
 use sandtable_structure::draped_solid::DrapedSolid;
 use sandtable_structure::eaves::eaves;
-use sandtable_structure::roof::{UnitRoof, roof};
+use sandtable_structure::roof::{UnitRoof, turned_roof};
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::query::pieces::GridRegion;
 use sandtable_terrain::query::zone::zone;
 use sandtable_terrain::volumes::Volumes;
+use sandtable_vector::feature::Polygon;
 
-/// The tallest that a property may say, meters; as `height` in a scene file.
-const TALLEST_M: f64 = 1000.0;
-/// The height of a building whose properties say neither height nor levels, in meters: one floor with its roof.
-const HOUSE_M: f64 = 6.0;
-/// Rise over run of a roof of 30 degrees.
-const PITCH: f64 = 0.577_350_269;
-/// The most of a building's height that is roof where nobody says how much, so that wide halls keep their walls.
-const MOST_ROOF: f64 = 0.5;
 /// How deep walls go below the lowest ground under them, meters.
 const FOUNDATION_M: f64 = 1.0;
 
@@ -58,6 +54,8 @@ pub struct Plot {
     table: usize,
     attributes: Attributes,
     parts: Vec<BuildingFootprint>,
+    /// The footprint of the whole building of which this is a part, on whose ground it stands.
+    whole: Option<Arc<Vec<BuildingFootprint>>>,
     pad_m: Option<f64>,
     feature: FeatureId,
 }
@@ -71,6 +69,8 @@ struct BuildingTally {
     pads_refused: usize,
     roofs_replaced: usize,
     raised_whole: usize,
+    in_parts: usize,
+    beside_parts: usize,
 }
 
 impl BuildingTally {
@@ -99,6 +99,16 @@ impl BuildingTally {
                 FindingCode::DefaultTaken,
                 "without a min_height, which is not below the height",
             ),
+            (
+                self.in_parts,
+                FindingCode::LeftOut,
+                "left out: drawn by parts (building:part) in place of the whole",
+            ),
+            (
+                self.beside_parts,
+                FindingCode::LeftOut,
+                "drawn beside parts (building:part), which do not cover the outline",
+            ),
         ];
         for (count, code, sentence) in sentences.into_iter().filter(|(count, ..)| *count > 0) {
             let message = format!("{count} {} {sentence}", FeatureKind::Building.noun(count));
@@ -119,31 +129,67 @@ pub fn lay_out(
 ) -> Result<Vec<Plot>, Diagnostic> {
     let (mut plots, mut tally) = (Vec::new(), BuildingTally::default());
     for (table, building) in document.buildings.iter().enumerate() {
-        let wants_pad = building.base == BaseRule::Pad;
         let mut crossed = CrossedShapes::default();
-        for Sourced { attributes, shape, crossings } in sources.polygons(&building.source)? {
+        let polygons = sources.polygons(&building.source)?;
+        let by_parts = BuildingParts::find(&polygons);
+        // Of buildings that are drawn by their parts.
+        let outline = |index: usize| {
+            let Polygon { exterior, holes } = &polygons[index].shape;
+            BuildingFootprint::parts(exterior, holes)
+        };
+        let mut wholes: BTreeMap<usize, WholeBuilding> = BTreeMap::new();
+        for (index, Sourced { attributes, shape, crossings }) in polygons.iter().enumerate() {
+            if by_parts.is_replaced(index) {
+                tally.in_parts += 1;
+                continue;
+            }
+            tally.beside_parts += usize::from(by_parts.is_beside_parts(index));
             let parts = BuildingFootprint::parts(&shape.exterior, &shape.holes);
             if parts.is_empty() {
                 tally.empty += 1;
                 continue;
             }
-            let Some(ground) = GroundUnder::parts(lattice, &parts) else {
+            if GroundUnder::parts(lattice, &parts).is_none() {
                 tally.off += 1;
                 continue;
-            };
+            }
             tally.mended += usize::from(parts.len() > 1);
             let name = attributes.name(building.name.as_deref());
-            crossed.add_polygon(&shape, crossings, || name.clone());
-            let pad_m = wants_pad.then(|| pad(lattice, &parts, ground.mean_m, &name, collected)).flatten();
-            tally.pads_refused += usize::from(wants_pad && pad_m.is_none());
+            crossed.add_polygon(shape, *crossings, || name.clone());
+            let whole = by_parts.replaced_outline_of(index);
+            let mut level = |parts: &[BuildingFootprint]| {
+                let ground = GroundUnder::parts(lattice, parts).filter(|_| building.base == BaseRule::Pad)?;
+                let pad_m = pad(lattice, parts, ground.mean_m, &name, collected);
+                tally.pads_refused += usize::from(pad_m.is_none());
+                pad_m
+            };
+            let whole = match whole {
+                Some(outer) => wholes
+                    .entry(outer)
+                    .or_insert_with(|| {
+                        let parts = outline(outer);
+                        WholeBuilding { pad_m: level(&parts), footprint: Arc::new(parts) }
+                    })
+                    .clone(),
+                None => WholeBuilding { pad_m: level(&parts), footprint: Arc::default() },
+            };
+            let WholeBuilding { pad_m, footprint } = whole;
+            let whole = Some(footprint).filter(|footprint| !footprint.is_empty());
             let feature = collected.add(FeatureKind::Building, name, attributes.origin(&building.source));
-            plots.push(Plot { table, attributes, parts, pad_m, feature });
+            plots.push(Plot { table, attributes: attributes.clone(), parts, whole, pad_m, feature });
         }
         let outcome = "it is built in pieces that do not";
         crossed.report(("building", outcome), building.source.span(), sources.frame, &mut collected.findings);
     }
     tally.note(document, &mut collected.findings);
     Ok(plots)
+}
+
+/// The outline of a building that is drawn by its parts; of another nothing but its pad.
+#[derive(Clone)]
+struct WholeBuilding {
+    footprint: Arc<Vec<BuildingFootprint>>,
+    pad_m: Option<f64>,
 }
 
 /// Levels the ground under a building and returns its level; `None` where a lake or another pad shares that ground.
@@ -216,11 +262,14 @@ pub fn raise(document: &Document, plots: &[Plot], ground: DrawnGround<'_>, colle
             tally.off += 1;
             continue;
         };
+        // A part stands where its whole building does.
+        let whole = plot.whole.as_ref().and_then(|whole| GroundUnder::parts(ground.lattice, whole));
+        let base = whole.unwrap_or(under);
         let base_m = match (plot.pad_m, building.base) {
             (Some(level_m), _) => level_m,
-            (None, BaseRule::Lowest) => under.low_m,
-            (None, BaseRule::Highest) => under.high_m,
-            (None, BaseRule::Mean | BaseRule::Pad) => under.mean_m,
+            (None, BaseRule::Lowest) => base.low_m,
+            (None, BaseRule::Highest) => base.high_m,
+            (None, BaseRule::Mean | BaseRule::Pad) => base.mean_m,
         };
         let base_z = ground.scale.world_z(base_m);
         let foot_z = ground.scale.world_z(under.low_m.min(base_m)) - FOUNDATION_M;
@@ -237,13 +286,16 @@ fn raise_parts(
     collected: &mut SceneBuilder,
     tally: &mut BuildingTally,
 ) {
-    let (low_m, height_m) = heights(building, &plot.attributes, collected, tally);
-    let wanted = wanted_roof(building, &plot.attributes);
+    let SceneBuilder { tag_notes, default_counts, .. } = collected;
+    let BuildingHeights { low_m, top_m: height_m, is_raised_whole } =
+        heights(building, &plot.attributes, tag_notes, default_counts);
+    tally.raised_whole += usize::from(is_raised_whole);
+    let wish = RoofWish::new(building, &plot.attributes, tag_notes);
     let mut replaced = false;
     for part in &plot.parts {
         let body = |wanted: RoofWord| {
-            let made = roof(part, wanted);
-            let roof_m = roof_height(building, &plot.attributes, &made, height_m - low_m);
+            let made = turned_roof(part, wanted, wish.turn);
+            let roof_m = wish.height_m(&made, height_m - low_m);
             let top_z = base_z + height_m;
             let floor_z = base_z + low_m;
             let mut levels = BuildingLevels { foot_z, base_z, floor_z, eaves_z: top_z - roof_m, top_z };
@@ -256,13 +308,17 @@ fn raise_parts(
             let paint = paint(building, &plot.attributes, part, &made);
             let mesh = raised(part, &made, levels, paint);
             // Faces over inward corners may be thinner than coordinates are exact: such a building is flat.
-            let is_sound = made.shape != RoofWord::Hipped || part.is_convex() || check(&mesh).is_ok();
-            is_sound.then_some((made, levels, paint, mesh))
+            let is_plain = match made.shape {
+                RoofWord::Flat | RoofWord::Gabled | RoofWord::Pyramidal => true,
+                RoofWord::Hipped => part.is_convex(),
+                _ => false,
+            };
+            (is_plain || check(&mesh).is_ok()).then_some((made, levels, paint, mesh))
         };
-        let Some((made, levels, paint, mesh)) = body(wanted).or_else(|| body(RoofWord::Flat)) else {
+        let Some((made, levels, paint, mesh)) = body(wish.shape).or_else(|| body(RoofWord::Flat)) else {
             continue;
         };
-        replaced |= made.shape != wanted;
+        replaced |= made.shape != wish.shape;
         collected.solids.push(Solid { mesh, coat: Coat::Facade, feature: plot.feature });
         if let Some(mesh) = eaves(&made, levels, paint).filter(|mesh| check(mesh).is_ok()) {
             collected.solids.push(Solid { mesh, coat: Coat::Painted, feature: plot.feature });
@@ -276,64 +332,6 @@ fn raise_parts(
         }
     }
     tally.roofs_replaced += usize::from(replaced);
-}
-
-/// A property as a number within its bounds.
-fn property(attributes: &Attributes, names: &[&str], (low, high): (f64, f64)) -> Option<f64> {
-    names
-        .iter()
-        .filter_map(|name| attributes.get(name)?.number())
-        .find(|&number| number > low && number <= high)
-}
-
-/// How high above its base a building begins, 0 for nearly all, and how high it ends, meters.
-fn heights(
-    building: &BuildingTable,
-    attributes: &Attributes,
-    collected: &mut SceneBuilder,
-    tally: &mut BuildingTally,
-) -> (f64, f64) {
-    let stories = |names: &[&str]| property(attributes, names, (0.0, TALLEST_M / STORY_M));
-    let known = property(attributes, &["height"], (0.0, TALLEST_M))
-        .or_else(|| stories(&["building:levels", "levels"]).map(|levels| levels * STORY_M))
-        .unwrap_or(HOUSE_M);
-    let height_m = attributes.number_or(building.height.as_ref(), known, &mut collected.default_counts);
-    let low_m = property(attributes, &["min_height"], (0.0, TALLEST_M))
-        .or_else(|| stories(&["building:min_level"]).map(|levels| levels * STORY_M))
-        .unwrap_or(0.0);
-    if low_m >= height_m {
-        tally.raised_whole += 1;
-        return (0.0, height_m);
-    }
-    (low_m, height_m)
-}
-
-/// The roof stated, else that of OpenStreetMap's property; half-hipped and the like count as what they are nearest to.
-fn wanted_roof(building: &BuildingTable, attributes: &Attributes) -> RoofWord {
-    let tagged = || match attributes.get("roof:shape") {
-        Some(Scalar::Text(text)) => match text.as_str() {
-            "half-hipped" | "mansard" | "side_hipped" => Some(RoofWord::Hipped),
-            "gambrel" | "saltbox" | "round" => Some(RoofWord::Gabled),
-            "dome" | "onion" | "cone" => Some(RoofWord::Pyramidal),
-            other => RoofWord::from_word(other),
-        },
-        _ => None,
-    };
-    attributes.value(building.roof.as_ref()).or_else(tagged).unwrap_or_default()
-}
-
-/// How much of a building's height is roof, meters.
-fn roof_height(building: &BuildingTable, attributes: &Attributes, made: &UnitRoof, height_m: f64) -> f64 {
-    if made.run_m <= 0.0 {
-        return 0.0;
-    }
-    let stated = attributes
-        .value(building.roof_height.as_ref())
-        .or_else(|| property(attributes, &["roof:height"], (0.0, TALLEST_M)));
-    match stated {
-        Some(roof_m) => roof_m.min(height_m),
-        None => (made.run_m * PITCH).min(height_m * MOST_ROOF),
-    }
 }
 
 fn paint(

@@ -8,10 +8,12 @@ use crate::builder::SceneBuilder;
 use crate::crossed_shapes::CrossedShapes;
 use crate::feature::FeatureKind;
 use crate::feature_meshes::FeatureSolid;
+use crate::meant_number::Meaning;
 use crate::near::{self, Clipped};
 use crate::report::TrenchRow;
 use crate::scene_findings::FeatureTable;
 use crate::sources::Sources;
+use crate::tag_notes::NumberLimits;
 use crate::vertical_scale::DrawnGround;
 use sandtable_base::limits::LINE_PIECES;
 use sandtable_description::diagnostic::Diagnostic;
@@ -147,8 +149,12 @@ fn fence_line(
 ) -> FenceLine {
     let kind = attributes.value(fence.kind.as_ref()).unwrap_or_else(|| tagged_kind(fence, attributes));
     let sizes = default_sizes(kind);
-    let tagged = attributes.get("height").and_then(|height| height.number()).filter(|height| *height > 0.0);
-    let tagged = tagged.filter(|height| *height <= 1000.0 && fence.height.is_none());
+    let limits = NumberLimits::above_zero(1000.0);
+    let tagged = fence
+        .height
+        .is_none()
+        .then(|| collected.tag_notes.number(attributes, &["height"], Meaning::Length, limits));
+    let tagged = tagged.flatten();
     let mut size = |key, default: f64| attributes.number_or(key, default, &mut collected.default_counts);
     let height_m = size(fence.height.as_ref(), tagged.unwrap_or(sizes.height_m));
     let width_m = size(fence.width.as_ref(), sizes.width_m);

@@ -1,13 +1,15 @@
 //! Lines and polygons of a feature, from inline points or a vector file, in world coordinates.
 
 use std::cell::{Cell, RefCell};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 use std::sync::Arc;
 
 use glam::DVec2;
 
 use crate::assets::Assets;
 use crate::attributes::Attributes;
+use crate::scene_findings::SceneFindings;
 use crate::source_reach::SourceReach;
 use crate::world_frame::WorldFrame;
 use sandtable_base::limits::{ASSET_BYTES, RING_CROSSINGS};
@@ -15,6 +17,7 @@ use sandtable_base::message::suggest::quoted;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::expression::Expression;
 use sandtable_description::feature_source::FeatureSource;
+use sandtable_description::finding_code::FindingCode;
 use sandtable_description::scalar::Scalar;
 use sandtable_description::selection::Selection;
 use sandtable_description::stated::Stated;
@@ -42,6 +45,17 @@ pub struct Sources<'a> {
     crossings_left: Cell<usize>,
     /// Where the sources lie, by the first byte that states them.
     reaches: RefCell<BTreeMap<usize, SourceReach>>,
+    /// What reading the files left out or took for something else, in the order of reading.
+    reading: RefCell<Vec<ReadingNote>>,
+}
+
+/// A sentence on how a file was read.
+struct ReadingNote {
+    code: FindingCode,
+    /// The bytes of the scene file that name the file.
+    span: Range<usize>,
+    file: String,
+    text: String,
 }
 
 /// A shape with the properties of its feature.
@@ -65,6 +79,7 @@ impl<'a> Sources<'a> {
             overridden: RefCell::default(),
             crossings_left,
             reaches: RefCell::default(),
+            reading: RefCell::default(),
         }
     }
 
@@ -187,21 +202,23 @@ impl<'a> Sources<'a> {
             Some(Selection::Holding(condition)) => attributes.holds(condition),
             _ => true,
         };
-        let shapes: Vec<_> = filter
+        let (mut shapes, mut of_other_shape) = (Vec::new(), BTreeMap::<&str, usize>::new());
+        let matching = filter
             .select(&layer)
             .map(|(index, feature)| (Attributes::new(Arc::clone(&layer), index), feature))
-            .filter(|(attributes, _)| holds(attributes))
-            .flat_map(|(attributes, feature)| {
-                pick(&feature.geometry).into_iter().map(move |shape| Sourced {
-                    attributes: attributes.clone(),
-                    shape,
-                    crossings: 0,
-                })
-            })
-            .collect();
+            .filter(|(attributes, _)| holds(attributes));
+        for (attributes, feature) in matching {
+            let picked = pick(&feature.geometry);
+            if picked.is_empty() {
+                *of_other_shape.entry(feature.geometry.kind()).or_default() += 1;
+            }
+            let sourced = |shape| Sourced { attributes: attributes.clone(), shape, crossings: 0 };
+            shapes.extend(picked.into_iter().map(sourced));
+        }
         if shapes.is_empty() {
             return Err(self.nothing_found(source, file, &filter, &layer));
         }
+        self.note_other_shapes(file, &of_other_shape);
         Ok((layer.crs.clone(), shapes))
     }
 
@@ -213,6 +230,9 @@ impl<'a> Sources<'a> {
         layer: &Arc<VectorLayer>,
     ) -> Diagnostic {
         let name = file.as_str();
+        if layer.features.is_empty() {
+            return self.no_features(source, file, layer);
+        }
         let unmatched =
             |selection| self.frame.document.error(selection, format!("no feature of '{name}' matches"));
         if let Some(selection) = &source.selection
@@ -229,14 +249,31 @@ impl<'a> Sources<'a> {
             (Some(reason), Some(selection)) => unmatched(selection).with_help(reason),
             _ => {
                 let message = format!("no feature of '{name}' that matches has the shape needed here");
-                let kinds: std::collections::BTreeSet<_> =
+                let kinds: BTreeSet<_> =
                     layer.features.iter().map(|feature| feature.geometry.kind()).collect();
                 let kinds: Vec<_> = kinds.into_iter().collect();
-                let count = layer.features.len();
-                let help = format!("the file's {count} features are {}", kinds.join(", "));
+                let help = match layer.features.len() {
+                    1 => format!("the file's only feature is of {}", kinds.join(", ")),
+                    count => format!("the file's {count} features are {}", kinds.join(" and ")),
+                };
                 self.frame.document.error(file, message).with_help(help)
             }
         }
+    }
+
+    /// The error of a file or a layer without features, with what reading it left out.
+    fn no_features(&self, source: &FeatureSource, file: &Stated<String>, layer: &VectorLayer) -> Diagnostic {
+        let name = file.as_str();
+        let message = match &source.layer {
+            Some(wanted) => format!("the layer '{}' of '{name}' holds no features", wanted.as_str()),
+            None => format!("'{name}' holds no features"),
+        };
+        let reasons: Vec<&str> = layer.reading_notes().map(String::as_str).collect();
+        let help = match reasons.is_empty() {
+            true => "name another file or layer, or remove the table".to_owned(),
+            false => reasons.join("; "),
+        };
+        self.frame.document.error(file, message).with_help(help)
     }
 
     fn layer(
@@ -259,8 +296,46 @@ impl<'a> Sources<'a> {
         let layer = read::read(file, &bytes, &hints);
         companions.check().map_err(|error| self.frame.document.error(file, error))?;
         let layer = Arc::new(layer.map_err(|error| self.unread(file, wanted, error))?);
+        self.note_reading(file, &layer);
         self.layers.borrow_mut().insert(key, Arc::clone(&layer));
         Ok(layer)
+    }
+
+    /// Keeps what reading a file left out. What several layers of a file have in common is kept once.
+    fn note_reading(&self, file: &Stated<String>, layer: &VectorLayer) {
+        let mut reading = self.reading.borrow_mut();
+        let faults = layer.faults.iter().map(|text| (FindingCode::RecordsBroken, text));
+        for (code, text) in faults.chain(layer.notes.iter().map(|text| (FindingCode::VectorRead, text))) {
+            if !reading.iter().any(|known| known.text == *text && known.file == file.as_str()) {
+                let span = file.span().unwrap_or_default();
+                reading.push(ReadingNote { code, span, file: file.to_string(), text: text.clone() });
+            }
+        }
+    }
+
+    /// Keeps how many features of a table match and are left out, because they have another shape than it draws.
+    fn note_other_shapes(&self, file: &Stated<String>, of_other_shape: &BTreeMap<&str, usize>) {
+        let count: usize = of_other_shape.values().sum();
+        if count == 0 {
+            return;
+        }
+        let kinds: Vec<&str> = of_other_shape.keys().copied().collect();
+        let (features, have) = if count == 1 { ("feature", "has") } else { ("features", "have") };
+        let kinds = kinds.join(" and ");
+        let text =
+            format!("left out: {count} {features} that {have} another shape than the table draws: {kinds}");
+        let (code, span) = (FindingCode::LeftOut, file.span().unwrap_or_default());
+        let mut reading = self.reading.borrow_mut();
+        if !reading.iter().any(|known| known.text == text && known.span == span) {
+            reading.push(ReadingNote { code, span, file: file.to_string(), text });
+        }
+    }
+
+    /// Reports what reading the files left out, or took for something else, once.
+    pub fn report_reading(&self, findings: &mut SceneFindings) {
+        for ReadingNote { code, span, file, text } in self.reading.take() {
+            findings.add(code, span, format!("'{}': {text}", quoted(&file)));
+        }
     }
 
     /// The system that the file of a source states and that its `crs` takes the place of; `None` of a source that was not

@@ -1,5 +1,4 @@
-//! Roofs over footprints: flat, gabled, pyramidal; hipped ones are made in [`crate::roof_hipped`], those over
-//! inward corners by [`crate::straight_skeleton`].
+//! Roofs over footprints: flat and gabled here, the others in files of their own.
 //!
 //! A roof is made with a rise of one from eaves to ridge; the building stretches it. Its faces cover the footprint in
 //! plan, no more and no less, and its edge is the footprint's, with a vertex more where a ridge meets a gable, so that
@@ -16,16 +15,15 @@
 use glam::{DVec2, DVec3};
 
 use crate::building_footprint::BuildingFootprint;
+use crate::roof_domed::{dome, pyramidal};
 use crate::roof_hipped::hipped;
+use crate::roof_mansard::mansard;
+use crate::roof_rectangle::{RoofRectangle, RoofTurn};
+use crate::roof_ridged::{gambrel, half_hipped, round, saltbox};
+use crate::roof_skillion::skillion;
 use crate::straight_skeleton;
 use sandtable_description::words;
 use sandtable_geom::polygon;
-
-/// How much of its best-fitting rectangle a footprint must fill to be roofed like one.
-const RECTANGULAR: f64 = 0.82;
-
-/// The most vertices of a footprint for which its best-fitting rectangle is looked for.
-const MOST_VERTICES: usize = 400;
 
 /// A roof with a rise of one.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,17 +38,29 @@ pub struct UnitRoof {
     pub run_m: f64,
 }
 
-/// The roof of the stated shape over a footprint, or the nearest that can be made: a gabled one needs nearly a
-/// rectangle, else it is hipped; a hipped one needs a footprint without courtyards and of no more than 64 sides, a
-/// pyramidal one a middle that sees every wall; else they are flat.
+/// The roof of the stated shape over a footprint, or the nearest that can be made, with its ridge along the longer sides.
 pub fn roof(footprint: &BuildingFootprint, wanted: words::RoofShape) -> UnitRoof {
+    turned_roof(footprint, wanted, RoofTurn::Along)
+}
+
+/// The roof of the stated shape over a footprint, or the nearest that can be made, turned as stated: one with a ridge needs
+/// nearly a rectangle, else it is hipped; a hipped one needs a footprint without courtyards and of no more than 64 sides, a
+/// pyramid or a dome a middle that sees every wall; else they are flat. A skillion lies over every footprint.
+pub fn turned_roof(footprint: &BuildingFootprint, wanted: words::RoofShape, turn: RoofTurn) -> UnitRoof {
+    let over_hips = || hipped(footprint).or_else(|| bent(footprint));
+    let over_gables = || gabled(footprint, turn).or_else(over_hips);
     let made = match wanted {
         words::RoofShape::Flat => None,
-        words::RoofShape::Gabled => {
-            gabled(footprint).or_else(|| hipped(footprint)).or_else(|| bent(footprint))
-        }
-        words::RoofShape::Hipped => hipped(footprint).or_else(|| bent(footprint)),
+        words::RoofShape::Gabled => over_gables(),
+        words::RoofShape::Hipped => over_hips(),
         words::RoofShape::Pyramidal => pyramidal(footprint),
+        words::RoofShape::Skillion => skillion(footprint, turn),
+        words::RoofShape::HalfHipped => half_hipped(footprint, turn).or_else(over_hips),
+        words::RoofShape::Gambrel => gambrel(footprint, turn).or_else(over_gables),
+        words::RoofShape::Saltbox => saltbox(footprint, turn).or_else(over_gables),
+        words::RoofShape::Round => round(footprint, turn).or_else(over_gables),
+        words::RoofShape::Mansard => over_hips().map(|hips| mansard(hips.clone()).unwrap_or(hips)),
+        words::RoofShape::Dome => dome(footprint).or_else(|| pyramidal(footprint)),
     };
     made.unwrap_or_else(|| flat(footprint))
 }
@@ -74,13 +84,11 @@ fn flat(footprint: &BuildingFootprint) -> UnitRoof {
 }
 
 /// Two planes from the ridge, along the middle of the best-fitting rectangle, down to the eaves.
-fn gabled(footprint: &BuildingFootprint) -> Option<UnitRoof> {
+fn gabled(footprint: &BuildingFootprint, turn: RoofTurn) -> Option<UnitRoof> {
     let ring = footprint.exterior();
-    let frame = RoofRectangle::around(ring).filter(|_| !footprint.has_courtyards())?;
-    if footprint.area_m2() < RECTANGULAR * frame.area_m2() {
-        return None;
-    }
-    let aside = |at: DVec2| (at - frame.center).dot(frame.along.perp());
+    let frame =
+        RoofRectangle::filled(ring, footprint.area_m2(), turn).filter(|_| !footprint.has_courtyards())?;
+    let aside = |at: DVec2| frame.aside(at);
     let run_m = ring.iter().map(|&at| aside(at).abs()).fold(0.0, f64::max);
     let (with_ridge, crossings) = crossed(ring, aside)?;
     let risen = |at: &DVec2| at.extend((1.0 - aside(*at).abs() / run_m).max(0.0));
@@ -95,8 +103,8 @@ fn gabled(footprint: &BuildingFootprint) -> Option<UnitRoof> {
     Some(UnitRoof { shape: words::RoofShape::Gabled, edge: vec![edge], faces: vec![side, other], run_m })
 }
 
-/// No vertex of a gabled roof's footprint may lie nearer to the ridge, meters.
-const LEAST_ASIDE_M: f64 = 0.02;
+/// No vertex of a footprint may lie nearer to a ridge or a bend of its roof, meters.
+pub(crate) const LEAST_ASIDE_M: f64 = 0.02;
 
 /// The ring with a vertex at both crossings of the line where `aside` is 0, and their indices; `None` otherwise.
 fn crossed(ring: &[DVec2], aside: impl Fn(DVec2) -> f64) -> Option<(Vec<DVec2>, [usize; 2])> {
@@ -125,22 +133,7 @@ fn bent(footprint: &BuildingFootprint) -> Option<UnitRoof> {
     (run_m > LEAST_VIEW_M).then_some(UnitRoof { shape: words::RoofShape::Hipped, edge, faces, run_m })
 }
 
-/// Planes from every wall up to one point over the middle.
-fn pyramidal(footprint: &BuildingFootprint) -> Option<UnitRoof> {
-    let ring = footprint.exterior();
-    let middle = centroid(ring);
-    let distance =
-        |(from, to): (DVec2, DVec2)| (to - from).perp_dot(middle - from) / (to - from).length().max(1e-9);
-    let nearest = polygon::edges(ring).map(distance).fold(f64::INFINITY, f64::min);
-    if footprint.has_courtyards() || nearest < LEAST_VIEW_M {
-        return None;
-    }
-    let top = middle.extend(1.0);
-    let faces = polygon::edges(ring).map(|(from, to)| vec![from.extend(0.0), to.extend(0.0), top]).collect();
-    Some(UnitRoof { shape: words::RoofShape::Pyramidal, edge: level_edge(footprint), faces, run_m: nearest })
-}
-
-/// How far the middle must lie within every wall's line for one point to roof them all, meters.
+/// A hipped roof over inward corners rises at least so far inward, meters.
 const LEAST_VIEW_M: f64 = 0.05;
 
 /// The center of a ring's area.
@@ -153,45 +146,6 @@ pub fn centroid(ring: &[DVec2]) -> DVec2 {
         area += a.perp_dot(b);
     }
     if area == 0.0 { first } else { first + sum / (3.0 * area) }
-}
-
-/// The smallest rectangle around a ring that has a side along one of its edges.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct RoofRectangle {
-    center: DVec2,
-    /// A unit vector along the longer sides.
-    along: DVec2,
-    /// Half the longer and half the shorter side.
-    half: DVec2,
-}
-
-impl RoofRectangle {
-    fn around(ring: &[DVec2]) -> Option<Self> {
-        if ring.len() > MOST_VERTICES {
-            return None;
-        }
-        let frames = polygon::edges(ring).filter_map(|(from, to)| (to - from).try_normalize());
-        frames.map(|along| Self::along(ring, along)).min_by(|a, b| a.area_m2().total_cmp(&b.area_m2()))
-    }
-
-    fn along(ring: &[DVec2], along: DVec2) -> Self {
-        let spans = |way: DVec2| {
-            let reach = ring.iter().map(|at| (at - ring[0]).dot(way));
-            reach.fold((0.0, 0.0), |(low, high), at| (f64::min(low, at), f64::max(high, at)))
-        };
-        let ((x0, x1), (y0, y1)) = (spans(along), spans(along.perp()));
-        let center = ring[0] + along * (x0 + x1) / 2.0 + along.perp() * (y0 + y1) / 2.0;
-        let half = DVec2::new(x1 - x0, y1 - y0) / 2.0;
-        if half.x >= half.y {
-            Self { center, along, half }
-        } else {
-            Self { center, along: along.perp(), half: DVec2::new(half.y, half.x) }
-        }
-    }
-
-    fn area_m2(&self) -> f64 {
-        4.0 * self.half.x * self.half.y
-    }
 }
 
 /// A face of a roof that does not face up.
@@ -256,6 +210,25 @@ mod tests {
             let roof = roof(&footprint(&HOUSE, turn), words::RoofShape::Pyramidal);
             assert_eq!((roof.shape, roof.faces.len()), (words::RoofShape::Pyramidal, 4));
             assert!((roof.run_m - 4.0).abs() < 1e-6 && (check(&roof).expect("upward") - 96.0).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn a_ridge_runs_across_or_square_to_a_direction_where_that_is_stated() {
+        for turn_deg in TURNS {
+            let turn = DVec2::from_angle(turn_deg.to_radians());
+            // The slopes of a house along X that is turned fall along Y; across it they fall along X.
+            for (wish, length_m) in [
+                (RoofTurn::Across, 8.0),
+                (RoofTurn::Facing(turn), 8.0),
+                (RoofTurn::Facing(-turn), 8.0),
+                (RoofTurn::Facing(turn.perp()), 12.0),
+            ] {
+                let roof = turned_roof(&footprint(&HOUSE, turn_deg), words::RoofShape::Gabled, wish);
+                let ends: Vec<&DVec3> = roof.edge[0].iter().filter(|at| at.z == 1.0).collect();
+                assert!((ends[0].distance(*ends[1]) - length_m).abs() < 1e-6, "{wish:?} at {turn_deg}");
+                assert!((check(&roof).expect("upward") - 96.0).abs() < 1e-6);
+            }
         }
     }
 

@@ -3,13 +3,20 @@
 //! A position has three numbers, the third NaN without an elevation. The builder leaves out and counts positions that
 //! are not finite, lines of one vertex and rings of two. It removes the closing vertex of rings, and splits a feature
 //! of several kinds of shape into one each for its points, lines and polygons.
+//!
+//! A record that cannot be read is left out, and the layer states where it is and why, so that one odd record does not
+//! cost the others. Where none is sound the file is refused with the first error, and so it is where most coordinates
+//! lie out of range: then their system is another.
 
+use std::fmt::Display;
 use std::iter;
 
 use glam::{DVec2, DVec3};
 
+use crate::broken_records::BrokenRecords;
 use crate::error::VectorError;
 use crate::feature::{Feature, Geometry, Polygon, Properties, VectorLayer};
+use crate::tally::RecordTally;
 use sandtable_geom::crs::Crs;
 
 /// The vertices of a line or a ring.
@@ -21,10 +28,16 @@ pub(crate) fn position(x: f64, y: f64, elevation: Option<f64>) -> DVec3 {
 
 pub(crate) struct LayerBuilder {
     crs: Crs,
+    /// The records so far, also those left out.
     feature_count: usize,
+    /// The records with a usable shape.
+    sound_count: usize,
     features: Vec<Feature>,
-    omitted: OmissionCounts,
+    omitted: [RecordTally; OMISSIONS.len()],
+    broken: BrokenRecords,
+    out_of_range: BrokenRecords,
     notes: Vec<String>,
+    faults: Vec<String>,
 }
 
 #[derive(Default)]
@@ -43,41 +56,72 @@ enum Omission {
     PositionNotFinite,
     ShortLine,
     SmallRing,
+    Elevation,
 }
 
-/// How often each [`Omission`] occurred.
-type OmissionCounts = [usize; 5];
+/// How often each [`Omission`] occurred in a record.
+type OmissionCounts = [usize; OMISSIONS.len()];
 
-const OMISSIONS: [&str; 5] = [
-    "features without a usable geometry",
-    "positions of less than two numbers",
-    "positions that are not numbers",
-    "lines of less than two vertices",
-    "rings of less than three vertices",
+/// What was left out: one, and several.
+const OMISSIONS: [[&str; 2]; 6] = [
+    ["feature without a usable geometry", "features without a usable geometry"],
+    ["position of less than two numbers", "positions of less than two numbers"],
+    ["position that is not a number", "positions that are not numbers"],
+    ["line of less than two vertices", "lines of less than two vertices"],
+    ["ring of less than three vertices", "rings of less than three vertices"],
+    ["elevation that is not a number", "elevations that are not numbers"],
 ];
 
 impl LayerBuilder {
     pub fn new(crs: Crs) -> Self {
-        let omitted = OmissionCounts::default();
-        Self { crs, feature_count: 0, features: Vec::new(), omitted, notes: Vec::new() }
+        Self {
+            crs,
+            feature_count: 0,
+            sound_count: 0,
+            features: Vec::new(),
+            omitted: Default::default(),
+            broken: BrokenRecords::default(),
+            out_of_range: BrokenRecords::default(),
+            notes: Vec::new(),
+            faults: Vec::new(),
+        }
     }
 
-    /// Adds the file's next feature. One without a usable shape is counted and left out.
-    ///
-    /// # Errors
-    /// [`VectorError::NotDegrees`] or [`VectorError::TooFar`].
-    pub fn add(&mut self, parts: FeatureParts, mut properties: Properties) -> Result<(), VectorError> {
+    /// Adds the file's next feature. One without a usable shape, or with coordinates that cannot be of the layer's
+    /// system, is counted and left out.
+    pub fn add(&mut self, parts: FeatureParts, properties: Properties) {
+        let number = self.feature_count + 1;
+        self.add_at(parts, properties, || format!("feature {number}"));
+    }
+
+    /// [`Self::add`] of the record at a place of the file, which is computed where a message names it.
+    pub fn add_at(&mut self, parts: FeatureParts, mut properties: Properties, place: impl Fn() -> String) {
         self.feature_count += 1;
-        self.omitted[Omission::Feature as usize] += usize::from(parts.is_empty());
-        self.omitted.iter_mut().zip(parts.omitted).for_each(|(sum, count)| *sum += count);
-        let mut shapes = parts.into_shapes().peekable();
-        while let Some((geometry, elevations)) = shapes.next() {
-            check_range(&geometry, &self.crs, self.feature_count)?;
-            let is_last = shapes.peek().is_none();
-            let properties = if is_last { std::mem::take(&mut properties) } else { properties.clone() };
+        self.omitted[Omission::Feature as usize].add_many(usize::from(parts.is_empty()), &place);
+        self.omitted.iter_mut().zip(parts.omitted).for_each(|(tally, count)| tally.add_many(count, &place));
+        let shapes: Vec<_> = parts.into_shapes().collect();
+        let checked =
+            shapes.iter().try_for_each(|(geometry, _)| check_range(geometry, &self.crs, self.feature_count));
+        if let Err(error) = checked {
+            return self.out_of_range.add(place(), error);
+        }
+        self.sound_count += usize::from(!shapes.is_empty());
+        let last = shapes.len().saturating_sub(1);
+        for (index, (geometry, elevations)) in shapes.into_iter().enumerate() {
+            let properties = if index == last { std::mem::take(&mut properties) } else { properties.clone() };
             self.features.push(Feature { geometry, elevations, properties });
         }
-        Ok(())
+    }
+
+    /// Leaves out the file's next feature, which cannot be read.
+    pub fn add_broken(&mut self, place: impl Display, error: VectorError) {
+        self.feature_count += 1;
+        self.report_broken(place, error);
+    }
+
+    /// Reports a part of a feature that cannot be read, such as a point of a track, and is left out.
+    pub fn report_broken(&mut self, place: impl Display, error: VectorError) {
+        self.broken.add(place, error);
     }
 
     /// Returns how many features were added, with a usable shape or without.
@@ -90,25 +134,44 @@ impl LayerBuilder {
         self.features.is_empty()
     }
 
+    /// Returns whether some record could not be read.
+    pub fn has_broken_records(&self) -> bool {
+        self.broken.count() + self.out_of_range.count() > 0
+    }
+
+    /// Adds a note on how the file is read.
     pub fn note(&mut self, note: impl Into<String>) {
         self.notes.push(note.into());
     }
 
-    /// Notes that `count` of something were left out, if any.
-    pub fn note_omitted(&mut self, count: usize, what: &str) {
-        self.notes.extend(omission_note(count, what));
+    /// Adds a note on something that is wrong with the file.
+    pub fn fault(&mut self, fault: impl Into<String>) {
+        self.faults.push(fault.into());
     }
 
-    pub fn finish(self) -> VectorLayer {
-        let counted = self.omitted.into_iter().zip(OMISSIONS);
-        let notes =
-            counted.filter_map(|(count, what)| omission_note(count, what)).chain(self.notes).collect();
-        VectorLayer { features: self.features, crs: self.crs, notes }
+    /// Notes what was counted as left out, if anything was.
+    pub fn note_omitted(&mut self, tally: &RecordTally, one: &str, many: &str) {
+        self.notes.extend(tally.text(one, many).map(|text| format!("left out: {text}")));
     }
-}
 
-fn omission_note(count: usize, what: &str) -> Option<String> {
-    (count > 0).then(|| format!("left out: {count} {what}"))
+    /// Returns the layer.
+    ///
+    /// # Errors
+    /// The first error of a record where no record is sound, and [`VectorError::NotDegrees`] or
+    /// [`VectorError::TooFar`] where more records lie out of range than within.
+    pub fn finish(self) -> Result<VectorLayer, VectorError> {
+        let Self { crs, features, omitted, broken, out_of_range, notes, mut faults, sound_count, .. } = self;
+        faults.splice(0..0, broken.text().into_iter().chain(out_of_range.text()));
+        if out_of_range.count() > sound_count {
+            out_of_range.first_error()?;
+        }
+        if features.is_empty() {
+            broken.first_error()?;
+        }
+        let counted = omitted.iter().zip(OMISSIONS).filter_map(|(tally, [one, many])| tally.text(one, many));
+        let notes = counted.map(|text| format!("left out: {text}")).chain(notes).collect();
+        Ok(VectorLayer { features, crs, notes, faults })
+    }
 }
 
 impl FeatureParts {
@@ -143,6 +206,11 @@ impl FeatureParts {
 
     pub fn count_short_position(&mut self) {
         self.omitted[Omission::ShortPosition as usize] += 1;
+    }
+
+    /// Counts an elevation that is there and is no number; its position is kept.
+    pub fn count_elevation(&mut self) {
+        self.omitted[Omission::Elevation as usize] += 1;
     }
 
     pub fn is_empty(&self) -> bool {
@@ -224,8 +292,8 @@ mod tests {
 
     fn layer(parts: FeatureParts) -> VectorLayer {
         let mut builder = LayerBuilder::new(Crs::wgs84());
-        builder.add(parts, Properties::new()).expect("degrees");
-        builder.finish()
+        builder.add(parts, Properties::new());
+        builder.finish().expect("degrees")
     }
 
     #[test]
@@ -248,13 +316,54 @@ mod tests {
         for (x, is_refused) in [(-9.99e8, false), (1.1e9, true), (1e308, true)] {
             let mut parts = FeatureParts::default();
             parts.add_line(vec![DVec3::new(1.0, 2.0, f64::NAN), DVec3::new(x, 0.0, f64::NAN)]);
-            let added = LayerBuilder::new(Crs::local()).add(parts, Properties::new());
+            let mut builder = LayerBuilder::new(Crs::local());
+            builder.add(parts, Properties::new());
+            let read = builder.finish();
             assert_eq!(
-                matches!(added, Err(VectorError::TooFar { feature: 1, .. })),
+                matches!(read, Err(VectorError::TooFar { feature: 1, .. })),
                 is_refused,
-                "{x}: {added:?}"
+                "{x}: {read:?}"
             );
         }
+    }
+
+    fn point(x: f64, y: f64) -> FeatureParts {
+        let mut parts = FeatureParts::default();
+        parts.add_points(vec![DVec3::new(x, y, f64::NAN)]);
+        parts
+    }
+
+    #[test]
+    fn few_records_out_of_range_are_left_out_and_many_refuse_the_layer() {
+        let read = |latitudes: &[f64]| {
+            let mut builder = LayerBuilder::new(Crs::wgs84());
+            latitudes.iter().for_each(|&y| builder.add(point(1.0, y), Properties::new()));
+            builder.finish()
+        };
+        let layer = read(&[1.0, 91.0]).expect("one of two");
+        assert_eq!(layer.features.len(), 1);
+        assert!(
+            layer.faults[0]
+                .starts_with("left out: 1 record that cannot be read: feature 2: a vertex at (1, 91)"),
+            "{:?}",
+            layer.faults
+        );
+        let error = read(&[1.0, 91.0, 92.0]).expect_err("two of three").to_string();
+        assert!(error.contains("feature 2 has a vertex at (1, 91)"), "{error}");
+    }
+
+    #[test]
+    fn broken_records_are_left_out_and_reported_unless_there_are_no_others() {
+        let broken = |number: usize| VectorError::broken("file", format!("line {number}"), "no number");
+        let mut builder = LayerBuilder::new(Crs::wgs84());
+        (1..=5).for_each(|number| builder.add_broken(format!("line {number}"), broken(number)));
+        builder.add(point(1.0, 2.0), Properties::new());
+        let layer = builder.finish().expect("one is sound");
+        let expected = "left out: 5 records that cannot be read: line 1: no number; line 2: no number; line 3: no number; ...";
+        assert_eq!((layer.features.len(), &layer.faults[..]), (1, &[expected.to_owned()][..]));
+        let mut alone = LayerBuilder::new(Crs::wgs84());
+        alone.add_broken("line 7", broken(7));
+        assert!(alone.finish().expect_err("nothing is sound").to_string().contains("line 7: no number"));
     }
 
     #[test]
@@ -267,7 +376,10 @@ mod tests {
         assert_eq!(layer.features[0].elevations, None);
         assert_eq!(
             layer.notes,
-            ["left out: 2 positions that are not numbers", "left out: 1 lines of less than two vertices"]
+            [
+                "left out: 2 positions that are not numbers (feature 1)",
+                "left out: 1 line of less than two vertices (feature 1)"
+            ]
         );
     }
 }

@@ -98,6 +98,20 @@ impl VectorError {
         Self::Broken { format, place: place.to_string(), source: source.into() }
     }
 
+    /// Returns what is wrong with the record at `place`, unless the error knows a place of its own, where the rest of the
+    /// file is read.
+    pub(crate) fn of_record(&self, place: &str) -> String {
+        match self {
+            Self::Broken { place, source, .. } => format!("{place}: {source}"),
+            Self::Unsupported { content, .. } => format!("{place}: {content}, which cannot be read"),
+            Self::NotDegrees { x, y, crs, .. } => {
+                format!("{place}: a vertex at ({x}, {y}) cannot be longitude and latitude in {crs}")
+            }
+            Self::TooFar { x, y, .. } => format!("{place}: a vertex at ({x:e}, {y:e}) lies on no map"),
+            other => format!("{place}: {other}"),
+        }
+    }
+
     /// A [`VectorError::Unsupported`] about curves, which no reader turns into lines.
     pub(crate) fn curves(format: &'static str, kind: &str) -> Self {
         Self::Unsupported {

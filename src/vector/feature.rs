@@ -17,8 +17,10 @@ pub struct VectorLayer {
     pub features: Vec<Feature>,
     /// The system of all coordinates: the file's own, else its format's default.
     pub crs: Crs,
-    /// Notes for the user on omissions, and on errors in the file.
+    /// Notes for the user on what the format allows and a scene cannot use, such as features without a shape.
     pub notes: Vec<String>,
+    /// Sentences for the user on what is wrong with the file: records that cannot be read and are left out.
+    pub faults: Vec<String>,
 }
 
 /// One feature.
@@ -54,6 +56,11 @@ pub struct Polygon {
 }
 
 impl VectorLayer {
+    /// Returns the faults of the file, then the notes.
+    pub fn reading_notes(&self) -> impl Iterator<Item = &String> {
+        self.faults.iter().chain(&self.notes)
+    }
+
     /// Returns the same features in the system `to`.
     ///
     /// # Errors
@@ -138,7 +145,8 @@ mod tests {
         let polygon = Polygon { exterior: ring(0.1), holes: vec![ring(0.01)] };
         let geometry = Geometry::Polygons(vec![polygon]);
         let feature = Feature { geometry, elevations: None, properties: BTreeMap::new() };
-        let layer = VectorLayer { features: vec![feature], crs: Crs::wgs84(), notes: Vec::new() };
+        let layer =
+            VectorLayer { features: vec![feature], crs: Crs::wgs84(), notes: Vec::new(), faults: Vec::new() };
         let utm = Crs::utm_at(15.0, 48.0);
         let moved = layer.transformed(&utm).expect("in the zone");
         assert_eq!(moved.crs, utm);

@@ -97,6 +97,7 @@ mod tests {
             features: properties.iter().map(feature).collect(),
             crs: Crs::wgs84(),
             notes: Vec::new(),
+            faults: Vec::new(),
         }
     }
 

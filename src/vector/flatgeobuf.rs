@@ -27,10 +27,10 @@ pub(super) fn is_flatgeobuf(bytes: &[u8]) -> bool {
     bytes.starts_with(b"fgb\x03") || (bytes.starts_with(b"fgb") && bytes.get(4..7) == Some(b"fgb"))
 }
 
-/// Reads all features.
+/// Reads all features; those that are broken or have curves are left out and reported.
 ///
 /// # Errors
-/// [`VectorError`]: another version, a broken buffer, a shape with curves, no coordinate system.
+/// [`VectorError`]: another version, a file cut short, features of which none is sound, no coordinate system.
 pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
     let broken_header = |reason: &'static str| VectorError::broken(FORMAT, "its header", reason);
     if bytes.get(3) != Some(&3) {
@@ -53,7 +53,7 @@ pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, Vec
         let reason = format!("it has {} features of {promised} promised", layer.feature_count());
         return Err(VectorError::broken(FORMAT, "its end", reason));
     }
-    Ok(layer.finish())
+    layer.finish()
 }
 
 /// Reads a buffer with its length before it.
@@ -105,16 +105,31 @@ struct FgbReader<'a> {
 }
 
 impl FgbReader<'_> {
+    /// Reads the next feature into `layer`.
+    ///
+    /// # Errors
+    /// It reaches past the end of the file.
     fn read_feature(
         &mut self,
         cursor: &mut ByteCursor<'_>,
         layer: &mut LayerBuilder,
     ) -> Result<(), VectorError> {
         let place = format!("feature {}", layer.feature_count() + 1);
-        let broken = |reason: &'static str| VectorError::broken(FORMAT, &place, reason);
-        let buffer = next_buffer(cursor).ok_or_else(|| broken("it reaches past the end of the file"))?;
+        let buffer = next_buffer(cursor).ok_or_else(|| {
+            VectorError::broken(FORMAT, &place, "it is too short, or reaches past the end of the file")
+        })?;
+        match self.feature(buffer, &place) {
+            Ok((parts, properties)) => layer.add(parts, properties),
+            Err(error) => layer.add_broken(place, error),
+        }
+        Ok(())
+    }
+
+    /// Reads the feature in a buffer that has its length before it.
+    fn feature(&mut self, buffer: &[u8], place: &str) -> Result<(FeatureParts, Properties), VectorError> {
+        let broken = |reason: &'static str| VectorError::broken(FORMAT, place, reason);
         let feature = flatgeobuf::size_prefixed_root_as_feature(buffer)
-            .map_err(|error| VectorError::broken(FORMAT, &place, error))?;
+            .map_err(|error| VectorError::broken(FORMAT, place, error))?;
         let mut parts = FeatureParts::default();
         if let Some(geometry) = feature.geometry() {
             // Shapes that do not state their type have that of the layer.
@@ -128,7 +143,7 @@ impl FgbReader<'_> {
             )?;
         }
         let properties = properties(&self.header, &feature);
-        layer.add(parts, properties.ok_or_else(|| broken("its properties are broken"))?)
+        Ok((parts, properties.ok_or_else(|| broken("its properties are broken"))?))
     }
 
     fn add_shape(
@@ -231,8 +246,8 @@ fn value(cursor: &mut ByteCursor<'_>, column: &Column<'_>) -> Option<Value> {
             let bytes = cursor.take(length)?;
             match kind {
                 ColumnType::Binary => Value::Null,
-                ColumnType::Json => serde_json::from_slice(bytes).ok()?,
-                _ => std::str::from_utf8(bytes).ok()?.into(),
+                ColumnType::Json => serde_json::from_slice(bytes).unwrap_or(Value::Null),
+                _ => String::from_utf8_lossy(bytes).into(),
             }
         }
     })

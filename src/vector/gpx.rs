@@ -19,7 +19,8 @@ use crate::builder::{FeatureParts, LayerBuilder, Vertices, position};
 use crate::error::VectorError;
 use crate::feature::{Properties, VectorLayer};
 use crate::hints::VectorHints;
-use crate::xml::{self, XmlElement, XmlReader};
+use crate::xml::{self, DecodedXml, XmlElement, XmlReader};
+use sandtable_geom::crs::Crs;
 
 const FORMAT: &str = "GPX file";
 /// The first three are the choice where none is requested; the others are only read by name.
@@ -35,31 +36,48 @@ const PROPERTIES: [&str; 7] = ["name", "cmt", "desc", "src", "sym", "type", "num
 
 /// Reads the requested layer, or the only one that holds anything.
 ///
+/// Points without latitude and longitude on Earth are left out and reported.
+///
 /// # Errors
-/// [`VectorError`], also for a point without latitude or longitude.
+/// [`VectorError`], also where no point of the layer is sound.
 pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
-    let text = xml::decode(bytes, FORMAT)?;
+    let DecodedXml { text, fault } = xml::decode(bytes, FORMAT)?;
     let wanted = hints.layer.map(|_| hints.choose_layer(&LAYERS)).transpose()?;
     let layers = LAYERS.map(|_| LayerBuilder::new(hints.crs_or_wgs84()));
-    let mut reader = GpxReader { xml: XmlReader::new(&text, FORMAT), layers, wanted };
+    let is_geographic = hints.crs.is_none_or(Crs::is_geographic);
+    let mut reader = GpxReader { xml: XmlReader::new(&text, FORMAT), layers, wanted, is_geographic };
     reader.read()?;
     let has_features = |index: &usize| !reader.layers[*index].is_empty();
     let chosen = match (wanted, &(0..MAIN_LAYERS).filter(has_features).collect::<Vec<_>>()[..]) {
         (Some(wanted), _) => wanted,
-        (None, []) => WAYPOINTS,
+        (None, []) => {
+            let is_broken = |index: &usize| reader.layers[*index].has_broken_records();
+            (0..MAIN_LAYERS).find(is_broken).unwrap_or(WAYPOINTS)
+        }
         (None, &[only]) => only,
         (None, several) => {
             let names: Vec<&str> = several.iter().map(|&index| LAYERS[index]).collect();
             return Err(VectorError::which_layer(&names));
         }
     };
-    Ok(reader.layers.into_iter().nth(chosen).expect("an index of a layer").finish())
+    let mut layer = reader.layers.into_iter().nth(chosen).expect("an index of a layer");
+    fault.into_iter().for_each(|fault| layer.fault(fault));
+    layer.finish()
 }
 
 struct GpxReader<'a> {
     xml: XmlReader<'a>,
     layers: [LayerBuilder; LAYERS.len()],
     wanted: Option<usize>,
+    /// Whether coordinates are degrees, as they are unless another system is stated.
+    is_geographic: bool,
+}
+
+/// A point's position.
+struct GpxPosition {
+    position: DVec3,
+    /// Whether it has an elevation that is no number.
+    has_unread_elevation: bool,
 }
 
 impl<'a> GpxReader<'a> {
@@ -69,7 +87,7 @@ impl<'a> GpxReader<'a> {
             match child.name() {
                 "wpt" => {
                     let point = self.xml.read(child)?;
-                    self.add_point(WAYPOINTS, &point)?;
+                    self.add_point(WAYPOINTS, &point);
                 }
                 "rte" => self.read_route()?,
                 "trk" => self.read_track()?,
@@ -80,49 +98,74 @@ impl<'a> GpxReader<'a> {
     }
 
     fn read_route(&mut self) -> Result<(), VectorError> {
-        let (mut properties, mut line) = (Properties::new(), Vertices::new());
+        let (mut properties, mut parts) = (Properties::new(), FeatureParts::default());
+        let (mut line, start) = (Vertices::new(), self.xml.offset());
         while let Some(child) = self.xml.next_child()? {
             match child.name() {
-                "rtept" => line.push(self.read_vertex(child, ROUTE_POINTS)?),
+                "rtept" => line.extend(self.read_vertex(child, [ROUTES, ROUTE_POINTS], &mut parts)?),
                 _ => self.read_property(child, &mut properties)?,
             }
         }
-        let mut parts = FeatureParts::default();
         if !line.is_empty() {
             parts.add_line(line);
         }
-        self.layers[ROUTES].add(parts, properties)
+        let xml = &self.xml;
+        self.layers[ROUTES].add_at(parts, properties, || xml.line_at(start));
+        Ok(())
     }
 
     fn read_track(&mut self) -> Result<(), VectorError> {
         let (mut properties, mut parts) = (Properties::new(), FeatureParts::default());
+        let start = self.xml.offset();
         while let Some(child) = self.xml.next_child()? {
             match child.name() {
-                "trkseg" => parts.add_line(self.read_segment()?),
+                "trkseg" => {
+                    let line = self.read_segment(&mut parts)?;
+                    parts.add_line(line);
+                }
                 _ => self.read_property(child, &mut properties)?,
             }
         }
-        self.layers[TRACKS].add(parts, properties)
+        let xml = &self.xml;
+        self.layers[TRACKS].add_at(parts, properties, || xml.line_at(start));
+        Ok(())
     }
 
-    fn read_segment(&mut self) -> Result<Vertices, VectorError> {
+    fn read_segment(&mut self, parts: &mut FeatureParts) -> Result<Vertices, VectorError> {
         let mut line = Vertices::new();
         while let Some(child) = self.xml.next_child()? {
             match child.name() {
-                "trkpt" => line.push(self.read_vertex(child, TRACK_POINTS)?),
+                "trkpt" => line.extend(self.read_vertex(child, [TRACKS, TRACK_POINTS], parts)?),
                 _ => self.xml.skip()?,
             }
         }
         Ok(line)
     }
 
-    /// Reads a point of a line, and adds it to the layer `points` where that is requested.
-    fn read_vertex(&mut self, element: XmlElement<'a>, points: usize) -> Result<DVec3, VectorError> {
+    /// Reads a point of a line of a layer, and adds it to the layer of points where that is requested; `None` for one
+    /// that is left out.
+    fn read_vertex(
+        &mut self,
+        element: XmlElement<'a>,
+        [lines, points]: [usize; 2],
+        parts: &mut FeatureParts,
+    ) -> Result<Option<DVec3>, VectorError> {
         let point = self.xml.read(element)?;
         if self.wanted == Some(points) {
-            self.add_point(points, &point)?;
+            self.add_point(points, &point);
         }
-        self.position(&point)
+        Ok(match self.position(&point) {
+            Ok(GpxPosition { position, has_unread_elevation }) => {
+                if has_unread_elevation {
+                    parts.count_elevation();
+                }
+                Some(position)
+            }
+            Err(error) => {
+                self.layers[lines].report_broken("a point", error);
+                None
+            }
+        })
     }
 
     fn read_property(
@@ -138,8 +181,11 @@ impl<'a> GpxReader<'a> {
         Ok(())
     }
 
-    fn add_point(&mut self, layer: usize, point: &XmlElement<'_>) -> Result<(), VectorError> {
-        let position = self.position(point)?;
+    fn add_point(&mut self, layer: usize, point: &XmlElement<'_>) {
+        let GpxPosition { position, has_unread_elevation } = match self.position(point) {
+            Ok(position) => position,
+            Err(error) => return self.layers[layer].add_broken("a point", error),
+        };
         let is_property =
             |child: &&XmlElement<'_>| PROPERTIES.contains(&child.name()) || child.name() == "time";
         let property = |child: &XmlElement<'_>| (child.name().to_owned(), child.text().into());
@@ -149,13 +195,28 @@ impl<'a> GpxReader<'a> {
         }
         let mut parts = FeatureParts::default();
         parts.add_points(vec![position]);
-        self.layers[layer].add(parts, properties)
+        if has_unread_elevation {
+            parts.count_elevation();
+        }
+        let xml = &self.xml;
+        self.layers[layer].add_at(parts, properties, || xml.line_of(point));
     }
 
-    fn position(&self, point: &XmlElement<'_>) -> Result<DVec3, VectorError> {
-        let elevation = point.children_named("ele").last().and_then(|element| element.text().parse().ok());
+    fn position(&self, point: &XmlElement<'_>) -> Result<GpxPosition, VectorError> {
+        /// Twice round from the prime meridian, for lines that cross the antimeridian.
+        const MAX_LONGITUDE: f64 = 360.0;
+        let text = point.children_named("ele").last().map(XmlElement::text).filter(|text| !text.is_empty());
+        let elevation = text.as_ref().and_then(|text| text.parse().ok());
+        let has_unread_elevation = text.is_some() && elevation.is_none();
+        let is_on_earth =
+            |x: f64, y: f64| !self.is_geographic || (x.abs() <= MAX_LONGITUDE && y.abs() <= 90.0);
         match (point.number("lon"), point.number("lat")) {
-            (Some(x), Some(y)) => Ok(position(x, y, elevation)),
+            (Some(x), Some(y)) if is_on_earth(x, y) => {
+                Ok(GpxPosition { position: position(x, y, elevation), has_unread_elevation })
+            }
+            (Some(x), Some(y)) => Err(self
+                .xml
+                .broken_at(point, format!("a point at latitude {y} and longitude {x} is not on Earth"))),
             _ => {
                 let reason = "a point has no latitude (lat) or longitude (lon) that is a number";
                 Err(self.xml.broken_at(point, reason))
@@ -207,6 +268,21 @@ mod tests {
         assert!(error.contains("2 layers") && error.contains("waypoints, tracks"), "{error}");
         let error = read_layer(TEXT.as_bytes(), Some("track")).expect_err("none").to_string();
         assert!(error.contains("did you mean 'tracks'?"), "{error}");
+    }
+
+    #[test]
+    fn a_point_without_a_place_is_left_out_of_its_line_and_reported() {
+        let text = "<gpx>\n<wpt lat='1' lon='1'/><wpt lat='x' lon='2'/><trk><trkseg>\n<trkpt lat='1' lon='2'/>
+            <trkpt lon='2'/>\n<trkpt lat='95' lon='2'/><trkpt lat='3' lon='4'><ele>high</ele></trkpt></trkseg></trk></gpx>";
+        let tracks = read_layer(text.as_bytes(), Some("tracks")).expect("two points are sound");
+        assert_eq!(tracks.features[0].lines()[0].len(), 2);
+        let [fault] = &tracks.faults[..] else { panic!("one sentence: {:?}", tracks.faults) };
+        for part in ["2 records", "line 4: a point has no latitude", "line 5: a point at latitude 95"] {
+            assert!(fault.contains(part), "{fault}");
+        }
+        assert_eq!(tracks.notes, ["left out: 1 elevation that is not a number (line 2)"]);
+        let waypoints = read_layer(text.as_bytes(), Some("waypoints")).expect("one point is sound");
+        assert_eq!((waypoints.features.len(), waypoints.faults.len()), (1, 1));
     }
 
     #[test]

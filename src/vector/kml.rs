@@ -16,21 +16,24 @@ use crate::builder::{FeatureParts, LayerBuilder, Vertices, position};
 use crate::error::{VectorError, shorten};
 use crate::feature::{Properties, VectorLayer};
 use crate::hints::VectorHints;
-use crate::xml::{self, XmlElement, XmlReader};
+use crate::tally::RecordTally;
+use crate::xml::{self, DecodedXml, XmlElement, XmlReader};
 
 const FORMAT: &str = "KML file";
 
-/// Reads all placemarks, or those in the folders that have the name of the requested layer.
+/// Reads all placemarks, or those in the folders that have the name of the requested layer. Placemarks with coordinates
+/// that are not numbers are left out and reported.
 ///
 /// # Errors
-/// [`VectorError`], also for coordinates that are not numbers.
+/// [`VectorError`], also where no placemark is sound.
 pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
-    let text = xml::decode(bytes, FORMAT)?;
+    let DecodedXml { text, fault } = xml::decode(bytes, FORMAT)?;
     let mut reader = KmlReader {
         xml: XmlReader::new(&text, FORMAT),
         wanted: hints.layer,
         folders: Vec::new(),
         layer: LayerBuilder::new(hints.crs_or_wgs84()),
+        unplaced: RecordTally::new(),
     };
     let root = reader.xml.root()?;
     match root.name() {
@@ -41,7 +44,13 @@ pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, Vec
     let names: Vec<&str> = reader.folders.iter().map(String::as_str).collect();
     match reader.wanted.filter(|wanted| !names.contains(wanted)) {
         Some(wanted) => Err(VectorError::no_such_layer(wanted, &names)),
-        None => Ok(reader.layer.finish()),
+        None => {
+            let (one, many) =
+                ("moment of a track without a position", "moments of tracks without a position");
+            reader.layer.note_omitted(&reader.unplaced, one, many);
+            fault.into_iter().for_each(|fault| reader.layer.fault(fault));
+            reader.layer.finish()
+        }
     }
 }
 
@@ -51,12 +60,24 @@ struct KmlReader<'a> {
     /// The names of the folders that hold placemarks, in order.
     folders: Vec<String>,
     layer: LayerBuilder,
+    /// Moments of tracks without a position, which KML allows.
+    unplaced: RecordTally,
 }
 
 #[derive(Default)]
 struct Placemark {
     parts: FeatureParts,
     properties: Properties,
+    unplaced: usize,
+    /// The errors of moments of tracks, which are left out.
+    broken: Vec<VectorError>,
+}
+
+/// A tuple of coordinates.
+struct KmlTuple {
+    position: DVec3,
+    /// Whether it has an altitude that is no number.
+    has_unread_altitude: bool,
 }
 
 /// A tuple of coordinates that has no longitude or no latitude.
@@ -82,23 +103,34 @@ impl<'a> KmlReader<'a> {
             "Document" | "Folder" => self.read_container(),
             "Placemark" => {
                 let element = self.xml.read(element)?;
-                self.add(self.placemark(&element)?, folder)
+                self.add(&element, folder);
+                Ok(())
             }
             _ => self.xml.skip(),
         }
     }
 
-    fn add(&mut self, mut placemark: Placemark, folder: &str) -> Result<(), VectorError> {
-        if !folder.is_empty() {
-            if !self.folders.iter().any(|known| known == folder) {
-                self.folders.push(folder.to_owned());
-            }
-            placemark.properties.insert("folder".into(), folder.into());
+    fn add(&mut self, element: &XmlElement<'_>, folder: &str) {
+        if !folder.is_empty() && !self.folders.iter().any(|known| known == folder) {
+            self.folders.push(folder.to_owned());
         }
         if self.wanted.is_some_and(|wanted| wanted != folder) {
-            return Ok(());
+            return;
         }
-        self.layer.add(placemark.parts, placemark.properties)
+        let line = || self.xml.line_of(element);
+        match self.placemark(element) {
+            Ok(mut placemark) => {
+                if !folder.is_empty() {
+                    placemark.properties.insert("folder".into(), folder.into());
+                }
+                self.unplaced.add_many(placemark.unplaced, line);
+                for error in placemark.broken {
+                    self.layer.report_broken("a track", error);
+                }
+                self.layer.add_at(placemark.parts, placemark.properties, line);
+            }
+            Err(error) => self.layer.add_broken("a placemark", error),
+        }
     }
 
     fn placemark(&self, element: &XmlElement<'_>) -> Result<Placemark, VectorError> {
@@ -145,16 +177,26 @@ impl<'a> KmlReader<'a> {
         shape: &XmlElement<'_>,
         placemark: &mut Placemark,
     ) -> Result<Vec<Vertices>, VectorError> {
-        let (mut lists, mut track) = (Vec::new(), Vertices::new());
+        let (mut lists, mut inner, mut track) = (Vec::new(), Vec::new(), Vertices::new());
         for child in shape.children() {
             match child.name() {
-                "coordinates" => lists.push(self.coordinates(child)?),
-                // Of a gx:Track: "longitude latitude altitude".
-                "coord" => track.push(self.check(child, vertex(child.text().split_whitespace()))?),
-                "outerBoundaryIs" => drop(lists.splice(0..0, self.rings(child)?)),
-                "innerBoundaryIs" => lists.extend(self.rings(child)?),
+                "coordinates" => lists.push(self.coordinates(child, placemark)?),
+                // Of a gx:Track: "longitude latitude altitude", or nothing at a moment without a position.
+                "coord" => match child.text() {
+                    text if text.is_empty() => placemark.unplaced += 1,
+                    text => match self.check(child, tuple(text.split_whitespace())) {
+                        Ok(tuple) => track.push(placemark.position(&tuple)),
+                        Err(error) => placemark.broken.push(error),
+                    },
+                },
+                "outerBoundaryIs" => lists.extend(self.rings(child, placemark)?),
+                "innerBoundaryIs" => inner.extend(self.rings(child, placemark)?),
                 _ => {}
             }
+        }
+        // Holes of nothing are no polygon.
+        if !lists.is_empty() {
+            lists.append(&mut inner);
         }
         if !track.is_empty() {
             lists.push(track);
@@ -170,16 +212,25 @@ impl<'a> KmlReader<'a> {
         Ok(lists)
     }
 
-    fn rings(&self, boundary: &XmlElement<'_>) -> Result<Vec<Vertices>, VectorError> {
+    fn rings(
+        &self,
+        boundary: &XmlElement<'_>,
+        placemark: &mut Placemark,
+    ) -> Result<Vec<Vertices>, VectorError> {
         let rings = boundary.children_named("LinearRing");
         rings
             .flat_map(|ring| ring.children_named("coordinates"))
-            .map(|element| self.coordinates(element))
+            .map(|element| self.coordinates(element, placemark))
             .collect()
     }
 
-    fn coordinates(&self, element: &XmlElement<'_>) -> Result<Vertices, VectorError> {
-        self.check(element, vertices(&element.text()))
+    fn coordinates(
+        &self,
+        element: &XmlElement<'_>,
+        placemark: &mut Placemark,
+    ) -> Result<Vertices, VectorError> {
+        let tuples = self.check(element, tuples(&element.text()))?;
+        Ok(tuples.iter().map(|tuple| placemark.position(tuple)).collect())
     }
 
     fn check<T>(&self, element: &XmlElement<'_>, result: Result<T, InvalidTuple>) -> Result<T, VectorError> {
@@ -188,6 +239,14 @@ impl<'a> KmlReader<'a> {
 }
 
 impl Placemark {
+    /// Returns the position of a tuple; counts an altitude that is no number.
+    fn position(&mut self, tuple: &KmlTuple) -> DVec3 {
+        if tuple.has_unread_altitude {
+            self.parts.count_elevation();
+        }
+        tuple.position
+    }
+
     /// Adds `Data` with a `value`, and `SchemaData` with `SimpleData`.
     fn add_extended_data(&mut self, element: &XmlElement<'_>) {
         for data in element.children_named("Data") {
@@ -208,27 +267,31 @@ impl Placemark {
 
 /// Parses tuples "longitude,latitude,altitude" separated by white space. White space around a comma, which some
 /// programs write, does not separate.
-fn vertices(text: &str) -> Result<Vertices, InvalidTuple> {
-    let mut vertices = Vertices::new();
-    let mut tuple = String::new();
+fn tuples(text: &str) -> Result<Vec<KmlTuple>, InvalidTuple> {
+    let mut tuples = Vec::new();
+    let mut joined = String::new();
     for word in text.split_whitespace() {
-        let continues = tuple.ends_with(',') || word.starts_with(',');
-        if !continues && !tuple.is_empty() {
-            vertices.push(vertex(tuple.split(','))?);
-            tuple.clear();
+        let continues = joined.ends_with(',') || word.starts_with(',');
+        if !continues && !joined.is_empty() {
+            tuples.push(tuple(joined.split(','))?);
+            joined.clear();
         }
-        tuple.push_str(word);
+        joined.push_str(word);
     }
-    if !tuple.is_empty() {
-        vertices.push(vertex(tuple.split(','))?);
+    if !joined.is_empty() {
+        tuples.push(tuple(joined.split(','))?);
     }
-    Ok(vertices)
+    Ok(tuples)
 }
 
-fn vertex<'a>(parts: impl Iterator<Item = &'a str> + Clone) -> Result<DVec3, InvalidTuple> {
-    let mut numbers = parts.clone().map(|part| part.parse::<f64>().ok());
-    match (numbers.next().flatten(), numbers.next().flatten()) {
-        (Some(x), Some(y)) => Ok(position(x, y, numbers.next().flatten())),
+fn tuple<'a>(parts: impl Iterator<Item = &'a str> + Clone) -> Result<KmlTuple, InvalidTuple> {
+    let mut texts = parts.clone();
+    let mut number = || texts.next().map(|text| (text, text.parse::<f64>().ok()));
+    match (number(), number(), number()) {
+        (Some((_, Some(x))), Some((_, Some(y))), altitude) => Ok(KmlTuple {
+            position: position(x, y, altitude.and_then(|(_, altitude)| altitude)),
+            has_unread_altitude: altitude.is_some_and(|(text, number)| !text.is_empty() && number.is_none()),
+        }),
         _ => Err(InvalidTuple(shorten(&parts.collect::<Vec<_>>().join(",")))),
     }
 }
@@ -292,6 +355,14 @@ mod tests {
     }
 
     #[test]
+    fn a_name_in_another_encoding_costs_its_letters_alone() {
+        let text = b"<kml><Placemark><name>Caf\xe9</name><Point><coordinates>1,2</coordinates></Point></Placemark></kml>";
+        let layer = read(text, &VectorHints::default()).expect("well-formed");
+        assert_eq!(layer.features[0].properties["name"], "Caf\u{fffd}");
+        assert_eq!(layer.faults.len(), 1);
+    }
+
+    #[test]
     fn folders_are_layers() {
         let folder = |name: &str| {
             format!(
@@ -311,6 +382,28 @@ mod tests {
         assert_eq!(count(Some("Sights")).expect("one"), 1);
         let error = count(Some("paths")).expect_err("no such folder").to_string();
         assert!(error.contains("did you mean 'Paths'?") && error.contains("Paths, Sights"), "{error}");
+    }
+
+    #[test]
+    fn moments_without_a_position_and_odd_placemarks_are_left_out_and_reported() {
+        let layer = placemark(
+            "<Track><coord>1 2 3</coord>\n<coord/><coord>  </coord>\n<coord>4 x 5</coord><coord>4 5 6</coord></Track>
+             </Placemark>\n<Placemark><LineString><coordinates>1,2 3,y</coordinates></LineString></Placemark>
+             <Placemark><Point><coordinates>1,2,high</coordinates></Point></Placemark>
+             <Placemark><Polygon><innerBoundaryIs><LinearRing><coordinates>1,2 3,4 5,0</coordinates></LinearRing>
+             </innerBoundaryIs></Polygon>",
+        );
+        assert_eq!(layer.features.len(), 2);
+        assert_eq!(layer.features[0].lines()[0].len(), 2);
+        let expected = "left out: 2 records that cannot be read: line 3: '4,x,5' is not longitude and latitude; \
+            line 5: '3,y' is not longitude and latitude";
+        assert_eq!(layer.faults, [expected]);
+        let expected = [
+            "left out: 1 feature without a usable geometry (line 7)",
+            "left out: 1 elevation that is not a number (line 6)",
+            "left out: 2 moments of tracks without a position (line 1)",
+        ];
+        assert_eq!(layer.notes, expected);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Lines, polygons and points with properties, read from vector files: one file or folder for each format.
 
+mod broken_records;
 mod builder;
 mod encoding;
 pub mod error;
@@ -16,4 +17,5 @@ mod osm;
 pub mod read;
 mod rings;
 mod shapefile;
+mod tally;
 mod xml;

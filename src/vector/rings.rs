@@ -1,5 +1,9 @@
 //! Sorts unordered rings into polygons: finds the outer rings and the holes of each.
 //!
+//! Many writers know nothing of directions: where those of a shape contradict the places of its rings, the places decide.
+//! They do where all rings run the same way, and where a ring that runs as a hole lies in none that runs as an outer one
+//! but has rings in it. So do GDAL and QGIS.
+//!
 //! A ring lies inside another where at least two of three of its vertices do, since rings that touch share vertices.
 //! A hole belongs to the smallest ring around it. The search takes time that grows with the square of the number of
 //! rings, so a budget stops hostile files.
@@ -14,8 +18,8 @@ use sandtable_geom::rect::Rect;
 /// The rule by which a ring is a hole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum HoleRule {
-    /// It runs counter-clockwise inside one that runs clockwise (ESRI shapefiles). A shape without clockwise rings
-    /// follows [`HoleRule::Nesting`].
+    /// It runs counter-clockwise inside one that runs clockwise (ESRI shapefiles). A shape whose rings do not keep to
+    /// that follows [`HoleRule::Nesting`].
     Direction,
     /// It lies directly inside an outer ring; a ring inside a hole is an outer ring again (OpenStreetMap).
     Nesting,
@@ -25,6 +29,14 @@ pub(crate) enum HoleRule {
 #[derive(Debug, thiserror::Error)]
 #[error("too many rings lie inside one another; {RING_STEPS:#}")]
 pub(crate) struct RingLimitExceeded;
+
+/// The polygons of one shape.
+pub(crate) struct SortedRings {
+    /// The rings of each, the outer one first: polygons in the order of their outer rings, holes in their own.
+    pub polygons: Vec<Vec<Vertices>>,
+    /// Whether directions were to decide, and nesting did: some hole runs as an outer ring, or the other way round.
+    pub are_reversed: bool,
+}
 
 pub(crate) struct RingSorter {
     rule: HoleRule,
@@ -46,27 +58,65 @@ impl RingSorter {
         Self { rule, steps_left: RING_STEPS.get() }
     }
 
-    /// Returns the rings of each polygon, the outer one first: polygons in the order of their outer rings, holes in
-    /// their own.
+    /// Returns the polygons of a shape.
     ///
     /// # Errors
     /// [`RingLimitExceeded`] where the budget of the file is spent.
-    pub fn polygons(&mut self, rings: Vec<Vertices>) -> Result<Vec<Vec<Vertices>>, RingLimitExceeded> {
+    pub fn polygons(&mut self, rings: Vec<Vertices>) -> Result<SortedRings, RingLimitExceeded> {
         if rings.len() == 1 {
-            return Ok(vec![rings]);
+            return Ok(SortedRings { polygons: vec![rings], are_reversed: false });
         }
         let mut rings: Vec<SortedRing> = rings.into_iter().map(SortedRing::new).collect();
-        let by_direction = self.rule == HoleRule::Direction && rings.iter().any(SortedRing::is_clockwise);
         let mut by_size: Vec<usize> = (0..rings.len()).collect();
         by_size.sort_by(|&a, &b| rings[b].size().total_cmp(&rings[a].size()).then(a.cmp(&b)));
+        let clockwise = rings.iter().filter(|ring| ring.is_clockwise()).count();
+        let by_direction = self.rule == HoleRule::Direction && (1..rings.len()).contains(&clockwise);
+        if !by_direction || !self.nest_by_direction(&mut rings, &by_size)? {
+            self.nest(&mut rings, &by_size)?;
+        }
+        // A hole that runs as an outer ring, or a hole in a ring that runs as a hole.
+        let contradicts = |ring: &SortedRing| {
+            let around = ring.parent.filter(|_| ring.is_hole);
+            around.is_some_and(|around| ring.is_clockwise() || !rings[around].is_clockwise())
+        };
+        let are_reversed = self.rule == HoleRule::Direction && rings.iter().any(contradicts);
+        Ok(SortedRings { polygons: grouped(rings), are_reversed })
+    }
+
+    /// Finds the clockwise ring around each counter-clockwise one, and returns whether directions are to be believed:
+    /// not where a counter-clockwise ring lies in no clockwise one and has rings in it.
+    fn nest_by_direction(
+        &mut self,
+        rings: &mut [SortedRing],
+        by_size: &[usize],
+    ) -> Result<bool, RingLimitExceeded> {
         for (rank, &index) in by_size.iter().enumerate() {
-            if by_direction && rings[index].is_clockwise() {
+            if rings[index].is_clockwise() {
                 continue;
             }
             for &larger in by_size[..rank].iter().rev() {
-                if by_direction && !rings[larger].is_clockwise() {
-                    continue;
+                if rings[larger].is_clockwise() && self.is_inside(&rings[index], &rings[larger])? {
+                    rings[index].parent = Some(larger);
+                    rings[index].is_hole = true;
+                    break;
                 }
+            }
+            if rings[index].parent.is_none() {
+                for &smaller in &by_size[rank + 1..] {
+                    if self.is_inside(&rings[smaller], &rings[index])? {
+                        return Ok(false);
+                    }
+                }
+            }
+        }
+        Ok(true)
+    }
+
+    /// Finds the smallest ring around each; a ring in a hole is an outer ring again.
+    fn nest(&mut self, rings: &mut [SortedRing], by_size: &[usize]) -> Result<(), RingLimitExceeded> {
+        for (rank, &index) in by_size.iter().enumerate() {
+            (rings[index].parent, rings[index].is_hole) = (None, false);
+            for &larger in by_size[..rank].iter().rev() {
                 if self.is_inside(&rings[index], &rings[larger])? {
                     rings[index].parent = Some(larger);
                     rings[index].is_hole = !rings[larger].is_hole;
@@ -74,7 +124,7 @@ impl RingSorter {
                 }
             }
         }
-        Ok(grouped(rings))
+        Ok(())
     }
 
     fn is_inside(&mut self, ring: &SortedRing, other: &SortedRing) -> Result<bool, RingLimitExceeded> {
@@ -139,7 +189,7 @@ mod tests {
     }
 
     fn counts(rings: &[Vertices], rule: HoleRule) -> Vec<usize> {
-        let polygons = RingSorter::new(rule).polygons(rings.to_vec()).expect("few rings");
+        let polygons = RingSorter::new(rule).polygons(rings.to_vec()).expect("few rings").polygons;
         assert_eq!(polygons.iter().map(Vec::len).sum::<usize>(), rings.len());
         polygons.iter().map(Vec::len).collect()
     }
@@ -155,13 +205,29 @@ mod tests {
     fn by_direction_a_clockwise_ring_inside_another_is_no_hole() {
         let (big, inside, hole) = (square(0.0, 0.0, -8.0), square(3.0, 3.0, -1.0), square(-3.0, 0.0, 2.0));
         assert_eq!(counts(&[hole, big, inside.clone()], HoleRule::Direction), [2, 1]);
-        let all_turned = [square(0.0, 0.0, 8.0), square(0.0, 0.0, 2.0)];
-        assert_eq!(counts(&all_turned, HoleRule::Direction), [2], "none runs clockwise: nesting decides");
         assert_eq!(
             counts(&[inside, square(0.0, 50.0, 2.0)], HoleRule::Direction),
             [1, 1],
             "a hole in nothing"
         );
+    }
+
+    #[test]
+    fn rings_whose_directions_contradict_their_places_are_sorted_by_these() {
+        let sorted = |rings: &[Vertices]| {
+            let sorted = RingSorter::new(HoleRule::Direction).polygons(rings.to_vec()).expect("few");
+            (sorted.polygons.iter().map(Vec::len).collect::<Vec<_>>(), sorted.are_reversed)
+        };
+        let [outer, hole, island] = [8.0, 4.0, 2.0].map(|half| square(0.0, 0.0, half));
+        let [outer_cw, hole_cw, island_cw] = [-8.0, -4.0, -2.0].map(|half| square(0.0, 0.0, half));
+        let apart = square(40.0, 0.0, -3.0);
+        assert_eq!(sorted(&[outer.clone(), hole_cw.clone()]), (vec![2], true), "both turned");
+        assert_eq!(sorted(&[outer.clone(), hole.clone()]), (vec![2], true), "both counter-clockwise");
+        assert_eq!(sorted(&[outer_cw.clone(), hole_cw.clone()]), (vec![2], true), "both clockwise");
+        assert_eq!(sorted(&[outer, hole_cw, island, apart.clone()]), (vec![2, 1, 1], true), "all turned");
+        assert_eq!(sorted(&[outer_cw.clone(), hole.clone(), island_cw]), (vec![2, 1], false), "by the book");
+        assert_eq!(sorted(&[outer_cw, hole, apart.clone()]), (vec![2, 1], false));
+        assert_eq!(sorted(&[apart, square(0.0, 0.0, 1.0)]), (vec![1, 1], false), "apart from each other");
     }
 
     #[test]

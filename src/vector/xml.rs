@@ -5,6 +5,7 @@
 //! thousandfold by them. Elements lie at most [`XML_DEPTH`] deep.
 
 use std::borrow::Cow;
+use std::cell::Cell;
 use std::error::Error;
 
 use quick_xml::XmlVersion;
@@ -25,6 +26,8 @@ pub(crate) struct XmlReader<'a> {
     text: &'a str,
     format: &'static str,
     depth: usize,
+    /// Bytes of the text whose line breaks are counted, and how many there are: places are asked for in order.
+    counted: Cell<(usize, usize)>,
 }
 
 /// An element: its name and attributes and, once [`XmlReader::read`], its content.
@@ -40,22 +43,34 @@ enum XmlContent<'a> {
     Text(Cow<'a, str>),
 }
 
-/// Decodes a document by its byte order mark, else by its declaration, else as UTF-8.
+/// The text of a document.
+#[derive(Debug)]
+pub(crate) struct DecodedXml<'a> {
+    pub text: Cow<'a, str>,
+    /// A sentence about bytes that are not of the encoding.
+    pub fault: Option<String>,
+}
+
+/// Decodes a document by its byte order mark, else by its declaration, else as UTF-8. Bytes that are not UTF-8 although
+/// they should be, as of one name in another encoding, become replacement characters.
 ///
 /// # Errors
-/// The encoding is unknown, or the bytes are not UTF-8 although they should be.
-pub(crate) fn decode<'a>(bytes: &'a [u8], format: &'static str) -> Result<Cow<'a, str>, VectorError> {
+/// The encoding is unknown.
+pub(crate) fn decode<'a>(bytes: &'a [u8], format: &'static str) -> Result<DecodedXml<'a>, VectorError> {
     let (encoding, bytes) = match TextEncoding::from_mark(bytes) {
         Some(marked) => marked,
         None => (declared_encoding(bytes, format)?, bytes),
     };
     if !encoding.is_utf_8() {
-        return Ok(encoding.decode(bytes));
+        return Ok(DecodedXml { text: encoding.decode(bytes), fault: None });
     }
-    std::str::from_utf8(bytes).map(Cow::Borrowed).map_err(|error| {
-        let place = format!("byte {}", error.valid_up_to() + 1);
-        VectorError::broken(format, place, error)
-    })
+    let text = String::from_utf8_lossy(bytes);
+    let fault = std::str::from_utf8(bytes).err().map(|error| {
+        let at = error.valid_up_to();
+        let line = 1 + bytes[..at].iter().filter(|&&byte| byte == b'\n').count();
+        format!("the file is not all UTF-8: some letters are not read, the first in line {line}")
+    });
+    Ok(DecodedXml { text, fault })
 }
 
 fn declared_encoding(bytes: &[u8], format: &'static str) -> Result<TextEncoding, VectorError> {
@@ -77,7 +92,7 @@ impl<'a> XmlReader<'a> {
     pub fn new(text: &'a str, format: &'static str) -> Self {
         let mut reader = Reader::from_str(text);
         reader.config_mut().expand_empty_elements = true;
-        Self { reader, text, format, depth: 0 }
+        Self { reader, text, format, depth: 0, counted: Cell::new((0, 0)) }
     }
 
     /// Returns the error that the document is broken where the reader stands.
@@ -94,13 +109,23 @@ impl<'a> XmlReader<'a> {
         VectorError::broken(self.format, self.line_at(element.offset), source)
     }
 
-    fn offset(&self) -> usize {
-        usize::try_from(self.reader.buffer_position()).unwrap_or(usize::MAX).min(self.text.len())
+    /// Returns the line of `element` as text.
+    pub fn line_of(&self, element: &XmlElement<'_>) -> String {
+        self.line_at(element.offset)
     }
 
-    fn line_at(&self, offset: usize) -> String {
-        let breaks = self.text.as_bytes()[..offset].iter().filter(|&&byte| byte == b'\n').count();
+    /// Returns the line of the byte at `offset` as text.
+    pub fn line_at(&self, offset: usize) -> String {
+        let (from, before) = Some(self.counted.get()).filter(|(from, _)| *from <= offset).unwrap_or_default();
+        let breaks =
+            before + self.text.as_bytes()[from..offset].iter().filter(|&&byte| byte == b'\n').count();
+        self.counted.set((offset, breaks));
         format!("line {}", breaks + 1)
+    }
+
+    /// Returns the bytes of the document up to where the reader is.
+    pub fn offset(&self) -> usize {
+        usize::try_from(self.reader.buffer_position()).unwrap_or(usize::MAX).min(self.text.len())
     }
 
     /// Opens the outermost element.
@@ -291,10 +316,12 @@ mod tests {
     #[test]
     fn encodings_are_known_by_the_declaration_or_the_mark() {
         let latin = b"<?xml version=\"1.0\" encoding='ISO-8859-1'?><a>\xe9</a>";
-        assert!(decode(latin, "XML").expect("known").ends_with("<a>é</a>"));
+        assert!(decode(latin, "XML").expect("known").text.ends_with("<a>é</a>"));
         let wide: Vec<u8> = "\u{feff}<a>é</a>".encode_utf16().flat_map(u16::to_le_bytes).collect();
-        assert_eq!(decode(&wide, "XML").expect("known"), "<a>é</a>");
-        assert!(decode(b"<a>\xe9</a>", "XML").expect_err("not UTF-8").to_string().contains("byte 4"));
+        assert_eq!(decode(&wide, "XML").expect("known").text, "<a>é</a>");
+        let mixed = decode(b"<a>\n\xe9 \xc3\xa9</a>", "XML").expect("known");
+        assert_eq!(mixed.text, "<a>\n\u{fffd} é</a>");
+        assert!(mixed.fault.is_some_and(|fault| fault.contains("line 2")));
         let other = b"<?xml version=\"1.0\" encoding=\"EBCDIC\"?><a/>";
         assert!(decode(other, "XML").expect_err("unknown").to_string().contains("EBCDIC"));
     }

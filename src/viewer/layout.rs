@@ -7,6 +7,7 @@ use egui::{
 use crate::app::{ViewerApp, ViewerStage};
 use crate::commands::{ViewCommand, key_text};
 use crate::panels::detail::detail_panel;
+use crate::panels::findings::{findings_panel, findings_title};
 use crate::panels::help::help_panel;
 use crate::panels::light::{LightEvent, light_panel};
 use crate::panels::open::open_panel;
@@ -156,6 +157,11 @@ impl ViewerApp {
                 Some(TreeEvent::GoTo(_)) | None => {}
             }
         });
+        if !opened.scene.findings.is_empty() {
+            let title = RichText::new(findings_title(&opened.scene.findings)).strong();
+            let header = CollapsingHeader::new(title).id_salt("Findings");
+            header.show(ui, |ui| findings_panel(ui, &opened.scene.findings));
+        }
         header("Light and heights").show(ui, |ui| {
             let (middle, crs) =
                 (opened.scene.lattice.map_point(opened.bounds().center()), opened.scene.crs.clone());

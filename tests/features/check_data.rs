@@ -133,6 +133,7 @@ fn of_files() -> Vec<Seed> {
         seed("file-outside", NEXT + 1, "[[road]]\nfile = \"../../road.geojson\"\n"),
         seed("wrong-format", NEXT + 1, file).with("road.geojson", "<!DOCTYPE html><html></html>"),
         seed("unreadable-file", NEXT + 1, file).with("road.geojson", "{\"type\": \"LineString\", \"coor"),
+        seed("records-broken", NEXT + 1, file).with("road.geojson", with_an_odd_feature()),
         seed("texture-missing", NEXT + 1, "[[model]]\nfile = \"box.obj\"\nat = [750110, 4018283]\n")
             .with("box.obj", "mtllib box.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nf 1/1 2/1 3/1\nf 1/1 2/1 4/1\nf 2/1 3/1 4/1\nf 1/1 3/1 4/1\n")
             .with("box.mtl", "newmtl a\nmap_Kd bricks.png\n"),
@@ -140,6 +141,13 @@ fn of_files() -> Vec<Seed> {
             .with("box.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 3 4\nf 1 2\n"),
         seed("symbol-incomplete", NEXT + 2, "[[symbol]]\nat = [750110, 4018283]\nsidc = \"10031500001205000000\"\n"),
     ]
+}
+
+/// A GeoJSON file of a road on the hill and a feature that is none.
+fn with_an_odd_feature() -> &'static str {
+    r#"{"type": "FeatureCollection", "crs": {"type": "name", "properties": {"name": "EPSG:32616"}}, "features": [
+        {"type": "Feature", "properties": {}, "geometry": {"type": "Blob", "coordinates": []}},
+        {"type": "Feature", "properties": {}, "geometry": {"type": "LineString", "coordinates": [[750100, 4018100], [750300, 4018200]]}}]}"#
 }
 
 /// Coordinates that are in another system than stated.

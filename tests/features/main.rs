@@ -5,6 +5,7 @@ mod common;
 
 mod areas;
 mod bridges;
+mod building_tags;
 mod buildings;
 mod check_built;
 mod check_data;
@@ -12,6 +13,8 @@ mod check_walk;
 mod conform;
 mod earthworks;
 mod fences;
+mod left_out;
+mod level_ground;
 mod roads;
 mod vector_files;
 mod water;

@@ -120,13 +120,16 @@ fn compare(expected: &Value) -> Option<()> {
     let features = expected["features"].as_u64().expect("a count");
     let empty = expected["null_geometries"].as_u64().expect("a count") + empty_of(expected);
     assert_eq!(layer.features.len() as u64, features - empty, "{title}");
+    assert!(layer.faults.is_empty(), "{title}: {:?}", layer.faults);
     if empty == 0 {
         assert!(layer.notes.is_empty(), "{title}: {:?}", layer.notes);
         let wanted: BTreeMap<String, u64> =
             serde_json::from_value(expected["types"].clone()).expect("counts");
         assert_eq!(types(&layer, expected), wanted, "{title}");
     } else {
-        assert_eq!(layer.notes, [format!("left out: {empty} features without a usable geometry")], "{title}");
+        let noun = if empty == 1 { "feature" } else { "features" };
+        let wanted = format!("left out: {empty} {noun} without a usable geometry (");
+        assert!(layer.notes.len() == 1 && layer.notes[0].starts_with(&wanted), "{title}: {:?}", layer.notes);
     }
     let vertices = expected["vertices"].as_u64().expect("a count");
     assert_eq!(stored_vertices(&layer) as u64, vertices, "{title}");
@@ -334,4 +337,26 @@ fn a_projected_file_comes_to_degrees_and_back() {
     for (there, here) in bounds(&back).iter().zip(bounds(&projected)) {
         assert!((there - here).abs() < 1e-4, "{there} {here}");
     }
+}
+
+#[test]
+fn a_broken_feature_of_a_flatgeobuf_file_is_left_out_and_the_others_are_read() {
+    let Some(path) = data("vector/poly_landmarks.fgb") else { return };
+    let bytes = std::fs::read(&path).expect("readable");
+    let local = Crs::local();
+    let hints = || VectorHints { crs: Some(&local), ..VectorHints::default() };
+    let count = read("a.fgb", &bytes, &hints()).expect("sound").features.len();
+    // Features are at the end, each with properties at its own end: a turned byte somewhere there breaks one.
+    let broken = (bytes.len() / 2..bytes.len()).step_by(11).find_map(|at| {
+        let mut turned = bytes.clone();
+        turned[at] ^= 0xff;
+        read("a.fgb", &turned, &hints()).ok().filter(|layer| !layer.faults.is_empty())
+    });
+    let layer = broken.expect("some byte breaks one feature");
+    assert_eq!(layer.features.len(), count - 1);
+    assert!(
+        layer.faults[0].starts_with("left out: 1 record that cannot be read: feature "),
+        "{:?}",
+        layer.faults
+    );
 }

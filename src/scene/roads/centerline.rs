@@ -3,9 +3,11 @@
 use crate::attributes::Attributes;
 use crate::builder::SceneBuilder;
 use crate::feature::FeatureKind;
+use crate::meant_number::Meaning;
 use crate::near;
 use crate::scene_findings::FeatureTable;
 use crate::sources::Sources;
+use crate::tag_notes::{NumberLimits, TagNotes};
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::features::RoadTable;
@@ -95,7 +97,7 @@ fn centerline(
             miter_limit: road.miter_limit,
             ..StrokeOptions::of(surface, width_m)
         },
-        level: level(road, &attributes, support),
+        level: level(road, &attributes, support, &mut collected.tag_notes),
         surface,
     };
     Centerline {
@@ -136,8 +138,9 @@ pub(crate) fn support(road: &RoadTable, attributes: &Attributes) -> Support {
     }
 }
 
-fn level(road: &RoadTable, attributes: &Attributes, support: Support) -> i32 {
-    let tagged = || attributes.get("layer").and_then(|layer| layer.number());
+fn level(road: &RoadTable, attributes: &Attributes, support: Support, notes: &mut TagNotes) -> i32 {
+    let limits = NumberLimits { low: -1000.0, includes_low: true, high: 1000.0 };
+    let tagged = || notes.number(attributes, &["layer"], Meaning::Count, limits);
     let by_support = match support {
         Support::Ground => 0.0,
         Support::Bridge => 1.0,

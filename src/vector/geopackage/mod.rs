@@ -57,7 +57,7 @@ pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, Vec
     let crs = hints.crs.cloned().map_or(own, Ok)?;
     let mut layer = LayerBuilder::new(crs);
     read_features(&connection, &table, &mut layer)?;
-    Ok(layer.finish())
+    layer.finish()
 }
 
 fn refused(place: &str, error: rusqlite::Error) -> VectorError {
@@ -138,21 +138,25 @@ fn read_features(
     let mut rows = statement.query([]).map_err(refused)?;
     while let Some(row) = rows.next().map_err(refused)? {
         let mut parts = FeatureParts::default();
-        if let ValueRef::Blob(blob) = row.get_ref(geometry).map_err(refused)? {
-            read_shape(blob, &mut parts).map_err(|error| match error {
+        if let ValueRef::Blob(blob) = row.get_ref(geometry).map_err(refused)?
+            && let Err(error) = read_shape(blob, &mut parts)
+        {
+            let feature = format!("feature {}", layer.feature_count() + 1);
+            let error = match error {
                 WkbError::Unsupported(kind) => VectorError::curves(FORMAT, kind),
                 WkbError::Broken | WkbError::TooDeep => {
-                    let place = format!("{place}, feature {}", layer.feature_count() + 1);
-                    VectorError::broken(FORMAT, place, error)
+                    VectorError::broken(FORMAT, format!("{place}, {feature}"), error)
                 }
-            })?;
+            };
+            layer.add_broken(feature, error);
+            continue;
         }
         let mut properties = Properties::new();
         for (index, column) in columns.iter().enumerate().filter(|&(index, _)| index != geometry) {
             let value = value(row.get_ref(index).map_err(refused)?, column);
             properties.insert(column.name.clone(), value);
         }
-        layer.add(parts, properties)?;
+        layer.add(parts, properties);
     }
     Ok(())
 }
@@ -248,8 +252,25 @@ mod tests {
         let expected = json!({"fid": 1, "name": "Main", "lanes": 2, "width": 7.5, "bridge": true,
             "built": "2020-01-31", "photo": null});
         assert_eq!(json!(road.properties), expected);
-        assert_eq!(layer.notes, ["left out: 1 features without a usable geometry"]);
+        assert_eq!(layer.notes, ["left out: 1 feature without a usable geometry (feature 2)"]);
         assert_eq!(layer.crs.epsg(), Some(4326));
+    }
+
+    #[test]
+    fn a_shape_that_is_broken_or_curved_is_left_out_and_reported() {
+        let curve = "x'47500001e61000000108000000020000000000000000000000'";
+        let more = format!(
+            "INSERT INTO \"my roads\" (fid, geom) VALUES (3, x'475000'), (4, {curve}), (5, {});",
+            line()
+        );
+        let layer = read(&database(&(roads(4326) + &more)), &VectorHints::default()).expect("two are sound");
+        assert_eq!(layer.features.len(), 2);
+        let [fault] = &layer.faults[..] else { panic!("one sentence: {:?}", layer.faults) };
+        for part in
+            ["2 records", "feature 3: a shape is cut short", "feature 4: shapes of the type CircularString"]
+        {
+            assert!(fault.contains(part), "{fault}");
+        }
     }
 
     #[test]

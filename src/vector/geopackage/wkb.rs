@@ -155,8 +155,8 @@ mod tests {
         let mut parts = FeatureParts::default();
         read(bytes, &mut parts)?;
         let mut builder = LayerBuilder::new(Crs::local());
-        builder.add(parts, Properties::new()).expect("meters");
-        Ok(builder.finish().features)
+        builder.add(parts, Properties::new());
+        Ok(builder.finish().expect("meters").features)
     }
 
     fn line(kind: u32, numbers: &[f64], count: u32) -> Vec<u8> {

@@ -82,11 +82,10 @@ impl<'a> AreaAssembler<'a> {
         let vertices = loops.iter().map(Vec::len).sum();
         self.vertices_left =
             self.vertices_left.checked_sub(vertices).ok_or_else(|| exceeded(too_many().into()))?;
-        let rings: Vec<Vertices> = loops.iter().map(|ids| data.positions(ids)).collect();
-        if rings.iter().zip(&loops).any(|(ring, ids)| ring.len() < ids.len()) {
-            return Ok(None);
-        }
-        self.sorter.polygons(rings).map(Some).map_err(|error| exceeded(error.into()))
+        let rings: Option<Vec<Vertices>> = loops.iter().map(|ids| data.positions(ids)).collect();
+        let Some(rings) = rings else { return Ok(None) };
+        let sorted = self.sorter.polygons(rings).map_err(|error| exceeded(error.into()))?;
+        Ok(Some(sorted.polygons))
     }
 }
 

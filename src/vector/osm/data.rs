@@ -3,7 +3,11 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use glam::DVec3;
+
+use crate::broken_records::BrokenRecords;
 use crate::builder::{Vertices, position};
+use crate::tally::RecordTally;
 use sandtable_base::limits::OSM_BYTES;
 
 /// Bytes that an allocation takes beyond its content.
@@ -39,6 +43,14 @@ pub(super) struct OsmWay {
     pub tags: OsmTags,
 }
 
+/// The parts of a way that the extract has.
+pub(super) struct OsmRuns {
+    /// Of one vertex or more each.
+    pub runs: Vec<Vertices>,
+    /// Whether the extract has all of it.
+    pub is_whole: bool,
+}
+
 /// A list of ways; members of other kinds are not kept.
 #[derive(Debug)]
 pub(super) struct OsmRelation {
@@ -64,6 +76,12 @@ pub(super) struct OsmData {
     /// Sorted by id after [`Self::sort`].
     pub ways: Vec<OsmWay>,
     pub relations: Vec<OsmRelation>,
+    /// Objects that are marked as deleted, which are not kept.
+    pub deleted: RecordTally,
+    /// Objects that cannot be read.
+    pub broken: BrokenRecords,
+    /// A sentence about bytes that are not of the file's encoding.
+    pub fault: Option<String>,
     texts: Vec<Arc<str>>,
     text_ids: HashMap<Arc<str>, TextId>,
     bytes: usize,
@@ -123,6 +141,11 @@ impl OsmData {
 }
 
 impl OsmData {
+    /// Nothing yet, of a file with a fault in its encoding.
+    pub fn new(fault: Option<String>) -> Self {
+        Self { fault, ..Self::default() }
+    }
+
     /// Sorts nodes and ways by id, which lookups need. Files mostly are sorted already.
     pub fn sort(&mut self) {
         if !self.nodes.is_sorted_by_key(|node| node.id) {
@@ -138,14 +161,44 @@ impl OsmData {
         self.ways.binary_search_by_key(&id, |way| way.id).ok()
     }
 
-    /// Returns the positions of those of the nodes that the extract has, in degrees without elevations.
-    pub fn positions(&self, refs: &[i64]) -> Vertices {
-        let node = |id: &i64| {
-            let index = self.nodes.binary_search_by_key(id, |node| node.id).ok()?;
-            let (x, y) = self.nodes[index].degrees();
-            Some(position(x, y, None))
-        };
-        refs.iter().filter_map(node).collect()
+    /// Returns whether the extract holds nothing.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty() && self.ways.is_empty() && self.relations.is_empty()
+    }
+
+    /// Returns the position of a node, in degrees without an elevation; `None` where the extract lacks it.
+    fn position(&self, id: i64) -> Option<DVec3> {
+        let index = self.nodes.binary_search_by_key(&id, |node| node.id).ok()?;
+        let (x, y) = self.nodes[index].degrees();
+        Some(position(x, y, None))
+    }
+
+    /// Returns the positions of the nodes `refs`; `None` where the extract lacks any of them.
+    pub fn positions(&self, refs: &[i64]) -> Option<Vertices> {
+        refs.iter().map(|&id| self.position(id)).collect()
+    }
+
+    /// Returns the positions of the nodes `refs`, parted where the extract lacks nodes. Where the first node is also the
+    /// last, the run through it is one.
+    pub fn runs(&self, refs: &[i64]) -> OsmRuns {
+        let (mut runs, mut is_whole, mut is_running) = (Vec::<Vertices>::new(), true, false);
+        for &id in refs {
+            let Some(at) = self.position(id) else {
+                (is_whole, is_running) = (false, false);
+                continue;
+            };
+            match runs.last_mut().filter(|_| is_running) {
+                Some(run) => run.push(at),
+                None => runs.push(vec![at]),
+            }
+            is_running = true;
+        }
+        let starts = refs.first().is_some_and(|&id| self.position(id).is_some());
+        if !is_whole && starts && refs.first() == refs.last() && runs.len() > 1 {
+            let first = runs.remove(0);
+            runs.last_mut().into_iter().for_each(|last| last.extend(&first[1..]));
+        }
+        OsmRuns { runs, is_whole }
     }
 
     pub fn tags(&self, tags: &OsmTags) -> impl Iterator<Item = (&str, &str)> {

@@ -10,7 +10,9 @@
 //! | `multipolygons` | closed ways that their tags make areas, and relations of the type multipolygon or boundary |
 //! | `roads`, `railways`, `waterways` | of `lines` those tagged `highway`, `railway`, `waterway` |
 //! | `water` | of `multipolygons` `natural=water`, `waterway=riverbank` and `landuse=reservoir` |
-//! | `buildings` | of `multipolygons` those tagged `building` |
+//! | `buildings` | of `multipolygons` those tagged `building` or `building:part` |
+//!
+//! The nodes of a way that an extract lacks part its line; an area is only there whole.
 //!
 //! All tags become properties, as text, beside `osm_id` (of areas made of one way: `osm_way_id`). A node's tag `ele`
 //! is its elevation. Coordinates are kept to 10⁻⁷ degrees, about a centimeter, as OpenStreetMap keeps them.
@@ -27,11 +29,12 @@ mod protobuf;
 mod xml;
 
 use crate::builder::{FeatureParts, LayerBuilder, position};
-use crate::error::VectorError;
+use crate::error::{VectorError, shorten};
 use crate::feature::{Properties, VectorLayer};
 use crate::hints::VectorHints;
 use crate::osm::areas::AreaAssembler;
-use crate::osm::data::{OsmData, OsmRelation, OsmTags, OsmWay};
+use crate::osm::data::{OsmData, OsmRelation, OsmRuns, OsmTags, OsmWay};
+use crate::tally::RecordTally;
 
 pub(super) fn is_pbf(bytes: &[u8]) -> bool {
     bytes.get(4..).is_some_and(|rest| rest.starts_with(b"\x0a\x09OSMHeader"))
@@ -42,12 +45,12 @@ pub(super) fn is_pbf(bytes: &[u8]) -> bool {
 /// # Errors
 /// [`VectorError`], also where no layer is requested.
 pub(super) fn read_pbf(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
-    OsmLayer::requested(hints)?.features(&pbf::read(bytes)?, hints)
+    OsmLayer::requested(hints)?.read(pbf::read(bytes)?, hints)
 }
 
 /// Reads the requested layer of an extract as XML.
 pub(super) fn read_xml(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
-    OsmLayer::requested(hints)?.features(&xml::read(bytes)?, hints)
+    OsmLayer::requested(hints)?.read(xml::read(bytes)?, hints)
 }
 
 /// The shape of a layer's features.
@@ -80,15 +83,20 @@ const LAYERS: [OsmLayer; 8] = [
         shape: OsmShape::Area,
         tags: &[("natural", Some("water")), ("waterway", Some("riverbank")), ("landuse", Some("reservoir"))],
     },
-    OsmLayer { name: "buildings", shape: OsmShape::Area, tags: &[("building", None)] },
+    OsmLayer {
+        name: "buildings",
+        shape: OsmShape::Area,
+        tags: &[("building", None), ("building:part", None)],
+    },
 ];
 
-/// Keys that make a closed way an area (`closed_ways_are_polygons`).
-const AREA_KEYS: [&str; 16] = [
+/// Keys that make a closed way an area (`closed_ways_are_polygons`, and the parts of buildings).
+const AREA_KEYS: [&str; 17] = [
     "aeroway",
     "amenity",
     "boundary",
     "building",
+    "building:part",
     "craft",
     "geological",
     "historic",
@@ -112,14 +120,25 @@ impl OsmLayer {
         hints.choose_layer(&LAYERS.map(|layer| layer.name)).map(|index| LAYERS[index])
     }
 
+    fn read(self, data: OsmData, hints: &VectorHints) -> Result<VectorLayer, VectorError> {
+        if data.is_empty() {
+            data.broken.first_error()?;
+            return LayerBuilder::new(hints.crs_or_wgs84()).finish();
+        }
+        self.features(&data, hints)
+    }
+
     fn features(self, data: &OsmData, hints: &VectorHints) -> Result<VectorLayer, VectorError> {
         let mut layer = LayerBuilder::new(hints.crs_or_wgs84());
         match self.shape {
-            OsmShape::Point => self.add_points(data, &mut layer)?,
-            OsmShape::Line => self.add_lines(data, &mut layer)?,
+            OsmShape::Point => self.add_points(data, &mut layer),
+            OsmShape::Line => self.add_lines(data, &mut layer),
             OsmShape::Area => self.add_areas(data, &mut layer)?,
         }
-        Ok(layer.finish())
+        let (one, many) = ("object marked as deleted", "objects marked as deleted");
+        layer.note_omitted(&data.deleted, one, many);
+        data.broken.text().iter().chain(&data.fault).for_each(|text| layer.fault(text));
+        layer.finish()
     }
 
     /// Returns whether things with these tags, of the layer's shape, belong to it.
@@ -135,37 +154,51 @@ impl OsmLayer {
         }
     }
 
-    fn add_points(self, data: &OsmData, layer: &mut LayerBuilder) -> Result<(), VectorError> {
+    fn add_points(self, data: &OsmData, layer: &mut LayerBuilder) {
         for (node, tags) in data.tagged_nodes.iter().filter(|(_, tags)| self.holds(data, tags)) {
-            let elevation = data.value(tags, "ele").and_then(|text| text.trim().parse().ok());
+            let text = data.value(tags, "ele").map(str::trim).filter(|text| !text.is_empty());
+            let elevation = text.and_then(|text| text.parse().ok());
             let (x, y) = node.degrees();
             let mut parts = FeatureParts::default();
             parts.add_points(vec![position(x, y, elevation)]);
-            layer.add(parts, properties(data, tags, "osm_id", node.id))?;
+            if text.is_some() && elevation.is_none() {
+                parts.count_elevation();
+            }
+            let place = || named_place(data, "node", node.id, tags);
+            layer.add_at(parts, properties(data, tags, "osm_id", node.id), place);
         }
-        Ok(())
     }
 
-    fn add_lines(self, data: &OsmData, layer: &mut LayerBuilder) -> Result<(), VectorError> {
-        let mut cut = 0;
+    fn add_lines(self, data: &OsmData, layer: &mut LayerBuilder) {
+        let (mut cut, mut outside) = (RecordTally::new(), RecordTally::new());
         for way in data.ways.iter().filter(|way| self.holds(data, &way.tags) && !is_area(data, way)) {
-            let line = data.positions(&way.refs);
-            cut += usize::from(line.len() < way.refs.len());
-            if line.len() >= 2 {
-                let mut parts = FeatureParts::default();
-                parts.add_line(line);
-                layer.add(parts, properties(data, &way.tags, "osm_id", way.id))?;
+            let place = || named_place(data, "way", way.id, &way.tags);
+            let mut parts = FeatureParts::default();
+            let OsmRuns { runs, is_whole } = data.runs(&way.refs);
+            let lines = runs.into_iter().filter(|run| is_whole || run.len() > 1);
+            lines.for_each(|run| parts.add_line(run));
+            if !is_whole && parts.is_empty() {
+                outside.add(place);
+                continue;
             }
+            if !is_whole {
+                cut.add(place);
+            }
+            layer.add_at(parts, properties(data, &way.tags, "osm_id", way.id), place);
         }
-        if cut > 0 {
-            layer.note(format!("{cut} ways leave the extract; only their parts within it are there"));
+        if let Some(text) = cut.text("way that leaves the extract", "ways that leave the extract") {
+            layer.note(format!("{text}: only the parts within it are there, and each is a line of its own"));
         }
-        Ok(())
+        layer.note_omitted(
+            &outside,
+            "way that lies outside the extract",
+            "ways that lie outside the extract",
+        );
     }
 
     fn add_areas(self, data: &OsmData, layer: &mut LayerBuilder) -> Result<(), VectorError> {
         let mut assembler = AreaAssembler::new(data);
-        let mut incomplete = 0;
+        let (mut open, mut cut) = (RecordTally::new(), RecordTally::new());
         let is_area_relation = |relation: &&OsmRelation| {
             matches!(data.value(&relation.tags, "type"), Some("multipolygon" | "boundary"))
         };
@@ -174,25 +207,50 @@ impl OsmLayer {
             if !self.holds(data, tags) {
                 continue;
             }
+            let place = || named_place(data, "relation", relation.id, tags);
             match assembler.polygons(relation)? {
                 Some(polygons) => {
                     let mut parts = FeatureParts::default();
                     polygons.into_iter().for_each(|rings| parts.add_polygon(rings));
-                    layer.add(parts, properties(data, tags, "osm_id", relation.id))?;
+                    layer.add_at(parts, properties(data, tags, "osm_id", relation.id), place);
                     assembler.replace_outer_ways(relation, tags);
                 }
-                None => incomplete += 1,
+                None => open.add(place),
             }
         }
-        layer.note_omitted(incomplete, "areas of relations that leave the extract or do not close");
         for way in data.ways.iter().filter(|way| self.holds(data, &way.tags) && is_area(data, way)) {
-            let mut parts = FeatureParts::default();
-            parts.add_polygon([data.positions(&way.refs)]);
-            if !parts.is_empty() && !assembler.replaces(way) {
-                layer.add(parts, properties(data, &way.tags, "osm_way_id", way.id))?;
+            if assembler.replaces(way) {
+                continue;
             }
+            let place = || named_place(data, "way", way.id, &way.tags);
+            // An outline with a gap encloses something else.
+            let Some(ring) = data.positions(&way.refs) else {
+                cut.add(place);
+                continue;
+            };
+            let mut parts = FeatureParts::default();
+            parts.add_polygon([ring]);
+            layer.add_at(parts, properties(data, &way.tags, "osm_way_id", way.id), place);
         }
+        layer.note_omitted(
+            &open,
+            "area of a relation that leaves the extract or does not close",
+            "areas of relations that leave the extract or do not close",
+        );
+        layer.note_omitted(
+            &cut,
+            "area whose outline leaves the extract",
+            "areas whose outlines leave the extract",
+        );
         Ok(())
+    }
+}
+
+/// Returns `way 12 'Main Street'`.
+fn named_place(data: &OsmData, kind: &str, id: i64, tags: &OsmTags) -> String {
+    match data.value(tags, "name") {
+        Some(name) => format!("{kind} {id} '{}'", shorten(name)),
+        None => format!("{kind} {id}"),
     }
 }
 
@@ -276,7 +334,9 @@ mod tests {
         assert_eq!(lake.properties["osm_id"], "9");
         assert_eq!(layer(&content, "multipolygons").features.len(), 2, "the wood is an area of its own");
         let cut = layer(&content.replace("ref='2'", "ref='7'"), "water");
-        assert!(cut.features.is_empty() && cut.notes[0].contains("1 areas"), "{:?}", cut.notes);
+        let expected =
+            "left out: 1 area of a relation that leaves the extract or does not close (relation 9)";
+        assert!(cut.features.is_empty() && cut.notes == [expected], "{:?}", cut.notes);
     }
 
     #[test]
@@ -298,6 +358,58 @@ mod tests {
         let buildings = layer(&content, "buildings");
         assert_eq!(buildings.features.len(), 1);
         assert_eq!(buildings.features[0].polygons()[0].holes.len(), 1);
+    }
+
+    #[test]
+    fn a_way_that_leaves_the_extract_is_parted_at_the_gap() {
+        let road = [("highway", "track"), ("name", "Rim")];
+        let roads = layer(&way(4, &[1, 2, 777, 3, 4, 5, 778, 6], &road), "roads");
+        let [feature] = &roads.features[..] else { panic!("one road") };
+        assert_eq!(feature.lines().iter().map(Vec::len).collect::<Vec<_>>(), [2, 3]);
+        let expected = "1 way that leaves the extract (way 4 'Rim'): only the parts within it are there, \
+            and each is a line of its own";
+        assert_eq!(roads.notes, [expected]);
+        // A circle is opened at a node that is there.
+        let circle = layer(&way(4, &[2, 1, 777, 3, 4, 2], &road), "roads");
+        let [feature] = &circle.features[..] else { panic!("one road") };
+        assert_eq!(feature.lines().iter().map(Vec::len).collect::<Vec<_>>(), [4]);
+        let outside = layer(&(way(4, &[1, 777, 2], &road) + &way(5, &[1, 2], &road)), "roads");
+        assert_eq!(outside.features.len(), 1);
+        assert_eq!(outside.notes, ["left out: 1 way that lies outside the extract (way 4 'Rim')"]);
+    }
+
+    #[test]
+    fn an_area_whose_outline_leaves_the_extract_is_left_out() {
+        let house = [("building", "yes")];
+        let content = way(1, &[1, 10, 777, 91, 1], &house) + &way(2, &SQUARE, &house);
+        let buildings = layer(&content, "buildings");
+        assert_eq!(buildings.features.len(), 1);
+        assert_eq!(buildings.notes, ["left out: 1 area whose outline leaves the extract (way 1)"]);
+    }
+
+    #[test]
+    fn odd_and_deleted_objects_are_left_out_and_reported() {
+        let content = way(4, &[1, 2], &[("highway", "track")])
+            + "\n<node id='300' lat='91' lon='1'/>\n<way id='6'><nd ref='x'/><tag k='highway' v='path'/></way>"
+            + "<node id='301' lat='1' lon='1' visible='false'/><way id='7' action='delete'/>";
+        let roads = layer(&content, "roads");
+        assert_eq!(roads.features.len(), 1);
+        let [fault] = &roads.faults[..] else { panic!("one sentence: {:?}", roads.faults) };
+        for part in ["2 records", "line 2: a node has no latitude", "line 3: <nd> has no number as its ref"] {
+            assert!(fault.contains(part), "{fault}");
+        }
+        assert_eq!(roads.notes, ["left out: 2 objects marked as deleted (node 301, way 7)"]);
+        let only = "<osm><node id='1' lat='x' lon='2'/></osm>";
+        let hints = VectorHints { layer: Some("points"), ..VectorHints::default() };
+        assert!(read_xml(only.as_bytes(), &hints).is_err(), "nothing is sound");
+    }
+
+    #[test]
+    fn parts_of_buildings_are_buildings_and_areas() {
+        let content = way(1, &SQUARE, &[("building", "yes")]) + &way(2, &SQUARE, &[("building:part", "yes")]);
+        assert_eq!(layer(&content, "buildings").features.len(), 2);
+        assert_eq!(layer(&content, "multipolygons").features.len(), 2);
+        assert!(layer(&content, "lines").features.is_empty());
     }
 
     #[test]

@@ -40,7 +40,8 @@ enum PbfError {
     NotOnEarth,
 }
 
-/// Reads everything in the file.
+/// Reads everything in the file. Nodes that are not on Earth, and nodes, ways and relations whose own message is broken,
+/// are left out and counted.
 pub(super) fn read(bytes: &[u8]) -> Result<OsmData, VectorError> {
     let mut data = OsmData::default();
     let mut cursor = ByteCursor::new(bytes);
@@ -50,7 +51,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<OsmData, VectorError> {
             .ok_or_else(|| VectorError::broken(FORMAT, &place, "it does not fit the file"))?;
         match blob.kind {
             b"OSMHeader" => check_header(&unpack(blob.content, &place)?)?,
-            b"OSMData" => read_block(&unpack(blob.content, &place)?, &mut data)
+            b"OSMData" => read_block(&unpack(blob.content, &place)?, &place, &mut data)
                 .map_err(|error| VectorError::broken(FORMAT, &place, error))?,
             _ => {}
         }
@@ -118,6 +119,8 @@ fn check_header(header: &[u8]) -> Result<(), VectorError> {
 
 struct PbfBlock<'a> {
     data: &'a mut OsmData,
+    /// Where the block is in the file.
+    place: &'a str,
     texts: Vec<PbfText<'a>>,
     /// Billionths of a degree in a unit of the block, and those of its origin: longitude, latitude.
     granularity: i64,
@@ -130,10 +133,11 @@ struct PbfText<'a> {
     id: Option<TextId>,
 }
 
-fn read_block(message: &[u8], data: &mut OsmData) -> Result<(), PbfError> {
+fn read_block(message: &[u8], place: &str, data: &mut OsmData) -> Result<(), PbfError> {
     let [texts, granularity, latitude, longitude] = last_values(message, [1, 17, 19, 20])?;
     let mut block = PbfBlock {
         data,
+        place,
         texts: read_texts(texts.bytes()?)?,
         granularity: granularity.number_or(NANODEGREES_PER_UNIT as u64)? as i64,
         origin: [longitude.number_or(0)? as i64, latitude.number_or(0)? as i64],
@@ -142,10 +146,19 @@ fn read_block(message: &[u8], data: &mut OsmData) -> Result<(), PbfError> {
         let (2, group) = field? else { continue };
         for field in fields(group.bytes()?) {
             match field? {
-                (1, node) => block.read_node(node.bytes()?)?,
+                (1, node) => {
+                    let read = block.read_node(node.bytes()?);
+                    block.or_left_out("a node", read)?;
+                }
                 (2, nodes) => block.read_dense_nodes(nodes.bytes()?)?,
-                (3, way) => block.read_way(way.bytes()?)?,
-                (4, relation) => block.read_relation(relation.bytes()?)?,
+                (3, way) => {
+                    let read = block.read_way(way.bytes()?);
+                    block.or_left_out("a way", read)?;
+                }
+                (4, relation) => {
+                    let read = block.read_relation(relation.bytes()?);
+                    block.or_left_out("a relation", read)?;
+                }
                 _ => {}
             }
         }
@@ -164,6 +177,19 @@ fn read_texts(table: &[u8]) -> Result<Vec<PbfText<'_>>, PbfError> {
 }
 
 impl PbfBlock<'_> {
+    /// Counts an object that is broken, as one of this block; no error but that of memory remains.
+    fn or_left_out(&mut self, what: &str, read: Result<(), PbfError>) -> Result<(), PbfError> {
+        match read {
+            Err(PbfError::Memory(error)) => Err(error.into()),
+            Err(error) => {
+                let place = format!("{what} in {}", self.place);
+                self.data.broken.add(&place, VectorError::broken(FORMAT, &place, error));
+                Ok(())
+            }
+            Ok(()) => Ok(()),
+        }
+    }
+
     fn text(&mut self, index: u64) -> Result<TextId, PbfError> {
         let text = usize::try_from(index).ok().and_then(|index| self.texts.get_mut(index));
         let text = text.ok_or(MalformedMessage)?;
@@ -205,9 +231,12 @@ impl PbfBlock<'_> {
         let mut tags = varints(tags.bytes()?);
         for id in delta_sums(ids.bytes()?) {
             let position = [next(&mut longitudes)?, next(&mut latitudes)?];
-            let node = self.node(id?, position)?;
+            let id = id?;
             let tags = if has_tags { self.dense_tags(&mut tags)? } else { OsmTags::default() };
-            self.data.add_node(node, tags)?;
+            match self.node(id, position) {
+                Ok(node) => self.data.add_node(node, tags)?,
+                Err(error) => self.or_left_out(&format!("node {id}"), Err(error))?,
+            }
         }
         Ok(())
     }

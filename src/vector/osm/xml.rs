@@ -4,13 +4,13 @@ use crate::error::{VectorError, shorten};
 use crate::osm::data::{
     OsmData, OsmMember, OsmMemoryExceeded, OsmNode, OsmRelation, OsmTags, OsmWay, UNITS_PER_DEGREE,
 };
-use crate::xml::{self, XmlElement, XmlReader};
+use crate::xml::{self, DecodedXml, XmlElement, XmlReader};
 
 const FORMAT: &str = "OpenStreetMap XML";
 
-/// Reads the file without objects that are marked as deleted.
+/// Reads the file without objects that are marked as deleted and those that are broken, which are counted.
 pub(super) fn read(bytes: &[u8]) -> Result<OsmData, VectorError> {
-    let text = xml::decode(bytes, FORMAT)?;
+    let DecodedXml { text, fault } = xml::decode(bytes, FORMAT)?;
     let mut xml = XmlReader::new(&text, FORMAT);
     let root = xml.root()?;
     if root.name() != "osm" {
@@ -20,7 +20,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<OsmData, VectorError> {
             remedy: "apply changes first, for example with: osmium apply-changes",
         });
     }
-    let mut data = OsmData::default();
+    let mut data = OsmData::new(fault);
     while let Some(element) = xml.next_child()? {
         if matches!(element.name(), "node" | "way" | "relation") {
             let element = xml.read(element)?;
@@ -34,21 +34,42 @@ pub(super) fn read(bytes: &[u8]) -> Result<OsmData, VectorError> {
     Ok(data)
 }
 
+/// What an object has besides its tags.
+enum OsmContent {
+    Node(OsmNode),
+    Way(i64, Box<[i64]>),
+    Relation(i64, Box<[OsmMember]>),
+}
+
 fn add(xml: &XmlReader<'_>, element: &XmlElement<'_>, data: &mut OsmData) -> Result<(), VectorError> {
     let is_deleted = |(name, value): (&str, &str)| element.attribute(name).as_deref() == Some(value);
     if [("visible", "false"), ("action", "delete")].into_iter().any(is_deleted) {
+        let id = element.attribute("id").unwrap_or_default();
+        data.deleted.add(|| format!("{} {}", element.name(), shorten(&id)));
         return Ok(());
     }
-    let id = id(xml, element, "id")?;
-    let node = if element.name() == "node" { Some(node(xml, element, id)?) } else { None };
-    let refs = if element.name() == "way" { refs(xml, element)? } else { Box::default() };
-    let members = if element.name() == "relation" { members(xml, element)? } else { Box::default() };
-    let added = tags(element, data).and_then(|tags| match (node, element.name()) {
-        (Some(node), _) => data.add_node(node, tags),
-        (None, "way") => data.add_way(OsmWay { id, refs, tags }),
-        (None, _) => data.add_relation(OsmRelation { id, members, tags }),
+    let content = match content(xml, element) {
+        Ok(content) => content,
+        Err(error) => {
+            data.broken.add(element.name(), error);
+            return Ok(());
+        }
+    };
+    let added = tags(element, data).and_then(|tags| match content {
+        OsmContent::Node(node) => data.add_node(node, tags),
+        OsmContent::Way(id, refs) => data.add_way(OsmWay { id, refs, tags }),
+        OsmContent::Relation(id, members) => data.add_relation(OsmRelation { id, members, tags }),
     });
     added.map_err(|error| xml.broken_at(element, error))
+}
+
+fn content(xml: &XmlReader<'_>, element: &XmlElement<'_>) -> Result<OsmContent, VectorError> {
+    let id = id(xml, element, "id")?;
+    Ok(match element.name() {
+        "node" => OsmContent::Node(node(xml, element, id)?),
+        "way" => OsmContent::Way(id, refs(xml, element)?),
+        _ => OsmContent::Relation(id, members(xml, element)?),
+    })
 }
 
 fn tags(element: &XmlElement<'_>, data: &mut OsmData) -> Result<OsmTags, OsmMemoryExceeded> {

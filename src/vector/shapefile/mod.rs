@@ -25,8 +25,9 @@ use crate::encoding::TextEncoding;
 use crate::error::{VectorError, shorten};
 use crate::feature::{Properties, VectorLayer};
 use crate::hints::VectorHints;
-use crate::rings::{HoleRule, RingSorter};
+use crate::rings::{HoleRule, RingSorter, SortedRings};
 use crate::shapefile::dbf::{DbfRow, DbfTable};
+use crate::tally::RecordTally;
 use sandtable_base::bytes::ByteCursor;
 use sandtable_geom::crs::Crs;
 
@@ -53,10 +54,11 @@ pub(super) fn is_shapefile(bytes: &[u8]) -> bool {
     bytes.starts_with(&9994u32.to_be_bytes())
 }
 
-/// Reads all features. Records without a shape and those marked as deleted are left out and counted.
+/// Reads all features. Records without a shape, those marked as deleted and those that contradict themselves are left out
+/// and counted.
 ///
 /// # Errors
-/// [`VectorError`]: a record that contradicts itself, surfaces (multipatch), no coordinate system.
+/// [`VectorError`]: records of which none is sound, a file cut short, no coordinate system.
 pub(super) fn read(files: &ShapefileParts<'_>, hints: &VectorHints) -> Result<VectorLayer, VectorError> {
     let mut layer = LayerBuilder::new(crs_of(files, hints)?);
     let encoding = encoding_of(files, &mut layer);
@@ -66,26 +68,37 @@ pub(super) fn read(files: &ShapefileParts<'_>, hints: &VectorHints) -> Result<Ve
     if let Some(rows) = table.as_ref().map(DbfTable::row_count)
         && rows != records.len()
     {
-        layer.note(format!("{} shapes, but {rows} rows in the .dbf file", records.len()));
+        layer.fault(format!("{} shapes, but {rows} rows in the .dbf file", records.len()));
     }
-    let (mut deleted, mut outside) = (0, 0);
+    let [mut deleted, mut outside, mut reversed] = [const { RecordTally::new() }; 3];
     for (index, &offset) in records.iter().enumerate() {
         let row = table.as_ref().and_then(|table| table.row(index));
         if row.as_ref().is_some_and(DbfRow::is_deleted) {
-            deleted += 1;
+            deleted.add(|| record(index));
             continue;
         }
-        let content = reader.content(offset);
-        outside += usize::from(content.is_none());
-        let shape = content.map(|content| reader.shape(content, index)).transpose()?;
-        let properties = row.map_or_else(Properties::new, |row| row.properties());
-        layer.add(shape.unwrap_or_default(), properties)?;
+        let Some(content) = reader.content(offset) else {
+            outside.add(|| record(index));
+            continue;
+        };
+        match reader.shape(content, index) {
+            Ok(shape) => {
+                reversed.add_many(usize::from(shape.has_reversed_rings), || record(index));
+                let properties = row.map_or_else(Properties::new, |row| row.properties());
+                layer.add_at(shape.parts, properties, || record(index));
+            }
+            Err(ShapeError::Record(error)) => layer.add_broken(record(index), error),
+            Err(ShapeError::File(error)) => return Err(error),
+        }
     }
-    layer.note_omitted(deleted, "features marked as deleted");
-    if outside > 0 {
-        layer.note(format!("the .shx file lists {outside} records past the end of the .shp file"));
+    layer.note_omitted(&deleted, "feature marked as deleted", "features marked as deleted");
+    if let Some(text) = outside.text("record", "records") {
+        layer.fault(format!("the .shx file lists {text} past the end of the .shp file: left out"));
     }
-    Ok(layer.finish())
+    if let Some(text) = reversed.text("polygon", "polygons") {
+        layer.note(format!("rings of {text} run the wrong way: one that lies in another is its hole"));
+    }
+    layer.finish()
 }
 
 fn crs_of(files: &ShapefileParts<'_>, hints: &VectorHints) -> Result<Crs, VectorError> {
@@ -101,11 +114,25 @@ fn encoding_of(files: &ShapefileParts<'_>, layer: &mut LayerBuilder) -> Option<T
     let encoding = TextEncoding::from_name(&name);
     if encoding.is_none() {
         let name = shorten(&name);
-        layer.note(format!(
+        layer.fault(format!(
             "the .cpg file names the unknown encoding '{name}': letters beyond ASCII are wrong"
         ));
     }
     encoding.or(Some(TextEncoding::UTF_8))
+}
+
+/// The shape of a record.
+struct RecordShape {
+    parts: FeatureParts,
+    has_reversed_rings: bool,
+}
+
+/// Why a shape cannot be read.
+enum ShapeError {
+    /// The record is broken; the others may be sound.
+    Record(VectorError),
+    /// The file exceeds a limit.
+    File(VectorError),
 }
 
 struct ShapefileReader<'a> {
@@ -163,13 +190,14 @@ impl<'a> ShapefileReader<'a> {
     }
 
     /// Reads the shape that is the content of the record `index`.
-    fn shape(&mut self, content: &[u8], index: usize) -> Result<FeatureParts, VectorError> {
-        let broken = |reason: String| VectorError::broken(FORMAT, record(index), reason);
+    fn shape(&mut self, content: &[u8], index: usize) -> Result<RecordShape, ShapeError> {
+        let broken = |reason: String| ShapeError::Record(VectorError::broken(FORMAT, record(index), reason));
         let short = || broken("its counts of parts and points do not fit its length".into());
         let mut cursor = ByteCursor::new(content);
         let kind = cursor.u32_le().ok_or_else(short)?;
         let mut reader = ShapeCursor { cursor, has_z: matches!(kind, 11 | 13 | 15 | 18) };
         let mut parts = FeatureParts::default();
+        let mut has_reversed_rings = false;
         match kind {
             0 => {}
             1 | 11 | 21 => parts.add_points(vec![reader.point().ok_or_else(short)?]),
@@ -179,20 +207,22 @@ impl<'a> ShapefileReader<'a> {
                 lines.into_iter().for_each(|line| parts.add_line(line));
             }
             5 | 15 | 25 => {
-                let polygons = self.sorter.polygons(reader.lines().ok_or_else(short)?);
-                let polygons = polygons.map_err(|error| VectorError::broken(FORMAT, record(index), error))?;
+                let sorted = self.sorter.polygons(reader.lines().ok_or_else(short)?);
+                let SortedRings { polygons, are_reversed } = sorted
+                    .map_err(|error| ShapeError::File(VectorError::broken(FORMAT, record(index), error)))?;
                 polygons.into_iter().for_each(|rings| parts.add_polygon(rings));
+                has_reversed_rings = are_reversed;
             }
             31 => {
-                return Err(VectorError::Unsupported {
+                return Err(ShapeError::Record(VectorError::Unsupported {
                     format: FORMAT,
                     content: "surfaces (multipatch)".into(),
                     remedy: "convert it to polygons, for example with: ogr2ogr -nlt MULTIPOLYGON",
-                });
+                }));
             }
             other => return Err(broken(format!("it has the unknown shape type {other}"))),
         }
-        Ok(parts)
+        Ok(RecordShape { parts, has_reversed_rings })
     }
 }
 
@@ -327,7 +357,7 @@ mod tests {
         assert!(elevations[0] == 7.0 && elevations[1].is_nan());
         let [polygon] = area.polygons() else { panic!("one polygon") };
         assert_eq!((polygon.exterior.len(), polygon.holes.len()), (4, 1));
-        assert_eq!(layer.notes, ["left out: 1 features without a usable geometry"]);
+        assert_eq!(layer.notes, ["left out: 1 feature without a usable geometry (record 3)"]);
     }
 
     #[test]
@@ -354,6 +384,32 @@ mod tests {
         // The second record is the new version of the first.
         shapes[second + 3] = 1;
         assert_eq!(read(&shapes, &[second]), (vec![5.0], 0));
+    }
+
+    #[test]
+    fn a_broken_record_is_left_out_and_the_others_are_read() {
+        let line = || content(3, &[&[[1.0, 2.0], [3.0, 4.0]]], &[]);
+        let mut forged = content(5, &[&SQUARE], &[]);
+        forged[36..40].copy_from_slice(&u32::MAX.to_le_bytes());
+        let surface = 31u32.to_le_bytes().to_vec();
+        let layer = read_plain(&file(&[line(), forged, surface, line()])).expect("two are sound");
+        assert_eq!(layer.features.len(), 2);
+        let [fault] = &layer.faults[..] else { panic!("one sentence: {:?}", layer.faults) };
+        for part in ["2 records", "record 2: its counts of parts", "record 3: surfaces (multipatch)"] {
+            assert!(fault.contains(part), "{fault}");
+        }
+    }
+
+    #[test]
+    fn rings_that_run_the_wrong_way_are_a_polygon_with_a_hole() {
+        let turned = |ring: &[[f64; 2]]| -> Vec<[f64; 2]> { ring.iter().rev().copied().collect() };
+        let (outer, hole) = (turned(&SQUARE), turned(&HOLE));
+        let layer = read_plain(&file(&[content(5, &[&outer, &hole], &[])])).expect("sound");
+        let [polygon] = layer.features[0].polygons() else { panic!("one polygon") };
+        assert_eq!((polygon.exterior.len(), polygon.holes.len()), (4, 1));
+        let expected =
+            "rings of 1 polygon (record 1) run the wrong way: one that lies in another is its hole";
+        assert_eq!(layer.notes, [expected]);
     }
 
     #[test]

@@ -3,7 +3,9 @@
 //!
 //! The `geojson` crate parses. A third coordinate is the elevation, further ones are ignored. Coordinates are
 //! (longitude, latitude) or (easting, northing) whatever axis order the named system prescribes, as all writers have
-//! it. `serde_json` limits nesting to 128 levels.
+//! it. `serde_json` limits nesting to 128 levels. Where it refuses a text, [`record`] reads the features one by one.
+
+mod record;
 
 use geojson::{Feature, GeoJson, GeometryValue, JsonObject, Position};
 use serde::Deserialize;
@@ -11,7 +13,8 @@ use serde_json::Value;
 
 use crate::builder::{FeatureParts, LayerBuilder, Vertices, position};
 use crate::error::{VectorError, shorten};
-use crate::feature::VectorLayer;
+use crate::feature::{Properties, VectorLayer};
+use crate::geojson::record::OddText;
 use crate::hints::VectorHints;
 use sandtable_base::limits::GEOJSON_BYTES;
 use sandtable_geom::crs::Crs;
@@ -34,11 +37,6 @@ const TYPES: [&str; 9] = [
     "MultiPolygon",
 ];
 
-/// The parser's error without the position, which the message has already.
-#[derive(Debug, thiserror::Error)]
-#[error("{}", text_without_position(.0))]
-struct GeoJsonError(#[source] serde_json::Error);
-
 /// Returns whether `text` is a text sequence, or has a JSON text on its first line and another on the next.
 pub(super) fn is_sequence(text: &[u8]) -> bool {
     let mut lines = text.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii).filter(|line| !line.is_empty());
@@ -49,31 +47,54 @@ pub(super) fn is_sequence(text: &[u8]) -> bool {
 
 /// Reads all features, in the system that the file names or else in longitude and latitude on WGS 84.
 ///
+/// Features without a geometry, lines of one vertex and rings of two are left out and noted, features that are not
+/// GeoJSON are left out and reported.
+///
 /// # Errors
-/// [`VectorError`]. Features without a geometry, lines of one vertex and rings of two are not errors but left out and
-/// noted.
+/// [`VectorError`], also where no feature is sound.
 pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
-    let (features, members) = features(parse(checked(bytes)?, 1)?);
-    let crs = match (hints.crs, members.as_ref().and_then(|members| members.get("crs"))) {
-        (None, Some(member)) => crs_of(member)?,
+    let bytes = checked(bytes)?;
+    match parse(bytes, 1) {
+        Ok(text) => {
+            let (features, members) = features(text);
+            let crs = members.as_ref().and_then(|members| members.get("crs"));
+            let mut layer = LayerBuilder::new(crs_by(hints, crs)?);
+            features.into_iter().for_each(|feature| {
+                let (parts, properties) = converted(feature);
+                layer.add(parts, properties);
+            });
+            layer.finish()
+        }
+        Err(error) => {
+            let Some(text) = OddText::parse(bytes) else { return Err(error) };
+            let mut layer = LayerBuilder::new(crs_by(hints, text.crs.as_ref())?);
+            text.add_to(&mut layer, |number| format!("feature {number}"));
+            // The parser's error has the line.
+            let is_refused = layer.is_empty() && layer.has_broken_records();
+            if is_refused { Err(error) } else { layer.finish() }
+        }
+    }
+}
+
+/// Returns the stated system, else that of a `crs` member, else WGS 84.
+fn crs_by(hints: &VectorHints, member: Option<&Value>) -> Result<Crs, VectorError> {
+    match (hints.crs, member) {
+        (None, Some(member)) => crs_of(member),
         (Some(crs), Some(member)) => {
             if let Ok(own) = crs_of(member) {
                 (hints.overridden)(&own);
             }
-            crs.clone()
+            Ok(crs.clone())
         }
-        (_, None) => hints.crs_or_wgs84(),
-    };
-    let mut layer = LayerBuilder::new(crs);
-    features.into_iter().try_for_each(|feature| add(&mut layer, feature))?;
-    Ok(layer.finish())
+        (_, None) => Ok(hints.crs_or_wgs84()),
+    }
 }
 
 /// Reads all features of a sequence, in the stated system or else in longitude and latitude on WGS 84, which both
-/// standards prescribe.
+/// standards prescribe. Texts that are not GeoJSON, also a last one cut short, are left out and reported.
 ///
 /// # Errors
-/// [`VectorError`] for the first text that is not GeoJSON, also for a last one cut short.
+/// [`VectorError`] for the first text where none is GeoJSON.
 pub(super) fn read_sequence(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
     let bytes = checked(bytes)?;
     let is_separated = bytes.trim_ascii_start().first() == Some(&RECORD_SEPARATOR);
@@ -81,13 +102,21 @@ pub(super) fn read_sequence(bytes: &[u8], hints: &VectorHints) -> Result<VectorL
     let mut layer = LayerBuilder::new(hints.crs_or_wgs84());
     let mut line = 1;
     for text in bytes.split(|&byte| byte == separator) {
-        if !text.trim_ascii().is_empty() {
-            let (features, _) = features(parse(text, line)?);
-            features.into_iter().try_for_each(|feature| add(&mut layer, feature))?;
+        let place = || format!("line {line}");
+        match (text.trim_ascii().is_empty(), parse(text, line)) {
+            (true, _) => {}
+            (false, Ok(text)) => features(text).0.into_iter().for_each(|feature| {
+                let (parts, properties) = converted(feature);
+                layer.add_at(parts, properties, place);
+            }),
+            (false, Err(error)) => match OddText::parse(text) {
+                Some(text) => text.add_to(&mut layer, |_| place()),
+                None => layer.add_broken(place(), error),
+            },
         }
         line += text.iter().filter(|&&byte| byte == b'\n').count() + usize::from(!is_separated);
     }
-    Ok(layer.finish())
+    layer.finish()
 }
 
 fn checked(bytes: &[u8]) -> Result<&[u8], VectorError> {
@@ -103,7 +132,8 @@ fn parse(text: &[u8], first_line: usize) -> Result<GeoJson, VectorError> {
         other_json(text).unwrap_or_else(|| {
             let line = first_line + error.line().max(1) - 1;
             let place = format!("line {line}, column {}", error.column().max(1));
-            VectorError::broken(FORMAT, place, GeoJsonError(error))
+            // The message has the place already.
+            VectorError::broken(FORMAT, place, text_without_position(&error))
         })
     })
 }
@@ -145,12 +175,12 @@ fn features(text: GeoJson) -> (Vec<Feature>, Option<JsonObject>) {
     }
 }
 
-fn add(layer: &mut LayerBuilder, feature: Feature) -> Result<(), VectorError> {
+fn converted(feature: Feature) -> (FeatureParts, Properties) {
     let mut parts = FeatureParts::default();
     if let Some(geometry) = feature.geometry {
         add_shape(&mut parts, &geometry.value);
     }
-    layer.add(parts, feature.properties.unwrap_or_default().into_iter().collect())
+    (parts, feature.properties.unwrap_or_default().into_iter().collect())
 }
 
 fn add_shape(parts: &mut FeatureParts, value: &GeometryValue) {
@@ -319,10 +349,10 @@ mod tests {
         let layer = read_plain(text.as_bytes()).expect("valid GeoJSON");
         assert!(layer.features.is_empty());
         let expected = [
-            "left out: 5 features without a usable geometry",
-            "left out: 2 positions of less than two numbers",
-            "left out: 2 lines of less than two vertices",
-            "left out: 1 rings of less than three vertices",
+            "left out: 5 features without a usable geometry (feature 1, feature 2, feature 3, ...)",
+            "left out: 2 positions of less than two numbers (feature 5)",
+            "left out: 2 lines of less than two vertices (feature 2, feature 3)",
+            "left out: 1 ring of less than three vertices (feature 4)",
         ];
         assert_eq!(layer.notes, expected);
     }
@@ -417,8 +447,86 @@ mod tests {
     #[test]
     fn the_line_of_a_broken_text_is_reported() {
         let text = format!("{}\n{}\n{{\"type\":\n", point_feature(1), point_feature(2));
-        let error =
-            read_sequence(text.as_bytes(), &VectorHints::default()).expect_err("cut short").to_string();
-        assert!(error.contains("line 3, "), "{error}");
+        let layer = read_sequence(text.as_bytes(), &VectorHints::default()).expect("two are sound");
+        assert_eq!(layer.features.len(), 2);
+        assert!(layer.faults[0].contains("1 record that cannot be read: line 3, "), "{:?}", layer.faults);
+        let text = format!("{}\n{{\"type\":\"Feature\"\n{}", point_feature(1), point_feature(2));
+        let layer = read_sequence(text.as_bytes(), &VectorHints::default()).expect("two are sound");
+        assert!(layer.features.len() == 2 && layer.faults[0].contains("line 2, "), "{:?}", layer.faults);
+    }
+
+    fn collection(features: &[&str]) -> VectorLayer {
+        let features: Vec<String> = features
+            .iter()
+            .map(|geometry| format!(r#"{{"type":"Feature","properties":{{"a":1}},"geometry":{geometry}}}"#))
+            .collect();
+        let text = format!(r#"{{"type":"FeatureCollection","features":[{}]}}"#, features.join(","));
+        read_plain(text.as_bytes()).expect("some are sound")
+    }
+
+    const SOUND: &str = r#"{"type":"LineString","coordinates":[[1,2],[3,4]]}"#;
+
+    #[test]
+    fn empty_coordinates_are_no_shape_and_no_error() {
+        for empty in [
+            r#"{"type":"Point","coordinates":[]}"#,
+            r#"{"type":"Point","coordinates":null}"#,
+            r#"{"type":"MultiPoint","coordinates":[]}"#,
+            r#"{"type":"LineString","coordinates":[]}"#,
+            r#"{"type":"Polygon","coordinates":null}"#,
+            r#"{"type":"GeometryCollection","geometries":null}"#,
+            "{}",
+            "null",
+        ] {
+            let layer = collection(&[empty, SOUND]);
+            assert!(layer.features.len() == 1 && layer.faults.is_empty(), "{empty}: {:?}", layer.faults);
+            assert_eq!(layer.features[0].properties["a"], 1);
+            let expected = "left out: 1 feature without a usable geometry (feature 1)";
+            assert_eq!(layer.notes[0], expected, "{empty}");
+        }
+        let alone = read_plain(br#"{"type":"Point","coordinates":[]}"#).expect("valid");
+        assert!(alone.features.is_empty());
+    }
+
+    #[test]
+    fn a_height_that_is_no_number_costs_the_height_alone() {
+        for height in ["null", "\"12\"", "[]"] {
+            let line = format!(r#"{{"type":"LineString","coordinates":[[1,2,{height}],[3,4,9]]}}"#);
+            let layer = collection(&[&line, SOUND]);
+            assert!(layer.features.len() == 2 && layer.faults.is_empty());
+            let elevations = layer.features[0].elevations.as_ref().expect("one is known");
+            assert!(elevations[0].is_nan() && elevations[1] == 9.0);
+            assert_eq!(layer.notes, ["left out: 1 elevation that is not a number (feature 1)"]);
+        }
+    }
+
+    #[test]
+    fn features_that_are_not_geojson_are_left_out_and_reported() {
+        for (odd, reason) in [
+            (r#"{"type":"Blob","coordinates":[]}"#, "the unknown type Blob"),
+            (r#"{"type":"Point","coordinates":["1",2]}"#, "a coordinate is \"1\""),
+            (r#"{"type":"Point","coordinates":[1]}"#, "one number only"),
+            (r#"{"type":"Point"}"#, "has no coordinates"),
+            (r#"{"type":"LineString","coordinates":[[1,2],[1e999,3]]}"#, "number out of range"),
+            (r#"{"type":"Polygon","coordinates":7}"#, "7 stands in place of a list"),
+            ("7", "7 stands in place of a geometry"),
+        ] {
+            let layer = collection(&[SOUND, odd, SOUND]);
+            assert_eq!(layer.features.len(), 2, "{odd}");
+            let [fault] = &layer.faults[..] else { panic!("{odd}: {:?}", layer.faults) };
+            assert!(fault.contains("1 record") && fault.contains("feature 2: "), "{fault}");
+            assert!(fault.contains(reason), "{fault}");
+        }
+        let text = r#"{"type":"FeatureCollection","crs":{"type":"name","properties":{"name":"EPSG:32633"}},
+            "features":[null,{"type":"Feature","properties":[],"geometry":{"type":"Point","coordinates":[500000,5e6]}}]}"#;
+        let layer = read_plain(text.as_bytes()).expect("one is sound");
+        assert_eq!((layer.crs.epsg(), layer.features.len(), layer.faults.len()), (Some(32633), 1, 1));
+    }
+
+    #[test]
+    fn the_cause_of_a_broken_text_is_stated_once() {
+        let error = read_plain(br#"{"type":"Point","coordinates":[1]}"#).expect_err("one number");
+        let text = sandtable_base::message::chain::error_text(&error);
+        assert_eq!(text.matches("two or more elements").count(), 1, "{text}");
     }
 }
