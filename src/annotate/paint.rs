@@ -104,11 +104,13 @@ fn on_picture(
     report: &mut AnnotationReport,
 ) -> Vec<Drawing> {
     let mut boxes: Vec<PixelBox> = furniture.iter().map(Drawing::bounds).collect();
-    let marks = rim::draw_marks(&annotations.rim, &boxes, composer);
+    let placed = &mut report.figures;
+    let marks = rim::draw_marks(&annotations.rim, &boxes, composer, placed);
     boxes.extend(marks.iter().map(Drawing::bounds));
     let grid = annotations.grid.as_ref();
     let lines = grid.map(|grid| grid::draw_lines(grid, composer));
-    let figures = grid.map(|grid| grid::draw_figures(grid, &boxes, place, composer)).unwrap_or_default();
+    let figures = grid.map(|grid| grid::draw_figures(grid, &boxes, place, composer, placed));
+    let figures = figures.unwrap_or_default();
     boxes.extend(figures.iter().map(Drawing::bounds));
     let fixed = draw_fixed(&annotations.fixed_texts, &mut boxes, composer, report);
     let symbols = draw_symbols(&annotations.symbols, &boxes, composer, &mut report.symbols);

@@ -6,6 +6,7 @@ mod common;
 mod annotate;
 mod gallery;
 mod grid;
+mod grid_numbers;
 mod overlaps;
 mod print;
 mod render_cpu;
