@@ -39,6 +39,7 @@ pub(crate) fn draw_marks(
     placed: &mut Vec<PlacedFigure>,
 ) -> Vec<Drawing> {
     let mut drawn: Vec<Drawing> = Vec::new();
+    let mut covered: Vec<PixelBox> = Vec::new();
     let sheet = composer.sheet;
     let within = sheet.bounds().grown(-sheet.px(3.0));
     let mut begun: Vec<usize> = Vec::new();
@@ -49,14 +50,16 @@ pub(crate) fn draw_marks(
         for (figure, edge) in figures {
             let Some((tick, number, outward)) = draw(mark, figure, composer) else { continue };
             let own = PlacedFigure::new((mark.line, figure), (mark.at_px, outward), &number);
+            // A slanting tick and its number are no box together: others stand between them.
+            let parts = [tick.bounds(), number.bounds()];
+            let spaced = [parts[0], parts[1].grown(sheet.px(6.0))];
             let mut drawing = tick;
             drawing.append(number);
             let bounds = drawing.bounds();
-            let spaced = bounds.grown(sheet.px(6.0));
-            let is_free = !taken.iter().any(|other| other.overlaps(&spaced))
-                && !drawn.iter().any(|other| other.bounds().overlaps(&spaced));
-            if within.holds(&bounds) && is_free {
+            let is_free = |other: &PixelBox| spaced.iter().all(|own| !own.overlaps(other));
+            if within.holds(&bounds) && taken.iter().all(is_free) && covered.iter().all(is_free) {
                 drawn.push(drawing);
+                covered.extend(parts);
                 placed.push(own);
                 begun.extend(edge);
                 break;
