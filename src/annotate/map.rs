@@ -18,7 +18,7 @@ use crate::canvas::{paint, paste};
 use crate::composer::Composer;
 use crate::drawing::{Drawing, polyline};
 use crate::legend::{self, Legend};
-use crate::north::{self, NorthArrow, NorthKind};
+use crate::north::{self, CaptionPlace, NorthArrow, NorthKind};
 use crate::pixel_box::PixelBox;
 use crate::report::AnnotationReport;
 use crate::scale_bar;
@@ -164,7 +164,7 @@ fn draw_column(drawing: &mut Drawing, furniture: &MapFurniture, column: PixelBox
     let arrow = NorthArrow { direction: Vec2::new(north.x, -north.y), foreshortening: 1.0, kind };
     let width = column.size().x;
     let parts = [
-        north::compose(&arrow, composer),
+        north::compose(&arrow, CaptionPlace::Beside, composer),
         Some(tints(&furniture.tints, width, composer)),
         legend::compose(&furniture.legend, composer),
         scale_bar::compose_on_map(furniture.pixels_per_meter, width * 0.72, composer),

@@ -2,8 +2,8 @@
 //!
 //! In an oblique view the ground is foreshortened, and a direction on the picture alone does not show north. The arrow
 //! is drawn on the ground plane and projected with it: its ring shows the tilt, and its needle points along the
-//! meridian. The letter stays upright. Below the ring it says which north it is: true north, or that of the grid where
-//! nothing more is known.
+//! meridian. The letter stays upright. Below the ring, or beside it, it says which north it is: true north, or that of the
+//! grid where nothing more is known.
 
 use glam::Vec2;
 use tiny_skia::{Path, PathBuilder, Rect};
@@ -70,8 +70,17 @@ impl NorthArrow {
     }
 }
 
+/// Where an arrow says which north it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum CaptionPlace {
+    /// Below it, on a picture.
+    Below,
+    /// To its right, in a column.
+    Beside,
+}
+
 /// The arrow around the origin; `None` where its direction is zero or not finite.
-pub(crate) fn compose(arrow: &NorthArrow, composer: &mut Composer) -> Option<Drawing> {
+pub(crate) fn compose(arrow: &NorthArrow, caption: CaptionPlace, composer: &mut Composer) -> Option<Drawing> {
     let sheet = composer.sheet;
     let plane = ArrowPlane::new(arrow, sheet.px(RADIUS))?;
     let mut drawing = Drawing::default();
@@ -83,7 +92,7 @@ pub(crate) fn compose(arrow: &NorthArrow, composer: &mut Composer) -> Option<Dra
     }
     draw_needle(&plane, &sheet, &mut drawing)?;
     draw_letter(&plane, composer, &mut drawing);
-    draw_caption(arrow.kind, composer, &mut drawing);
+    draw_caption((arrow.kind, caption), composer, &mut drawing);
     Some(drawing)
 }
 
@@ -142,12 +151,15 @@ fn draw_letter(plane: &ArrowPlane, composer: &mut Composer, drawing: &mut Drawin
     drawing.write_haloed(&letter, start.round(), letter_halo(&composer.sheet), INK);
 }
 
-/// Writes which north it is below all else.
-fn draw_caption(kind: NorthKind, composer: &mut Composer, drawing: &mut Drawing) {
+/// Writes which north it is, clear of all else.
+fn draw_caption((kind, place): (NorthKind, CaptionPlace), composer: &mut Composer, drawing: &mut Drawing) {
     let [size, gap] = CAPTION;
     let line = composer.line(kind.caption(), composer.style(size, TextStyle::REGULAR));
-    let baseline = drawing.bounds().max.y + composer.sheet.px(gap) + line.style.cap_px();
-    let start = Vec2::new(-line.advance * 0.5, baseline);
+    let (cap, gap, corner) = (line.style.cap_px(), composer.sheet.px(gap), drawing.bounds().max);
+    let start = match place {
+        CaptionPlace::Below => Vec2::new(-line.advance * 0.5, corner.y + gap + cap),
+        CaptionPlace::Beside => Vec2::new(corner.x + 2.0 * gap, cap * 0.5),
+    };
     drawing.write_haloed(&line, start.round(), letter_halo(&composer.sheet), INK);
 }
 
@@ -197,7 +209,8 @@ mod tests {
             let angle = step as f32 * 0.2;
             let direction = Vec2::new(libm::cosf(angle), libm::sinf(angle));
             let arrow = NorthArrow { direction, foreshortening: 0.5, kind: NorthKind::True };
-            let drawing = compose(&arrow, &mut Composer::new(1920, 1080)).expect("a direction");
+            let drawing =
+                compose(&arrow, CaptionPlace::Below, &mut Composer::new(1920, 1080)).expect("a direction");
             let bounds = drawing.bounds();
             let reached = bounds.min.abs().max_element().max(bounds.max.x);
             assert!(reached <= reach(&sheet) + 3.0, "{reached} at {angle}");
@@ -248,7 +261,7 @@ mod tests {
     fn no_direction_no_arrow() {
         for direction in [Vec2::ZERO, Vec2::NAN] {
             let arrow = NorthArrow { direction, foreshortening: 0.5, kind: NorthKind::True };
-            assert!(compose(&arrow, &mut Composer::new(100, 100)).is_none());
+            assert!(compose(&arrow, CaptionPlace::Below, &mut Composer::new(100, 100)).is_none());
         }
     }
 }

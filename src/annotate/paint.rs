@@ -10,6 +10,7 @@ use crate::drawing::Drawing;
 use crate::fixed_text::draw_fixed;
 use crate::grid::FigurePlace;
 use crate::labels::draw_labels;
+use crate::north::CaptionPlace;
 use crate::pixel_box::PixelBox;
 use crate::report::{AnnotationReport, FurnitureKind};
 use crate::sheet::{PAPER, Sheet};
@@ -149,7 +150,10 @@ impl Furniture {
         for (kind, piece) in [
             (FurnitureKind::Title, has_title.then(|| title::compose(title, subtitle, composer))),
             (FurnitureKind::ScaleBar, bar.as_ref().map(|bar| scale_bar::compose(bar, note, composer))),
-            (FurnitureKind::NorthArrow, arrow.as_ref().map(|arrow| north::compose(arrow, composer))),
+            (
+                FurnitureKind::NorthArrow,
+                arrow.as_ref().map(|arrow| north::compose(arrow, CaptionPlace::Below, composer)),
+            ),
             (FurnitureKind::Legend, legend.as_ref().map(|legend| legend::compose(legend, composer))),
         ] {
             piece.into_iter().for_each(|drawing| furniture.place(kind, drawing, annotations.cover.as_ref()));

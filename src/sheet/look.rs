@@ -31,7 +31,11 @@ const BRIGHTEST_INK: f32 = 0.9;
 /// Gives a picture of `list`, seen through `camera`, the look of the scene's preset; most have none of their own.
 pub fn apply_look(scene: &SceneModel, list: &DrawList, camera: &Camera, picture: &mut Rendering) {
     match scene.preset {
-        Some(StylePreset::Print) => print(scene, &contour_cover(list, camera, picture), picture),
+        Some(StylePreset::Print) => {
+            let has_lines = scene.contours.is_some();
+            let contours = if has_lines { contour_cover(list, camera, picture) } else { Vec::new() };
+            print(scene, &contours, picture);
+        }
         Some(StylePreset::Night) => {
             let pixels = picture.pixels.data_mut().par_iter_mut().zip(&picture.features);
             pixels.for_each(|(pixel, feature)| {

@@ -7,6 +7,7 @@ mod annotate;
 mod gallery;
 mod grid;
 mod grid_numbers;
+mod level_ground;
 mod overlaps;
 mod print;
 mod render_cpu;
