@@ -28,35 +28,44 @@ const RISE_SHARE: f32 = 1.0 / 3.0;
 /// Ground that falls from level ground by less than this, of the interval, is part of it: smoothed ground comes to the
 /// height of a line ever more slowly, and where it reaches it says nothing.
 const LEAST_FALL: f32 = 0.02;
+/// The same at most, whatever the heights were rounded to.
+const MOST_FALL: f32 = 0.3;
 /// How near to the height of a line ground is level with it, of the interval, and of the height: some roundings of it.
 const LEVEL: [f32; 2] = [1e-3, 5e-7];
 
-/// Moves posts of level ground off the heights of contour lines.
+/// Moves posts of level ground off the heights of contour lines. `step_m` is the step that heights were rounded to before
+/// they were smoothed, 0 for none: what falls by less than half of it was level.
 ///
 /// Posts under water stay: no line is drawn on them.
-pub fn lift_level_ground(posts: &mut [GroundPost], size: PostCount, contours: &Contours) {
+pub fn lift_level_ground(posts: &mut [GroundPost], size: PostCount, contours: &Contours, step_m: f32) {
     if !(contours.interval_m.is_finite() && contours.interval_m > 0.0) || posts.is_empty() {
         return;
     }
-    let ground = ContourGround { posts, size, interval_m: contours.interval_m };
+    let interval_m = contours.interval_m;
+    let least_fall_m = (0.49 * step_m).min(MOST_FALL * interval_m).max(LEAST_FALL * interval_m);
+    let ground = ContourGround { posts, size, interval_m, least_fall_m };
     let found: Vec<(usize, LevelPost)> = (0..ground.posts.len())
         .into_par_iter()
         .filter_map(|index| Some((index, ground.level_post(index)?)))
         .collect();
-    if found.is_empty() {
+    let is_broad = |kind: &LevelPost| [LevelPost::Inner, LevelPost::Rim].contains(kind);
+    if !found.iter().any(|(_, kind)| is_broad(kind) || *kind == LevelPost::Crest) {
         return;
     }
+    let broad = found.iter().filter(|(_, kind)| is_broad(kind)).map(|(index, _)| *index);
+    let beside = ground.level_beside(broad.collect());
     let seeds = found.iter().filter(|(_, kind)| *kind == LevelPost::Inner).map(|(index, _)| *index);
     let lifted = ground.connected(seeds.collect());
     let outer: Vec<(usize, f32)> = found
         .iter()
         .filter(|(index, _)| !lifted.holds(*index))
+        .filter(|(index, kind)| *kind != LevelPost::Slope || beside.holds(*index))
         .filter_map(|(index, kind)| Some((*index, ground.moved(*index, *kind)?)))
         .collect();
     for index in 0..posts.len() {
         if lifted.holds(index) {
-            let ground = ContourGround { posts, size, interval_m: contours.interval_m };
-            let height_m = ground.lifted(index, LIFT * contours.interval_m);
+            let ground = ContourGround { posts, size, interval_m, least_fall_m };
+            let height_m = ground.lifted(index, LIFT * interval_m);
             posts[index].height_m = height_m;
         }
     }
@@ -72,12 +81,16 @@ enum LevelPost {
     Rim,
     /// Of a crest as narrow as a post: nothing beside it is higher.
     Crest,
+    /// Of a slope: it is lifted where level ground narrows to it, so that the line goes on beside it.
+    Slope,
 }
 
 struct ContourGround<'a> {
     posts: &'a [GroundPost],
     size: PostCount,
     interval_m: f32,
+    /// What falls from level ground by less is part of it, meters.
+    least_fall_m: f32,
 }
 
 /// The eight posts round one, in order; `None` beyond the border.
@@ -132,7 +145,24 @@ impl ContourGround<'_> {
         if [7, 1, 3, 5].into_iter().any(is_flat_cell) || is_pass(&signs) {
             return Some(LevelPost::Rim);
         }
-        (!has(1)).then_some(LevelPost::Crest)
+        Some(if has(1) { LevelPost::Slope } else { LevelPost::Crest })
+    }
+
+    /// The posts of slopes at the height of a line that hang together with level ground.
+    fn level_beside(&self, broad: Vec<usize>) -> PostSet {
+        let mut set = PostSet::new(self.posts.len());
+        let mut open: Vec<usize> = broad.into_iter().filter(|&post| set.insert(post)).collect();
+        while let Some(index) = open.pop() {
+            let line_m = self.line_m(index);
+            for near in self.round(index).into_iter().flatten() {
+                let is_same = self.line_m(near) == line_m && !set.holds(near);
+                if is_same && self.level_post(near) == Some(LevelPost::Slope) {
+                    set.insert(near);
+                    open.push(near);
+                }
+            }
+        }
+        set
     }
 
     /// The posts that are one level ground with `seeds`: hardly lower than the line, less than a lift above it, and not
@@ -153,7 +183,7 @@ impl ContourGround<'_> {
     }
 
     fn is_part(&self, index: usize, line_m: f32) -> bool {
-        let least = -LEAST_FALL * self.interval_m;
+        let least = -self.least_fall_m;
         let own = self.posts[index].height_m - line_m;
         self.is_dry(index)
             && (least..LIFT * self.interval_m).contains(&own)
@@ -178,7 +208,7 @@ impl ContourGround<'_> {
         let away_m = half_m.clamp(2.0 * self.level_m(line_m), LIFT * self.interval_m);
         match kind {
             LevelPost::Inner => None,
-            LevelPost::Rim => Some(self.lifted(index, away_m)),
+            LevelPost::Rim | LevelPost::Slope => Some(self.lifted(index, away_m)),
             LevelPost::Crest => Some(line_m - away_m),
         }
     }
@@ -229,7 +259,7 @@ mod tests {
         let mut posts: Vec<GroundPost> = (0..SIZE.columns * SIZE.rows).map(post).collect();
         let heights = |posts: &[GroundPost]| posts.iter().map(|post| post.height_m).collect::<Vec<f32>>();
         let before = heights(&posts);
-        lift_level_ground(&mut posts, SIZE, &CONTOURS);
+        lift_level_ground(&mut posts, SIZE, &CONTOURS, 0.0);
         (before, heights(&posts))
     }
 
@@ -303,7 +333,7 @@ mod tests {
         let size = PostCount { columns: 5, rows: 5 };
         let moved = |post: GroundPost, interval_m: f32| {
             let mut posts = vec![post; 25];
-            lift_level_ground(&mut posts, size, &Contours { interval_m, ..CONTOURS });
+            lift_level_ground(&mut posts, size, &Contours { interval_m, ..CONTOURS }, 0.0);
             posts[12].height_m
         };
         assert!(moved(level, 10.0) > 101.0);

@@ -68,7 +68,7 @@ pub fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: Gr
     let all = PostCount { columns: lattice.columns(), rows: lattice.rows() };
     let GroundLevel { size, mut posts } = level(all, number, row);
     if let Some(contours) = &scene.contours {
-        lift_level_ground(&mut posts, size, contours);
+        lift_level_ground(&mut posts, size, contours, if is_rounded { 1.0 } else { 0.0 });
     }
     let cell = lattice.cell().as_vec2() * (1u32 << number) as f32;
     let ramp = scene.ramp();

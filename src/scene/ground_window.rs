@@ -65,7 +65,7 @@ pub fn ground_window(
     };
     let mut posts = rows.concat();
     if let Some(contours) = &map.contours {
-        lift_level_ground(&mut posts, size, contours);
+        lift_level_ground(&mut posts, size, contours, if smooth.is_some() { 1.0 } else { 0.0 });
     }
     GroundWindow {
         first: [origin.column + inner.first.column, origin.row + inner.first.row],

@@ -15,8 +15,7 @@ const POSTS: u32 = 61;
 /// Of the bare ground within 1 m of 100 m, the pixels that a print of `height`, in whole meters, leaves black, as `camera`
 /// shows them, and all of them.
 fn black_on_the_plain(camera: &str, height: impl Fn(f64, f64) -> f64) -> (usize, usize) {
-    let mut dem =
-        format!("ncols {POSTS}\nnrows {POSTS}\nxllcenter 500000\nyllcenter 5000000\ncellsize 20\n");
+    let mut dem = format!("ncols {POSTS}\nnrows {POSTS}\nxllcenter 500000\nyllcenter 5000000\ncellsize 20\n");
     for index in 0..POSTS * POSTS {
         let (column, row) = (f64::from(index % POSTS), f64::from(index / POSTS));
         let _ = write!(dem, "{} ", height(column, row).round());

@@ -122,7 +122,7 @@ mod tests {
             ..GroundPost::default()
         };
         let mut posts: Vec<GroundPost> = (0..41 * 41).map(post).collect();
-        lift_level_ground(&mut posts, size, &contours);
+        lift_level_ground(&mut posts, size, &contours, 0.0);
         let map = GroundMap {
             columns: 41,
             rows: 41,

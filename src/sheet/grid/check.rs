@@ -21,7 +21,7 @@ const MOST_PX: f32 = 3.0;
 #[error("the number {figure:?} is {off_px:.1} px off the line of {value}")]
 pub struct FigureOffLine {
     /// The number.
-    pub figure: PlacedFigure,
+    pub figure: Box<PlacedFigure>,
     /// What its line keeps: meters, or degrees.
     pub value: f64,
     /// How far it is from the line, pixels.
@@ -45,7 +45,7 @@ pub fn check_figures(
         let is_named = [&line.figure, &line.full].contains(&&figure.figure);
         let off_px = if is_named { missed.max(figure.off_px()) } else { f32::INFINITY };
         if off_px > MOST_PX {
-            return Err(FigureOffLine { figure: figure.clone(), value: line.value, off_px });
+            return Err(FigureOffLine { figure: Box::new(figure.clone()), value: line.value, off_px });
         }
     }
     Ok(numbered().count())
