@@ -7,7 +7,7 @@ const HALVINGS: u32 = 20;
 
 /// The end of a line on the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LineEnd {
+pub struct GroundEnd {
     /// World X and Y of the last place on the line with ground.
     pub at: DVec2,
     /// The direction in which the line goes on from there, of length 1.
@@ -23,7 +23,7 @@ pub fn ground_end(
     way: &[DVec2],
     (inset_m, step_m): (f64, f64),
     ground_z: &dyn Fn(DVec2) -> Option<f64>,
-) -> Option<LineEnd> {
+) -> Option<GroundEnd> {
     let (mut gone_m, mut next_m, mut before_m) = (0.0, inset_m, None);
     for pair in way.windows(2) {
         let length_m = pair[0].distance(pair[1]);
@@ -35,7 +35,7 @@ pub fn ground_end(
                 let bare_m = before_m.unwrap_or(next_m).max(gone_m);
                 let end_m = first_ground(bare_m, next_m, &|at_m| ground_z(place(at_m)).is_some());
                 let at = place(end_m);
-                return Some(LineEnd { at, outward: -along, ground_z: ground_z(at)? });
+                return Some(GroundEnd { at, outward: -along, ground_z: ground_z(at)? });
             }
             before_m = Some(next_m);
             next_m += step_m;

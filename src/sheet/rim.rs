@@ -4,7 +4,7 @@
 use glam::{DVec2, Vec2, Vec3};
 
 use crate::grid::lines::{GroundGrid, GroundLine};
-use crate::line_end::{LineEnd, ground_end};
+use crate::line_end::{GroundEnd, ground_end};
 use sandtable_annotate::figure::CoordinateFigure;
 use sandtable_annotate::grid::GridAxis;
 use sandtable_annotate::nice::{Ticks, format_number, grouped};
@@ -41,7 +41,7 @@ struct RimTick {
     /// The line among those of the grid.
     line: Option<usize>,
     /// World Z at the line's end is that of the ground there.
-    end: LineEnd,
+    end: GroundEnd,
     figure: CoordinateFigure,
     /// The full coordinate, and the row of marks.
     full: Option<(CoordinateFigure, usize)>,
@@ -92,7 +92,7 @@ impl BlockEdge {
 
 impl RimGround<'_> {
     /// Where a line that comes from the border of the block has its first ground.
-    fn end_of(&self, way: &[DVec2]) -> Option<LineEnd> {
+    fn end_of(&self, way: &[DVec2]) -> Option<GroundEnd> {
         let step_m = self.nested.finest(&self.scene.lattice).cell().min_element();
         // On the border itself rounding decides.
         let inset_m = longer_side_m(self.scene) * 1e-5;
@@ -148,7 +148,7 @@ fn grid_ticks(
             let ends = ends_on(edge, line, ground.scene).into_iter().filter_map(|way| ground.end_of(&way));
             ends.map(move |end| (index, end)).collect::<Vec<_>>()
         });
-        let mut ends: Vec<(usize, LineEnd)> = ends.collect();
+        let mut ends: Vec<(usize, GroundEnd)> = ends.collect();
         ends.sort_by(|(_, a), (_, b)| a.at[edge.axis].total_cmp(&b.at[edge.axis]));
         let order = |place: usize| (place > 0, place > 0 && !grid.lines[ends[place].0].is_index);
         let mut places: Vec<usize> = (0..ends.len()).collect();
@@ -182,7 +182,7 @@ fn ends_on(edge: &BlockEdge, line: &GroundLine, scene: &SceneModel) -> Vec<Vec<D
 }
 
 fn mark(tick: RimTick, scene: &SceneModel, camera: &Camera) -> Option<RimMark> {
-    let LineEnd { at, outward, ground_z } = tick.end;
+    let GroundEnd { at, outward, ground_z } = tick.end;
     let (at, outward) = (at.as_vec2(), outward.as_vec2().extend(0.0));
     let foot = at.extend(base_z(scene.bounds));
     let faces_eye = outward.dot(camera.toward_eye(foot)) > 0.0;

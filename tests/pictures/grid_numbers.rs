@@ -135,7 +135,7 @@ impl NumberedPicture {
 }
 
 #[test]
-fn numbers_stand_at_their_lines_in_all_systems_whatever_the_shape_of_the_data() {
+fn numbers_stand_at_their_lines_in_all_systems_and_shapes() {
     let mut count = 0;
     for (index, (crs, place, side_m)) in SYSTEMS.into_iter().enumerate() {
         for (turn, grid) in ["geographic", "utm", "mgrs", "metric"].into_iter().enumerate() {
@@ -155,7 +155,7 @@ fn numbers_stand_at_their_lines_in_all_systems_whatever_the_shape_of_the_data() 
 }
 
 #[test]
-fn a_strip_that_slants_across_its_rectangle_has_both_coordinates_where_its_lines_end() {
+fn a_slanting_strip_has_both_coordinates_where_its_lines_end() {
     // Two degrees of longitude by one of latitude, as a strip of EPSG:3413.
     let shape: DataShape = |at| (at.x + at.y - 1.0).abs() < 0.25;
     let case = GridCase {
@@ -209,7 +209,7 @@ fn the_check_finds_a_number_beside_its_line() {
 }
 
 #[test]
-fn a_geographic_grid_across_180_degrees_has_its_interval_its_meridian_and_its_parallels() {
+fn a_geographic_grid_across_180_degrees_has_all_its_lines() {
     let case = GridCase {
         crs: 32601,
         place: (-180.0, 66.0),
@@ -242,7 +242,7 @@ fn a_geographic_grid_across_180_degrees_has_its_interval_its_meridian_and_its_pa
 }
 
 #[test]
-fn a_grid_round_a_pole_has_all_meridians_and_its_rings_are_numbered_on_them() {
+fn a_grid_round_a_pole_has_all_meridians_and_numbered_rings() {
     let case = GridCase {
         crs: 3413,
         place: (0.0, 90.0),
