@@ -72,7 +72,8 @@ fn picture(scene: &SceneModel, view: &str, name: &str, size: (u32, u32)) -> Pict
     };
     let pixels = scene.census().into_iter().map(|(kind, _)| of_kind(kind)).collect();
     let ground_pixels = showing(&|id| id == FeatureId::GROUND.0);
-    let shown = AnnotatedGround { graphics: &shot.graphic_texts, nested: &shot.nested };
+    let shown =
+        AnnotatedGround { graphics: &shot.graphic_texts, nested: &shot.nested, list: Some(&shot.list) };
     let annotations = annotations(scene, &camera, &picture, None, &shown);
     annotate(&mut picture.pixels, &annotations);
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("real_{name}.png"));

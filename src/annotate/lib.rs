@@ -50,6 +50,7 @@ mod pdf_font;
 mod pdf_stream;
 mod pixel_box;
 mod place;
+pub mod placed_figure;
 mod point_label;
 mod positions;
 pub mod report;

@@ -18,7 +18,7 @@ use crate::canvas::{paint, paste};
 use crate::composer::Composer;
 use crate::drawing::{Drawing, polyline};
 use crate::legend::{self, Legend};
-use crate::north::{self, NorthArrow};
+use crate::north::{self, CaptionPlace, NorthArrow, NorthKind};
 use crate::pixel_box::PixelBox;
 use crate::report::AnnotationReport;
 use crate::scale_bar;
@@ -53,6 +53,8 @@ pub struct MapFurniture {
     pub legend: Legend,
     /// Pixels that one meter spans on the map.
     pub pixels_per_meter: f32,
+    /// True north on the map, X right and Y up; `None` where it is not known, and the grid's is up.
+    pub true_north: Option<Vec2>,
 }
 
 /// The observer with range and sector; all lengths in pixels of the map, Y down.
@@ -157,10 +159,12 @@ fn draw_head(drawing: &mut Drawing, furniture: &MapFurniture, area: PixelBox, co
 
 /// Draws the column beside the map, from the top; pieces that do not fit are left out.
 fn draw_column(drawing: &mut Drawing, furniture: &MapFurniture, column: PixelBox, composer: &mut Composer) {
-    let arrow = NorthArrow { direction: Vec2::new(0.0, -1.0), foreshortening: 1.0 };
+    let north = furniture.true_north.unwrap_or(Vec2::Y);
+    let kind = if furniture.true_north.is_some() { NorthKind::True } else { NorthKind::Grid };
+    let arrow = NorthArrow { direction: Vec2::new(north.x, -north.y), foreshortening: 1.0, kind };
     let width = column.size().x;
     let parts = [
-        north::compose(&arrow, composer),
+        north::compose(&arrow, CaptionPlace::Beside, composer),
         Some(tints(&furniture.tints, width, composer)),
         legend::compose(&furniture.legend, composer),
         scale_bar::compose_on_map(furniture.pixels_per_meter, width * 0.72, composer),
@@ -220,6 +224,7 @@ mod tests {
                 vertical_datum: None,
             },
             pixels_per_meter: 0.1,
+            true_north: Some(Vec2::new(0.1, 1.0)),
         }
     }
 

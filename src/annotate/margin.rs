@@ -9,6 +9,7 @@ use crate::class_legend;
 use crate::composer::Composer;
 use crate::drawing::Drawing;
 use crate::locator::{self, LocatorMap};
+use crate::north::CaptionPlace;
 use crate::norths::{self, ThreeNorths};
 use crate::paragraph::written_lines;
 use crate::pixel_box::PixelBox;
@@ -154,7 +155,7 @@ fn fill_columns(
     let Some(mut free) = columns.next() else { return };
     let arrow = annotations.north.as_ref().map(|arrow| {
         let arrow = north::NorthArrow { foreshortening: arrow.foreshortening.max(LEAST_TILT), ..*arrow };
-        north::compose(&arrow, composer)
+        north::compose(&arrow, CaptionPlace::Beside, composer)
     });
     let norths = notes.norths.as_ref().map(|norths| Some(norths::compose(norths, composer)));
     let ramp = annotations.legend.as_ref().map(|legend| legend::compose(legend, composer));

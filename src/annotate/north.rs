@@ -2,7 +2,8 @@
 //!
 //! In an oblique view the ground is foreshortened, and a direction on the picture alone does not show north. The arrow
 //! is drawn on the ground plane and projected with it: its ring shows the tilt, and its needle points along the
-//! meridian. The letter stays upright.
+//! meridian. The letter stays upright. Below the ring, or beside it, it says which north it is: true north, or that of the
+//! grid where nothing more is known.
 
 use glam::Vec2;
 use tiny_skia::{Path, PathBuilder, Rect};
@@ -19,6 +20,8 @@ const FLATTEST: f32 = 0.4;
 const LEAST_TILT: f32 = 0.02;
 /// Radius of the ring in design pixels.
 const RADIUS: f32 = 40.0;
+/// The size of what it says, and the space above that, in design pixels.
+const CAPTION: [f32; 2] = [12.0, 4.0];
 /// Space between ring and letter, in ems of the letter.
 const LETTER_GAP: f32 = 0.16;
 
@@ -30,21 +33,54 @@ pub struct NorthArrow {
     /// The ratio of a length into the picture to the same length across it, as they appear: the sine of the angle at
     /// which the camera looks down. 1 looking straight down, 0 at the horizon.
     pub foreshortening: f32,
+    /// Which north it is.
+    pub kind: NorthKind,
 }
 
-impl NorthArrow {
-    /// North as `camera` sees it on the ground at the middle of its picture.
-    pub fn from_camera(camera: &Camera) -> Self {
-        let foreshortening = (camera.forward().z.abs() * camera.stretch()).clamp(LEAST_TILT, 1.0);
-        // The right of the picture is level: its east and north parts are the cosine and the negative sine of the
-        // heading. A level view, whose horizon would hide whether north is ahead, is tilted.
-        let right = camera.right();
-        Self { direction: Vec2::new(right.y, -right.x * foreshortening), foreshortening }
+/// What a north arrow points to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NorthKind {
+    /// The pole, along the meridian.
+    True,
+    /// Where northings grow, for ground without a place on Earth.
+    Grid,
+}
+
+impl NorthKind {
+    /// What the arrow says.
+    fn caption(self) -> &'static str {
+        match self {
+            Self::True => "true north",
+            Self::Grid => "grid north",
+        }
     }
 }
 
+impl NorthArrow {
+    /// The direction `north` of world X and Y, which is north of this kind, as `camera` sees it on the ground at the middle
+    /// of its picture.
+    pub fn from_camera(camera: &Camera, north: Vec2, kind: NorthKind) -> Self {
+        let foreshortening = (camera.forward().z.abs() * camera.stretch()).clamp(LEAST_TILT, 1.0);
+        // The right of the picture is level, and what is ahead lies to its left. A level view, whose horizon would hide
+        // whether north is ahead, is tilted.
+        let right = camera.right().truncate();
+        let ahead = right.perp();
+        let direction = Vec2::new(north.dot(right), -north.dot(ahead) * foreshortening);
+        Self { direction, foreshortening, kind }
+    }
+}
+
+/// Where an arrow says which north it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum CaptionPlace {
+    /// Below it, on a picture.
+    Below,
+    /// To its right, in a column.
+    Beside,
+}
+
 /// The arrow around the origin; `None` where its direction is zero or not finite.
-pub(crate) fn compose(arrow: &NorthArrow, composer: &mut Composer) -> Option<Drawing> {
+pub(crate) fn compose(arrow: &NorthArrow, caption: CaptionPlace, composer: &mut Composer) -> Option<Drawing> {
     let sheet = composer.sheet;
     let plane = ArrowPlane::new(arrow, sheet.px(RADIUS))?;
     let mut drawing = Drawing::default();
@@ -56,10 +92,11 @@ pub(crate) fn compose(arrow: &NorthArrow, composer: &mut Composer) -> Option<Dra
     }
     draw_needle(&plane, &sheet, &mut drawing)?;
     draw_letter(&plane, composer, &mut drawing);
+    draw_caption((arrow.kind, caption), composer, &mut drawing);
     Some(drawing)
 }
 
-/// The farthest that the arrow reaches from its center in any direction: its distance from the border.
+/// The farthest that ring and letter reach from the center in any direction: its distance from the border.
 pub(crate) fn reach(sheet: &Sheet) -> f32 {
     let letter = sheet.type_px(LETTER_SIZE) * (CAP_HEIGHT + LETTER_GAP) + letter_halo(sheet);
     (sheet.px(RADIUS) + letter).ceil()
@@ -114,6 +151,18 @@ fn draw_letter(plane: &ArrowPlane, composer: &mut Composer, drawing: &mut Drawin
     drawing.write_haloed(&letter, start.round(), letter_halo(&composer.sheet), INK);
 }
 
+/// Writes which north it is, clear of all else.
+fn draw_caption((kind, place): (NorthKind, CaptionPlace), composer: &mut Composer, drawing: &mut Drawing) {
+    let [size, gap] = CAPTION;
+    let line = composer.line(kind.caption(), composer.style(size, TextStyle::REGULAR));
+    let (cap, gap, corner) = (line.style.cap_px(), composer.sheet.px(gap), drawing.bounds().max);
+    let start = match place {
+        CaptionPlace::Below => Vec2::new(-line.advance * 0.5, corner.y + gap + cap),
+        CaptionPlace::Beside => Vec2::new(corner.x + 2.0 * gap, cap * 0.5),
+    };
+    drawing.write_haloed(&line, start.round(), letter_halo(&composer.sheet), INK);
+}
+
 /// Size of the letter in design pixels.
 const LETTER_SIZE: f32 = 20.0;
 
@@ -128,7 +177,7 @@ mod tests {
     use super::*;
 
     fn plane(x: f32, y: f32, foreshortening: f32) -> ArrowPlane {
-        let arrow = NorthArrow { direction: Vec2::new(x, y), foreshortening };
+        let arrow = NorthArrow { direction: Vec2::new(x, y), foreshortening, kind: NorthKind::True };
         ArrowPlane::new(&arrow, 10.0).expect("a direction")
     }
 
@@ -159,11 +208,13 @@ mod tests {
         for step in 0..32 {
             let angle = step as f32 * 0.2;
             let direction = Vec2::new(libm::cosf(angle), libm::sinf(angle));
-            let arrow = NorthArrow { direction, foreshortening: 0.5 };
-            let drawing = compose(&arrow, &mut Composer::new(1920, 1080)).expect("a direction");
+            let arrow = NorthArrow { direction, foreshortening: 0.5, kind: NorthKind::True };
+            let drawing =
+                compose(&arrow, CaptionPlace::Below, &mut Composer::new(1920, 1080)).expect("a direction");
             let bounds = drawing.bounds();
-            let reached = bounds.min.abs().max(bounds.max.abs()).max_element();
+            let reached = bounds.min.abs().max_element().max(bounds.max.x);
             assert!(reached <= reach(&sheet) + 3.0, "{reached} at {angle}");
+            assert!(bounds.max.y <= reach(&sheet) + 3.0 + sheet.px(CAPTION[0] + CAPTION[1]), "{angle}");
         }
     }
 
@@ -175,8 +226,24 @@ mod tests {
             let camera = Camera::new(eye, target, 0.7, (800, 600), (1.0, 9000.0)).expect("a sound camera");
             let pixel = |at: Vec3| camera.project(at).expect("in front of the eye").pixel;
             let seen = pixel(target + Vec3::Y * 0.5) - pixel(target - Vec3::Y * 0.5);
-            let off = NorthArrow::from_camera(&camera).direction.angle_to(seen);
+            let arrow = NorthArrow::from_camera(&camera, Vec2::Y, NorthKind::Grid);
+            let off = arrow.direction.angle_to(seen);
             assert!(off.abs() < 0.01, "{off} looking at {target}");
+        }
+    }
+
+    #[test]
+    fn true_north_points_where_the_camera_projects_the_meridian() {
+        for turn in [0.3f32, 1.15, -2.0, 3.1] {
+            let north = Vec2::new(libm::sinf(turn), libm::cosf(turn));
+            let target = Vec3::new(200.0, 300.0, 0.0);
+            let eye = Vec3::new(-50.0, -90.0, 350.0);
+            let camera = Camera::new(eye, target, 0.7, (800, 600), (1.0, 9000.0)).expect("a sound camera");
+            let pixel = |at: Vec3| camera.project(at).expect("in front of the eye").pixel;
+            let step = (north * 0.5).extend(0.0);
+            let seen = pixel(target + step) - pixel(target - step);
+            let off = NorthArrow::from_camera(&camera, north, NorthKind::True).direction.angle_to(seen);
+            assert!(off.abs() < 0.01, "{off} at {turn}");
         }
     }
 
@@ -185,15 +252,16 @@ mod tests {
         for (target, up) in [(Vec3::Y, true), (Vec3::NEG_Y, false)] {
             let camera =
                 Camera::new(Vec3::ZERO, target, 0.7, (800, 600), (1.0, 9.0)).expect("a sound camera");
-            assert_eq!(NorthArrow::from_camera(&camera).direction.y < 0.0, up);
+            let arrow = NorthArrow::from_camera(&camera, Vec2::Y, NorthKind::Grid);
+            assert_eq!(arrow.direction.y < 0.0, up);
         }
     }
 
     #[test]
     fn no_direction_no_arrow() {
         for direction in [Vec2::ZERO, Vec2::NAN] {
-            let arrow = NorthArrow { direction, foreshortening: 0.5 };
-            assert!(compose(&arrow, &mut Composer::new(100, 100)).is_none());
+            let arrow = NorthArrow { direction, foreshortening: 0.5, kind: NorthKind::True };
+            assert!(compose(&arrow, CaptionPlace::Below, &mut Composer::new(100, 100)).is_none());
         }
     }
 }

@@ -10,6 +10,7 @@ use crate::drawing::Drawing;
 use crate::fixed_text::draw_fixed;
 use crate::grid::FigurePlace;
 use crate::labels::draw_labels;
+use crate::north::CaptionPlace;
 use crate::pixel_box::PixelBox;
 use crate::report::{AnnotationReport, FurnitureKind};
 use crate::sheet::{PAPER, Sheet};
@@ -104,11 +105,13 @@ fn on_picture(
     report: &mut AnnotationReport,
 ) -> Vec<Drawing> {
     let mut boxes: Vec<PixelBox> = furniture.iter().map(Drawing::bounds).collect();
-    let marks = rim::draw_marks(&annotations.rim, &boxes, composer);
+    let placed = &mut report.figures;
+    let marks = rim::draw_marks(&annotations.rim, &boxes, composer, placed);
     boxes.extend(marks.iter().map(Drawing::bounds));
     let grid = annotations.grid.as_ref();
     let lines = grid.map(|grid| grid::draw_lines(grid, composer));
-    let figures = grid.map(|grid| grid::draw_figures(grid, &boxes, place, composer)).unwrap_or_default();
+    let figures = grid.map(|grid| grid::draw_figures(grid, &boxes, place, composer, placed));
+    let figures = figures.unwrap_or_default();
     boxes.extend(figures.iter().map(Drawing::bounds));
     let fixed = draw_fixed(&annotations.fixed_texts, &mut boxes, composer, report);
     let symbols = draw_symbols(&annotations.symbols, &boxes, composer, &mut report.symbols);
@@ -147,7 +150,10 @@ impl Furniture {
         for (kind, piece) in [
             (FurnitureKind::Title, has_title.then(|| title::compose(title, subtitle, composer))),
             (FurnitureKind::ScaleBar, bar.as_ref().map(|bar| scale_bar::compose(bar, note, composer))),
-            (FurnitureKind::NorthArrow, arrow.as_ref().map(|arrow| north::compose(arrow, composer))),
+            (
+                FurnitureKind::NorthArrow,
+                arrow.as_ref().map(|arrow| north::compose(arrow, CaptionPlace::Below, composer)),
+            ),
             (FurnitureKind::Legend, legend.as_ref().map(|legend| legend::compose(legend, composer))),
         ] {
             piece.into_iter().for_each(|drawing| furniture.place(kind, drawing, annotations.cover.as_ref()));

@@ -5,6 +5,7 @@ use glam::Vec2;
 use crate::drawing::DrawnText;
 use crate::pixel_box::PixelBox;
 use crate::place::LabelCandidate;
+use crate::placed_figure::PlacedFigure;
 
 /// A piece of furniture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -35,6 +36,8 @@ pub struct AnnotationReport {
     pub placed: Vec<String>,
     /// The boxes that the drawn texts and symbols cover on the picture, with their halos.
     pub boxes: Vec<SheetBox>,
+    /// The numbers of the grid that are drawn; on a sheet with a margin some are beside the picture.
+    pub figures: Vec<PlacedFigure>,
     /// Labels drawn away from their preferred position, with the reason; they are among those placed.
     pub moved: Vec<MovedLabel>,
     /// Labels not drawn because terrain or something on it hides their place.

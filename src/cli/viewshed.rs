@@ -147,7 +147,7 @@ fn write(
                 subtitle: subtitle(arguments, &ViewshedSummary::new(&ground.lattice, viewshed)),
                 vertical_datum: ground.vertical_datum.clone(),
             };
-            disk::write_picture(path, &viewshed_map(lattice, viewshed, options, text))?;
+            disk::write_picture(path, &viewshed_map((lattice, &ground.crs), viewshed, options, text))?;
         }
     }
     Ok(())

@@ -51,7 +51,8 @@ pub struct GroundMap {
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct GroundPost {
-    /// Elevation in meters, true to scale; posts without data hold a neighbor's height.
+    /// Elevation in meters, true to scale; posts without data hold a neighbor's height, and those of level ground at the
+    /// height of a contour line are [moved off it](crate::contour_ground).
     pub height_m: f32,
     /// Rise eastward of the drawn ground, meters per meter.
     pub slope_east: f32,

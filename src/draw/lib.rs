@@ -5,6 +5,7 @@ pub mod backdrop;
 pub mod bathymetry;
 pub mod border;
 pub mod color;
+pub mod contour_ground;
 pub mod font;
 pub mod ground;
 pub mod ground_cover;

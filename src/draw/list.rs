@@ -9,7 +9,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use glam::Mat4;
+use glam::{Mat4, Vec2};
 
 use crate::color::Srgba;
 use crate::ground::{GroundMap, GroundMapError};
@@ -171,6 +171,17 @@ pub enum DrawListError {
 }
 
 impl DrawList {
+    /// The elevation of the ground map at a world position, meters, of the finest one there; `None` without ground.
+    pub fn ground_height_m(&self, at: Vec2) -> Option<f32> {
+        let holds = |inset: &&GroundInset| {
+            let [min, max] = inset.corners();
+            min.cmple(at).all() && at.cmple(max).all()
+        };
+        let height_m = |inset: &GroundInset| inset.map.sample(at - inset.origin).height_m;
+        let finest = self.insets.iter().rev().find(holds).map(height_m);
+        finest.or_else(|| Some(self.ground.as_ref()?.sample(at).height_m))
+    }
+
     /// Adds a texture.
     pub fn add_texture(&mut self, pixels: Pixels) -> TextureId {
         self.textures.push(pixels);

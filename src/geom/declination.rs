@@ -60,14 +60,38 @@ pub fn declination(place: DVec2, height_m: f64, day: CalendarDay) -> Option<Decl
 }
 
 /// The direction in which northings of `crs` grow at a longitude and latitude (degrees): from true north, clockwise,
-/// degrees. `None` where the place is outside the system.
+/// degrees. `None` where the place is outside the system, and for a system without northings.
 pub fn convergence_deg(crs: &Crs, place: DVec2) -> Option<f64> {
+    let true_north = meridian(crs, place).filter(|_| !crs.is_geographic())?;
+    Some(-libm::atan2(true_north.x, true_north.y).to_degrees())
+}
+
+/// The direction of true north at the map coordinates `at` of `crs`, in map coordinates, of length 1. `None` where they have
+/// no place on Earth, and at a pole.
+///
+/// ```
+/// use glam::DVec2;
+/// use sandtable_geom::{crs::Crs, declination::true_north};
+/// let utm = Crs::from_epsg(32633).unwrap();
+/// // West of the central meridian true north is to the right of grid north.
+/// assert!(true_north(&utm, DVec2::new(300_000.0, 5_000_000.0)).unwrap().x > 0.02);
+/// ```
+pub fn true_north(crs: &Crs, at: DVec2) -> Option<DVec2> {
+    meridian(crs, crs.transform(&Crs::wgs84(), at).ok()?)
+}
+
+/// The direction of the meridian at a longitude and latitude (degrees), northward, in map coordinates of `crs`, of length 1.
+fn meridian(crs: &Crs, place: DVec2) -> Option<DVec2> {
     /// Far enough for the numbers' precision, near enough for a straight line.
     const STEP_DEG: f64 = 1e-4;
     let wgs84 = Crs::wgs84();
-    let [south, north] = [-STEP_DEG, STEP_DEG].map(|step| wgs84.transform(crs, place + DVec2::Y * step).ok());
-    let true_north = north? - south?;
-    (!crs.is_geographic()).then(|| -libm::atan2(true_north.x, true_north.y).to_degrees())
+    // No step goes beyond a pole.
+    let [south, north] = [-STEP_DEG, STEP_DEG].map(|step| {
+        let latitude = (place.y + step).clamp(-90.0, 90.0);
+        wgs84.transform(crs, DVec2::new(place.x, latitude)).ok()
+    });
+    let is_pole = place.y.abs() > 90.0 - 1e-9;
+    (north? - south?).try_normalize().filter(|_| !is_pole)
 }
 
 #[cfg(test)]
@@ -122,5 +146,23 @@ mod tests {
         assert!((at(-84.2) - 2.8 * libm::sin(36.3f64.to_radians())).abs() < 0.01);
         assert!(at(-88.0) < 0.0);
         assert_eq!(convergence_deg(&Crs::wgs84(), DVec2::ZERO), None);
+    }
+
+    #[test]
+    fn true_north_points_to_the_pole_of_a_polar_system() {
+        let polar = Crs::from_epsg(3413).expect("in the table");
+        for at in [DVec2::new(4e5, -3e5), DVec2::new(-2e5, 1e5), DVec2::new(5.0, 5.0)] {
+            let north = true_north(&polar, at).expect("on Earth");
+            assert!((north + at.normalize()).length() < 1e-3, "{at}: {north}");
+        }
+        assert_eq!(true_north(&polar, DVec2::ZERO), None);
+        assert_eq!(true_north(&Crs::local(), DVec2::ONE), None);
+        // 66° to the left of grid north where northings grow 66° east of true north.
+        let place = DVec2::new(21.0, 84.5);
+        let at = Crs::wgs84().transform(&polar, place).expect("in range");
+        let convergence = convergence_deg(&polar, place).expect("in range").to_radians();
+        let north = true_north(&polar, at).expect("on Earth");
+        assert!((convergence - 66f64.to_radians()).abs() < 1e-3);
+        assert!((north - DVec2::new(-libm::sin(convergence), libm::cos(convergence))).length() < 1e-6);
     }
 }

@@ -111,7 +111,7 @@ fn by_standing(
 fn placed(scene: &SceneModel, view: &SceneView) -> Option<(AnnotationReport, BTreeMap<String, FeatureId>)> {
     let (camera, frame) = framed_camera(scene, view, PictureSize::of(scene, view)).ok()?;
     let LabelSight { picture, behind } = label_sight(scene, &camera);
-    let shown = AnnotatedGround { graphics: &[], nested: &NestedHeights::default() };
+    let shown = AnnotatedGround { graphics: &[], nested: &NestedHeights::default(), list: None };
     let annotations = annotations(scene, &camera, &picture, frame.as_ref(), &shown);
     let report = compose_sheet(picture.pixels, &annotations).1;
     Some((report, behind))

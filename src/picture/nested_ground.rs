@@ -92,6 +92,7 @@ fn nested_ground(
     let mut scene = scene.map_err(BuildErrors::into_first)?;
     scene.table = TableTop::None;
     scene.scale = outer.scale;
+    scene.contours = outer.contours;
     scene.latitude_deg = outer.latitude_deg;
     let origin = scene.lattice.origin() - outer.lattice.origin();
     let moved = origin.as_vec2().extend(0.0);

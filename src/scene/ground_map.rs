@@ -9,6 +9,7 @@ use crate::relief_strength::ReliefStrength;
 use crate::scene_model::SceneModel;
 use crate::texture_shading::TextureShading;
 use crate::undergrowth::undergrowth;
+use sandtable_draw::contour_ground::lift_level_ground;
 use sandtable_draw::ground::{GroundMap, GroundPost};
 use sandtable_draw::ground_levels::{GroundLevel, PostCount, level};
 use sandtable_draw::lighting::ReliefShading;
@@ -66,6 +67,9 @@ pub fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: Gr
     };
     let all = PostCount { columns: lattice.columns(), rows: lattice.rows() };
     let GroundLevel { size, mut posts } = level(all, number, row);
+    if let Some(contours) = &scene.contours {
+        lift_level_ground(&mut posts, size, contours, if is_rounded { 1.0 } else { 0.0 });
+    }
     let cell = lattice.cell().as_vec2() * (1u32 << number) as f32;
     let ramp = scene.ramp();
     let ReliefStrength { z_factor, shade_gain } =

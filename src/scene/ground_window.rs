@@ -9,7 +9,9 @@ use rayon::prelude::*;
 use crate::ground_map::is_whole_meters;
 use crate::scene_model::SceneModel;
 use crate::texture_shading::sky_in_part;
+use sandtable_draw::contour_ground::lift_level_ground;
 use sandtable_draw::ground::{GroundMap, GroundPost};
+use sandtable_draw::ground_levels::PostCount;
 use sandtable_draw::ground_window::GroundWindow;
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::light::TerrainLight;
@@ -57,9 +59,17 @@ pub fn ground_window(
     };
     let rows: Vec<Vec<GroundPost>> = (inner.first.row..=inner.last.row).into_par_iter().map(row).collect();
     let origin = lattice.first();
+    let size = PostCount {
+        columns: inner.last.column - inner.first.column + 1,
+        rows: inner.last.row - inner.first.row + 1,
+    };
+    let mut posts = rows.concat();
+    if let Some(contours) = &map.contours {
+        lift_level_ground(&mut posts, size, contours, if smooth.is_some() { 1.0 } else { 0.0 });
+    }
     GroundWindow {
         first: [origin.column + inner.first.column, origin.row + inner.first.row],
-        columns: inner.last.column - inner.first.column + 1,
-        posts: rows.concat(),
+        columns: size.columns,
+        posts,
     }
 }

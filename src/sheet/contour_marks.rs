@@ -1,16 +1,15 @@
 //! The contour lines of a picture, traced on it: what may carry a number, and which lines go round hollows.
 //!
 //! The ground's shader draws contours pixel by pixel; nothing knows them as lines. Here the elevations of the ground that
-//! the picture shows are read at every few pixels and traced, so that a line ends where a hill hides it, and the work is
-//! that of the picture, not of the ground.
+//! the picture shows are read at every few pixels, from the map that the lines are drawn by, and traced, so that a line ends
+//! where a hill hides it, and the work is that of the picture, not of the ground.
 
 use glam::Vec2;
 
 use sandtable_annotate::annotation::{ContourMarks, NumberedContour};
 use sandtable_annotate::nice::format_number;
-use sandtable_draw::list::FeatureId;
+use sandtable_draw::list::{DrawList, FeatureId};
 use sandtable_geom::isolines::{Isoline, ValueGrid, isolines};
-use sandtable_picture::nested_ground::NestedHeights;
 use sandtable_render::picture::Rendering;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_view::camera::Camera;
@@ -32,12 +31,12 @@ const LEAST_HOLLOW_PX: f32 = 14.0;
 /// The marks of the scene's contour lines; `None` where it has none.
 pub fn contour_marks(
     scene: &SceneModel,
-    nested: &NestedHeights,
+    list: &DrawList,
     camera: &Camera,
     picture: &Rendering,
 ) -> Option<ContourMarks> {
     let contours = scene.contours.filter(|contours| contours.interval_m > 0.0)?;
-    let read = ReadGround::new(scene, nested, camera, picture);
+    let read = ReadGround::new(list, camera, picture);
     let numbered_m = contours.interval_m * contours.major_every.max(1) as f32;
     let grid = ValueGrid { columns: read.columns, values: &read.elevations_m };
     let is_open = |column: usize, row: usize| read.is_one_hill(column, row);
@@ -61,7 +60,7 @@ struct ReadGround {
 }
 
 impl ReadGround {
-    fn new(scene: &SceneModel, nested: &NestedHeights, camera: &Camera, picture: &Rendering) -> Self {
+    fn new(list: &DrawList, camera: &Camera, picture: &Rendering) -> Self {
         let (width, height) = (picture.pixels.width() as usize, picture.pixels.height() as usize);
         let step = (height / ROWS).max(LEAST_STEP);
         let (columns, rows) = (width.div_ceil(step), height.div_ceil(step));
@@ -73,9 +72,9 @@ impl ReadGround {
             depths_m.push(depth);
             let is_ground = picture.features[index] == FeatureId::GROUND && depth.is_finite();
             let pixel = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-            let map = || scene.lattice.map_point(camera.point_at(pixel, depth));
-            let height_m = is_ground.then(|| nested.height_m(&scene.lattice, map())).flatten();
-            elevations_m.push(height_m.map_or(f32::NAN, |height_m| height_m as f32));
+            let at = camera.point_at(pixel, depth).truncate();
+            let height_m = if is_ground { list.ground_height_m(at) } else { None };
+            elevations_m.push(height_m.unwrap_or(f32::NAN));
         }
         Self { columns, step, elevations_m, depths_m }
     }

@@ -9,16 +9,16 @@ use crate::legend_symbols::symbol_entries;
 use crate::line_labels::{is_seen, line_label};
 use crate::margin::margin_notes;
 use crate::military::picture_symbols;
+use crate::picture_middle::{ground_in_middle, north_arrow};
 use crate::rim::rim_marks;
 use sandtable_annotate::annotation::{Annotations, PictureLabel};
 use sandtable_annotate::cover::SceneCover;
 use sandtable_annotate::legend::Legend;
-use sandtable_annotate::north::NorthArrow;
 use sandtable_annotate::scale_bar::ScaleBar;
 use sandtable_annotate::sheet_frame::SheetFrame;
 use sandtable_description::words::SheetLayout;
 use sandtable_draw::bathymetry::with_bathymetry;
-use sandtable_draw::list::FeatureId;
+use sandtable_draw::list::{DrawList, FeatureId};
 use sandtable_picture::nested_ground::NestedHeights;
 use sandtable_picture::placed_text::PlacedText;
 use sandtable_render::picture::Rendering;
@@ -33,6 +33,8 @@ pub struct AnnotatedGround<'a> {
     pub graphics: &'a [PlacedText],
     /// The heights of its nested grounds.
     pub nested: &'a NestedHeights,
+    /// What was drawn; without it contour lines have no numbers.
+    pub list: Option<&'a DrawList>,
 }
 
 /// The annotations of a picture: labels with their positions on it, and furniture, round it where `frame` says so.
@@ -64,17 +66,19 @@ pub fn annotations(
     Annotations {
         labels,
         line_labels,
-        contours: contour_marks(scene, nested, camera, picture),
+        contours: shown.list.and_then(|list| contour_marks(scene, list, camera, picture)),
         fixed_texts: fixed,
         font: scene.font.clone(),
         symbols: picture_symbols(scene, nested, camera, picture),
-        rim: rim_marks(scene, camera, grid.as_ref()),
-        margin: frame
-            .map(|frame| margin_notes(scene, camera, frame, grid.as_ref().map(|grid| grid.note.as_str()))),
+        rim: rim_marks(scene, nested, camera, grid.as_ref()),
+        margin: frame.map(|frame| {
+            let note = grid.as_ref().map(|grid| grid.note.as_str());
+            margin_notes(scene, camera, (frame, ground_in_middle(scene, camera, picture)), note)
+        }),
         grid: grid.map(|grid| picture_grid(&grid, scene, nested, camera, picture)),
         title: scene.title.clone().filter(|_| shows(furniture.title)),
         subtitle: scene.subtitle.clone().filter(|_| shows(furniture.title)),
-        north: shows(furniture.north_arrow).then(|| NorthArrow::from_camera(camera)),
+        north: shows(furniture.north_arrow).then(|| north_arrow(scene, camera, picture)),
         scale_bar: if shows(furniture.scale_bar) { scale_bar(camera, picture) } else { None },
         legend: (shows(furniture.legend) && !is_all_imagery(scene)).then(|| legend(scene)),
         classes: if has_classes {

@@ -5,16 +5,16 @@
 //!
 //! *Night*: light of one color, by luminance, as the eye adapted to the dark keeps its sight in red light.
 
-use glam::Vec2;
 use rayon::prelude::*;
 
 use crate::legend::feature_inks;
 use crate::print_ink::PrintInk;
 use sandtable_description::words::StylePreset;
 use sandtable_draw::color::{Srgba, luminance, srgb_from_linear};
-use sandtable_draw::list::FeatureId;
+use sandtable_draw::list::{DrawList, FeatureId};
 use sandtable_draw::pixels::Pixels;
 use sandtable_draw::print_pattern::PrintPattern;
+use sandtable_render::cpu::contour_cover::contour_cover;
 use sandtable_render::picture::Rendering;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_view::camera::Camera;
@@ -28,10 +28,14 @@ const WALL: u8 = 225;
 const BRIGHTEST: f32 = 0.3;
 const BRIGHTEST_INK: f32 = 0.9;
 
-/// Gives a picture, seen through `camera`, the look of the scene's preset; most have none of their own.
-pub fn apply_look(scene: &SceneModel, camera: &Camera, picture: &mut Rendering) {
+/// Gives a picture of `list`, seen through `camera`, the look of the scene's preset; most have none of their own.
+pub fn apply_look(scene: &SceneModel, list: &DrawList, camera: &Camera, picture: &mut Rendering) {
     match scene.preset {
-        Some(StylePreset::Print) => print(scene, camera, picture),
+        Some(StylePreset::Print) => {
+            let has_lines = scene.contours.is_some();
+            let contours = if has_lines { contour_cover(list, camera, picture) } else { Vec::new() };
+            print(scene, &contours, picture);
+        }
         Some(StylePreset::Night) => {
             let pixels = picture.pixels.data_mut().par_iter_mut().zip(&picture.features);
             pixels.for_each(|(pixel, feature)| {
@@ -54,8 +58,8 @@ fn red_light(color: Srgba) -> Srgba {
     Srgba([srgb_from_linear(light * BRIGHTEST), 0, 0, color.0[3]])
 }
 
-fn print(scene: &SceneModel, camera: &Camera, picture: &mut Rendering) {
-    let contours = &contour_strengths(scene, camera, picture);
+/// `contours` is how much of each pixel a contour line covers, or empty.
+fn print(scene: &SceneModel, contours: &[f32], picture: &mut Rendering) {
     let inks = feature_inks(scene);
     let (width, height) = (picture.pixels.width(), picture.pixels.height());
     let unit = PrintPattern::unit_px(height);
@@ -71,11 +75,11 @@ fn print(scene: &SceneModel, camera: &Camera, picture: &mut Rendering) {
             (0..width).map(move |column| {
                 let gray = lifted(before.at(column, row));
                 let Some(ink) = ink_at(column, row) else {
-                    let feature = features[row as usize * width as usize + column as usize];
-                    return match feature {
+                    let index = row as usize * width as usize + column as usize;
+                    return match features[index] {
                         FeatureId::NONE => Srgba::WHITE,
                         FeatureId::PLINTH => Srgba::opaque(WALL, WALL, WALL),
-                        _ => inked(gray, contours[row as usize * width as usize + column as usize]),
+                        _ => inked(gray, contours.get(index).copied().unwrap_or_default()),
                     };
                 };
                 let beside = [
@@ -92,32 +96,6 @@ fn print(scene: &SceneModel, camera: &Camera, picture: &mut Rendering) {
     if let Some(pixels) = Pixels::from_data(width, height, data) {
         picture.pixels = pixels;
     }
-}
-
-/// How much of each pixel of the bare ground a contour covers, 0 to 1.
-fn contour_strengths(scene: &SceneModel, camera: &Camera, picture: &Rendering) -> Vec<f32> {
-    let (width, height) = (picture.pixels.width() as usize, picture.pixels.height() as usize);
-    let Some(contours) = scene.contours else { return vec![0.0; width * height] };
-    let elevation = |index: usize| {
-        let center = Vec2::new((index % width) as f32 + 0.5, (index / width) as f32 + 0.5);
-        let depth_m = picture.depth_m[index];
-        let is_ground = picture.features[index] == FeatureId::GROUND && depth_m.is_finite();
-        let at = camera.point_at(center, depth_m);
-        if is_ground { scene.scale.elevation_m(f64::from(at.z)) as f32 } else { f32::NAN }
-    };
-    let elevations: Vec<f32> = (0..width * height).into_par_iter().map(elevation).collect();
-    let strength = |index: usize| {
-        let own = elevations[index];
-        let is_last = ((index + 1).is_multiple_of(width), index + width >= elevations.len());
-        let beside = [
-            if is_last.0 { own } else { elevations[index + 1] },
-            if is_last.1 { own } else { elevations[index + width] },
-        ];
-        // NaN beside, where the ground ends, changes nothing.
-        let change = beside.iter().fold(0.0, |most: f32, beside| most.max((beside - own).abs()));
-        if own.is_nan() { 0.0 } else { contours.strength(own, change) }
-    };
-    (0..width * height).into_par_iter().map(strength).collect()
 }
 
 /// A gray with so much of it covered with black.

@@ -25,11 +25,11 @@ const STEEP: f64 = 0.5;
 /// The light of level ground on it.
 const LEVEL: f64 = 0.86;
 
-/// The notes for a page.
+/// The notes for a page; the norths are those at the map coordinates `middle`.
 pub fn margin_notes(
     scene: &SceneModel,
     camera: &Camera,
-    frame: &SheetFrame,
+    (frame, middle): (&SheetFrame, DVec2),
     grid: Option<&str>,
 ) -> MarginNotes {
     let furniture = &scene.furniture;
@@ -39,7 +39,7 @@ pub fn margin_notes(
         classification: furniture.classification.clone(),
         facts: facts(scene, grid),
         sources: sources(scene),
-        norths: if is_military { norths(scene) } else { None },
+        norths: if is_military { norths(scene, middle) } else { None },
         locator: Some(locator(scene, camera, frame)),
     }
 }
@@ -87,9 +87,8 @@ fn sources(scene: &SceneModel) -> Vec<String> {
     lines.chain(furniture.notes.iter().flatten().cloned()).collect()
 }
 
-/// The norths at the scene's middle; `None` where it has no place on Earth.
-fn norths(scene: &SceneModel) -> Option<ThreeNorths> {
-    let middle = scene.lattice.map_extent().center();
+/// The norths at map coordinates; `None` where they have no place on Earth.
+fn norths(scene: &SceneModel, middle: DVec2) -> Option<ThreeNorths> {
     let place = scene.crs.transform(&Crs::wgs84(), middle).ok()?;
     let grid = match scene.grid {
         GridName::Utm | GridName::Mgrs => GridZone::at(place)?.crs()?,

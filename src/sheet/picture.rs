@@ -115,7 +115,7 @@ pub fn draw_view(
     drop(nested);
     progress("drawing");
     let mut picture = render(&drawn.list, &camera, backend)?;
-    apply_look(scene, &camera, &mut picture);
+    apply_look(scene, &drawn.list, &camera, &mut picture);
     Ok(DrawnView { camera, picture, drawn, frame })
 }
 
@@ -180,7 +180,8 @@ pub struct ComposedView {
 pub fn compose_view(scene: &SceneModel, view: DrawnView, progress: &dyn Fn(&'static str)) -> ComposedView {
     progress("annotating");
     let DrawnView { camera, picture, drawn, frame } = view;
-    let shown = AnnotatedGround { graphics: &drawn.graphic_texts, nested: &drawn.nested };
+    let shown =
+        AnnotatedGround { graphics: &drawn.graphic_texts, nested: &drawn.nested, list: Some(&drawn.list) };
     let annotations = labels::annotations(scene, &camera, &picture, frame.as_ref(), &shown);
     let (mut sheet, annotations) = compose_sheet(picture.pixels, &annotations);
     if scene.preset == Some(StylePreset::Night) {

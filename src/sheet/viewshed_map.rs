@@ -11,6 +11,8 @@ use sandtable_annotate::map::{MapFurniture, ObserverOverlay, compose, draw_obser
 use sandtable_draw::color::Srgba;
 use sandtable_draw::ground::ColorRamp;
 use sandtable_draw::pixels::Pixels;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::declination::true_north;
 use sandtable_scene::ramps::{self, TintedGround};
 use sandtable_terrain::hillshade::{HillshadeOptions, NO_DATA, hillshade};
 use sandtable_terrain::lattice::{Lattice, Post};
@@ -45,9 +47,9 @@ pub struct SheetText {
     pub vertical_datum: Option<String>,
 }
 
-/// The sheet with the map of a viewshed.
+/// The sheet with the map of a viewshed on a lattice in the coordinates of `crs`.
 pub fn viewshed_map(
-    lattice: &Lattice,
+    (lattice, crs): (&Lattice, &Crs),
     viewshed: &Viewshed,
     options: &ViewshedOptions,
     text: SheetText,
@@ -74,6 +76,7 @@ pub fn viewshed_map(
             vertical_datum: text.vertical_datum,
         },
         pixels_per_meter: frame.pixels_per_m as f32,
+        true_north: true_north(crs, lattice.map_extent().center()).map(|north| north.as_vec2()),
     };
     compose(&map, &furniture).0
 }

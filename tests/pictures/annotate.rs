@@ -5,7 +5,7 @@ use proptest::collection::vec;
 use proptest::prelude::{ProptestConfig, any, prop_assert_eq, proptest};
 use sandtable_annotate::annotation::{Annotations, PictureLabel};
 use sandtable_annotate::legend::Legend;
-use sandtable_annotate::north::NorthArrow;
+use sandtable_annotate::north::{NorthArrow, NorthKind};
 use sandtable_annotate::paint::annotate;
 use sandtable_annotate::report::{AnnotationReport, FurnitureKind};
 use sandtable_annotate::scale_bar::{ScaleBar, ScaleExtent};
@@ -74,7 +74,11 @@ fn sheet(width: u32, height: u32) -> Annotations {
         labels: labels(w, h),
         title: Some("Cross Mountain and the Coal Creek Valley".to_owned()),
         subtitle: Some("Anderson and Campbell Counties, Tennessee — view to the north-west".to_owned()),
-        north: Some(NorthArrow { direction: Vec2::new(0.62, -0.50).normalize(), foreshortening: 0.45 }),
+        north: Some(NorthArrow {
+            direction: Vec2::new(0.62, -0.50).normalize(),
+            foreshortening: 0.45,
+            kind: NorthKind::True,
+        }),
         scale_bar: Some(ScaleBar { pixels_per_meter: h * 0.000_043, holds: ScaleExtent::Distance(12_400.0) }),
         legend: Some(Legend {
             ramp: ColorRamp::new(stops).expect("rising stops"),
@@ -125,7 +129,11 @@ fn trouble(width: u32, height: u32) -> Annotations {
         labels,
         title: Some("Great Smoky Mountains ".repeat(9)),
         subtitle: Some("one\ntwo\nthree".to_owned()),
-        north: Some(NorthArrow { direction: Vec2::new(-0.9, 0.2), foreshortening: 0.1 }),
+        north: Some(NorthArrow {
+            direction: Vec2::new(-0.9, 0.2),
+            foreshortening: 0.1,
+            kind: NorthKind::Grid,
+        }),
         scale_bar: Some(ScaleBar { pixels_per_meter: h * 0.13, holds: ScaleExtent::Distance(4.2) }),
         legend: Some(Legend {
             low_m: -12.5,
@@ -219,7 +227,7 @@ fn furniture_whose_figures_make_no_sense_is_left_out_and_reported() {
     odd.title = Some("\u{7}\n".to_owned());
     odd.subtitle = None;
     odd.scale_bar = Some(ScaleBar { pixels_per_meter: f32::NAN, holds: ScaleExtent::Distance(1.0) });
-    odd.north = Some(NorthArrow { direction: Vec2::ZERO, foreshortening: 0.5 });
+    odd.north = Some(NorthArrow { direction: Vec2::ZERO, foreshortening: 0.5, kind: NorthKind::True });
     odd.legend = odd.legend.map(|legend| Legend { low_m: 9.0, high_m: 9.0, ..legend });
     odd.credit = Some(String::new());
     let (pixels, report) = annotated(960, 540, &odd);

@@ -6,6 +6,8 @@ mod common;
 mod annotate;
 mod gallery;
 mod grid;
+mod grid_numbers;
+mod level_ground;
 mod overlaps;
 mod print;
 mod render_cpu;

@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 
 use crate::cpu::hit::FacePoint;
 use crate::cpu::texture::{Reading, Texel, TexelFootprint, Texture, Weighting};
-use sandtable_draw::ground::{GroundDetail, GroundMap, GroundPost, PixelChange};
+use sandtable_draw::ground::{Contours, GroundDetail, GroundMap, GroundPost, PixelChange};
 use sandtable_draw::ground_cover::cover_noise;
 use sandtable_draw::ground_grain::ground_grain;
 use sandtable_draw::ground_imagery::{DrapedColor, GroundImagery};
@@ -107,6 +107,13 @@ impl<'a> GroundShader<'a> {
             if self.map.cover.is_some() { cover_noise(hit.world.truncate(), hit.pixel_m()) } else { 0.0 };
         let detail = GroundDetail { grain: self.grain(point, hit), uneven, draped: point.draped };
         self.map.albedo(&point.post, change, &detail)
+    }
+
+    /// The share of a pixel that a contour line on dry ground covers.
+    pub fn contour_cover(&self, point: &GroundPoint, hit: &FacePoint) -> f32 {
+        let strength =
+            |contours: &Contours| contours.strength(point.post.height_m, change(point.gradient, hit));
+        self.map.contours.as_ref().map_or(0.0, strength) * (1.0 - self.water_cover(point, hit))
     }
 
     /// The factor of the ground's grain on its color, and on that of natural cover on it.

@@ -33,6 +33,7 @@ pub(crate) mod alpha;
 mod band;
 mod blend;
 mod clip;
+pub mod contour_cover;
 mod cutout;
 mod geometry;
 mod ground_shade;

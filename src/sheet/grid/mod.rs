@@ -1,13 +1,17 @@
 //! The coordinate grid of a picture: its lines on the ground, projected, and cut where something hides them.
 //!
 //! ```text
-//!  system: which lines, how far apart ─► lines: each in world X and Y ─┬─► trace: what of it shows ─► PictureGrid
-//!                                                                      └─► rim: its ends on the block's edge
+//!  extent: what coordinates the scene has ─┐
+//!  system: which lines, how far apart ─────┴► lines: each in world X and Y ─┬─► trace: what of it shows ─► PictureGrid
+//!                                             (curve)                       └─► rim: where it leaves the ground
 //! ```
 //!
 //! The lines are not part of the rendered scene: what shows of them is decided by the picture's depths, as for labels.
 //! So they have one width from the foreground to the horizon, and cost what they show.
 
+pub mod check;
+mod curve;
+mod extent;
 pub mod lines;
 pub mod squares;
 pub mod system;
@@ -52,7 +56,8 @@ pub fn picture_grid(
     picture: &Rendering,
 ) -> PictureGrid {
     let tracer = LineTracer::new(scene, nested, camera, picture);
-    let lines = grid.lines.par_iter().map(|line| GridLine {
+    let lines = grid.lines.par_iter().enumerate().map(|(number, line)| GridLine {
+        line: number,
         axis: line.axis,
         runs: tracer.runs(line, grid),
         is_index: line.is_index,

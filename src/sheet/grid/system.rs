@@ -107,20 +107,25 @@ pub fn figures(name: GridName, axis: GridAxis, value: f64, interval: GridInterva
             let text = degrees(axis, value, interval.value);
             [text.clone().into(), text.into()]
         }
-        GridName::Utm | GridName::Mgrs if interval.value >= 1.0 && value >= 0.0 => {
+        GridName::Utm | GridName::Mgrs if is_multiple(interval.value, 1.0) && value >= 0.0 => {
             military(value, interval.value, letter)
         }
         _ => {
-            let decimals =
-                (0..4).find(|&decimals| is_whole(interval.value * [1.0, 10.0, 1e2, 1e3][decimals]));
-            let number = grouped(&format_number(value, decimals.unwrap_or(3)));
+            let number = grouped(&format_number(value, decimals(interval.value)));
             [number.clone().into(), format!("{number} {letter}").into()]
         }
     }
 }
 
-fn is_whole(value: f64) -> bool {
-    (value - libm::round(value)).abs() < 1e-6 * (1.0 + value.abs())
+/// The decimals that multiples of an interval have, 0 to 6.
+fn decimals(interval: f64) -> usize {
+    const POWERS: [f64; 7] = [1.0, 10.0, 1e2, 1e3, 1e4, 1e5, 1e6];
+    POWERS.iter().position(|power| is_multiple(interval * power, 1.0)).unwrap_or(6)
+}
+
+fn is_multiple(value: f64, of: f64) -> bool {
+    let count = value / of;
+    (count - libm::round(count)).abs() < 1e-6 * count
 }
 
 /// The digits of meters: hundreds of kilometers small, then those that references are made of, then zeros.
@@ -146,22 +151,31 @@ fn military(value: f64, interval: f64, letter: &str) -> [CoordinateFigure; 2] {
     [figure(String::new()), figure(after)]
 }
 
-/// Degrees with minutes and seconds as far as the interval needs them.
+/// Degrees with minutes, seconds and decimals of them as far as the interval needs them. The meridian of 180° is neither
+/// east nor west.
 fn degrees(axis: GridAxis, seconds: f64, interval: f64) -> String {
+    let decimals = decimals(interval);
+    let unit = 10u64.pow(decimals as u32);
+    let total = libm::round(seconds.abs() * unit as f64) as u64;
     let hemisphere = match (axis, seconds < 0.0) {
+        (GridAxis::East, _) if total == 180 * 3600 * unit => "",
         (GridAxis::East, false) => "E",
         (GridAxis::East, true) => "W",
         (GridAxis::North, false) => "N",
         (GridAxis::North, true) => "S",
     };
-    let total = libm::round(seconds.abs()) as u64;
-    let (degrees, minutes, rest) = (total / 3600, total / 60 % 60, total % 60);
+    let (degrees, minutes, rest) = (total / unit / 3600, total / unit / 60 % 60, total % (60 * unit));
     let mut text = format!("{degrees}°");
-    if interval < 3600.0 {
+    if !is_multiple(interval, 3600.0) {
         text += &format!("{minutes:02}′");
     }
-    if interval < 60.0 {
-        text += &format!("{rest:02}″");
+    if !is_multiple(interval, 60.0) {
+        let (whole, part) = (rest / unit, rest % unit);
+        text += &format!("{whole:02}");
+        if decimals > 0 {
+            text += &format!(".{part:0decimals$}");
+        }
+        text += "″";
     }
     text + hemisphere
 }
@@ -207,6 +221,7 @@ mod tests {
         assert_eq!(text(4_020_000.0, 10_000.0), ["40|2|", "40|2|0000mN"]);
         assert_eq!(text(4_005_500.0, 500.0), ["40|055|", "40|055|00mN"]);
         assert_eq!(text(4_100_000.0, 100_000.0), ["|41|", "|41|00000mN"]);
+        assert_eq!(text(4_018_002.5, 2.5), ["4 018 002.5", "4 018 002.5 N"]);
     }
 
     #[test]
@@ -215,5 +230,9 @@ mod tests {
         assert_eq!(text(GridAxis::East, -84.25 * 3600.0, 300.0), "84°15′W");
         assert_eq!(text(GridAxis::North, 36.0 * 3600.0, 3600.0), "36°N");
         assert_eq!(text(GridAxis::North, -0.5, 1.0), "0°00′01″S");
+        assert_eq!(text(GridAxis::East, 180.0 * 3600.0, 900.0), "180°00′");
+        assert_eq!(text(GridAxis::North, 90.0, 90.0), "0°01′30″N");
+        assert_eq!(text(GridAxis::North, 5400.0, 5400.0), "1°30′N");
+        assert_eq!(text(GridAxis::East, -0.75, 0.25), "0°00′00.75″W");
     }
 }

@@ -77,12 +77,12 @@ impl<'a> LineTracer<'a> {
     /// The parts of a line that show, in pixels.
     pub fn runs(&self, line: &GroundLine, grid: &GroundGrid) -> Vec<Vec<Vec2>> {
         let multiple = if line.is_index { grid.index_every } else { 1 };
-        let apart_m = grid.apart_m[line.axis as usize] * multiple as f64;
         let mut traced = TracedRuns::default();
         for part in &line.parts {
             traced.is_open = false;
             let points: Vec<TracedPoint> = part.iter().map(|&at| self.point(at)).collect();
             for pair in points.windows(2) {
+                let apart_m = grid.apart_m(line, pair[0].at) * multiple as f64;
                 self.trace([pair[0], pair[1]], MOST_HALVINGS, apart_m, &mut traced);
             }
         }

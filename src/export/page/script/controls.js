@@ -174,7 +174,8 @@ class Controls {
   }
 
   turnNorth() {
-    this.flyTo(this.lookedAt(this.view.camera).with({ azimuth: 0 }));
+    const camera = this.lookedAt(this.view.camera);
+    this.flyTo(camera.with({ azimuth: this.view.ground.trueNorth(camera.target) }));
   }
 
   flyTo(camera, seconds = 1.2) {

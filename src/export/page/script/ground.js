@@ -100,6 +100,18 @@ class Ground {
     return false;
   }
 
+  // The direction of true north at a place of the world, clockwise from grid north in radians; 0 where that is not known.
+  trueNorth(world) {
+    const step = Math.max(...this.cell);
+    const at = [world[0] + this.origin[0], world[1] + this.origin[1]];
+    const places = [[0, 0], [step, 0], [0, step]].map((away) => this.lonLatAt(at[0] + away[0], at[1] + away[1]));
+    if (places.some((place) => place === null)) return 0;
+    // Along a meridian longitudes do not change, and latitudes grow.
+    const [east, north] = [1, 2].map((index) => ((places[index][0] - places[0][0] + 540) % 360) - 180);
+    const sign = -north * (places[1][1] - places[0][1]) + east * (places[2][1] - places[0][1]) < 0 ? -1 : 1;
+    return Math.atan2(-north * sign, east * sign);
+  }
+
   // Longitude and latitude in degrees at map coordinates, by the table of geom/chebyshev.rs; null where there is none.
   lonLatAt(east, north) {
     const table = this.lonLat;

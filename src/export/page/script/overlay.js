@@ -174,7 +174,7 @@ class Overlay {
 
   north(camera) {
     const tilt = 0.45 + 0.55 * Math.abs(Math.sin(camera.pitch));
-    const degrees = -camera.azimuth * 180 / Math.PI;
+    const degrees = (this.ground.trueNorth(camera.target) - camera.azimuth) * 180 / Math.PI;
     document.getElementById("needle").setAttribute("transform", `scale(1 ${tilt}) rotate(${degrees})`);
   }
 
