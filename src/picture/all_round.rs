@@ -152,8 +152,7 @@ fn add_laid(
     let bands = if scene.symbols.is_empty() { &[][..] } else { &BANDS[..] };
     for (band, &fineness) in bands.iter().enumerate() {
         let camera = overview(scene, fineness)?;
-        let mut scale = LineScale::new(&camera);
-        scale.px = WIDEST * SPREAD;
+        let scale = LineScale::all_round(&camera, WIDEST * SPREAD);
         bands_m.push(WIDEST / f64::from(camera.pixels_per_meter(1.0)));
         let shown = ItemShown::Band(band as u8);
         laid.extend(symbols(list, &mut looks, scene, displayed, &camera, scale, shown));
@@ -221,14 +220,16 @@ fn symbols<'a>(
     scale: LineScale<'_>,
     shown: ItemShown,
 ) -> Vec<LaidItem> {
-    let draped = |PlannedSymbol { symbol, casing, fill }: PlannedSymbol<'a>| {
+    let draped = |PlannedSymbol { symbol, casing, fill, deck }: PlannedSymbol<'a>| {
+        // A page shows bridges as they are, and drapes all symbols.
+        let [casing, fill] = if deck.is_some() { Default::default() } else { [casing, fill] };
         let [casing, fill] = [casing, fill].map(|plan| {
             let mut mesh = DrawMesh::default();
             drape(&plan, displayed, &mut mesh);
             mesh.vertices.iter_mut().for_each(|vertex| vertex.uv = [CLASS_U, vertex.uv[0]]);
             mesh
         });
-        DrapedSymbol { symbol, casing, fill }
+        DrapedSymbol { symbol, casing, fill, is_raised: false }
     };
     let (mut lines, _) = planned_with(scene, camera, scale, SymbolUv::Across, draped);
     // Mouths of rivers lie over shores.
@@ -243,7 +244,7 @@ fn symbols<'a>(
         LaidItem { layer, mesh, material, feature: symbol.feature, shown }
     };
     let (mut casings, mut fills) = (Vec::new(), Vec::new());
-    for DrapedSymbol { symbol, casing, fill } in lines {
+    for DrapedSymbol { symbol, casing, fill, .. } in lines {
         casings.push(item(casing, RibbonLook::Casing(symbol.surface), symbol));
         fills.push(item(fill, RibbonLook::Fill(symbol.surface, fill_color(symbol)), symbol));
     }

@@ -6,6 +6,7 @@ use crate::feature::FeatureKind;
 use crate::near;
 use crate::scene_findings::FeatureTable;
 use crate::sources::Sources;
+use crate::symbols::DeckLine;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::features::RoadTable;
@@ -29,6 +30,8 @@ pub struct Centerline {
     pub street: Street,
     /// The width of the unpaved strip on either side in meters; 0 for none.
     pub shoulder_m: f64,
+    /// The deck that carries it, once it is planned, where it is a bridge.
+    pub deck: Option<DeckLine>,
     /// Its feature.
     pub feature: FeatureId,
     /// The index of its table in the document.
@@ -101,6 +104,7 @@ fn centerline(
     Centerline {
         street,
         shoulder_m,
+        deck: None,
         feature: collected.add(
             FeatureKind::Road,
             attributes.name(road.name.as_deref()),
@@ -166,6 +170,7 @@ pub(in crate::roads) mod tests {
         Centerline {
             street,
             shoulder_m: 0.0,
+            deck: None,
             feature: FeatureId(2),
             table: 0,
             attributes: Attributes::default(),
