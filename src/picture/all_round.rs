@@ -17,7 +17,7 @@ use crate::drapes::{
 use crate::lake_tint::longest_lakes;
 use crate::line_scale::LineScale;
 use crate::placed_text::PlacedText;
-use crate::symbols::{DrapedSymbol, PlannedSymbol, SymbolUv, planned_with};
+use crate::symbols::{DrapedSymbol, PlanFinish, PlannedSymbol, SymbolUv, planned_with};
 use crate::{airspace, ground, models, overlay, solids, table, uprights, voids};
 use sandtable_draw::lighting::Lighting;
 use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, FeatureId, MaterialId};
@@ -231,7 +231,13 @@ fn symbols<'a>(
         });
         DrapedSymbol { symbol, casing, fill, is_raised: false }
     };
-    let (mut lines, _) = planned_with(scene, camera, scale, SymbolUv::Across, draped);
+    let (mut lines, _) = planned_with(
+        scene,
+        camera,
+        scale,
+        SymbolUv::Across,
+        PlanFinish { make: draped, keep: |draped| draped },
+    );
     // Mouths of rivers lie over shores.
     lines.sort_by(|a, b| {
         let is_shore = |line: &DrapedSymbol<'_>| line.symbol.surface == RibbonSurface::ShoreLine;

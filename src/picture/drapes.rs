@@ -14,7 +14,7 @@ use crate::detail::Viewer;
 use crate::lake_tint::large_lakes;
 use crate::line_scale::LineScale;
 use crate::markings::faded;
-use crate::symbols::{DrapedSymbol, RibbonShow, Symbols, symbols};
+use crate::symbols::{DrapedSymbol, PORTION, RibbonShow, Symbols, symbols};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh, FeatureId, MaterialId};
 use sandtable_draw::material::{AlphaMode, Material, NormalSource};
@@ -95,27 +95,28 @@ pub(super) fn add(
     };
     let sources = sources(scene);
     let lakes = scale.as_ref().map(|scale| large_lakes(scene, scale)).unwrap_or_default();
-    let meshes: Vec<DrapedRibbon> = scene
-        .ribbons
-        .par_iter()
-        .map(|ribbon| {
-            let mut draped = DrapedRibbon::default();
-            if shows.get(&ribbon.feature) != Some(&RibbonShow::Replaced) {
-                let source = sources.get(&ribbon.feature).filter(|_| scale.is_some());
-                let tapered = source.and_then(|symbol| tapered(ribbon, symbol));
-                drape(tapered.as_ref().unwrap_or(&ribbon.plan), displayed, &mut draped.ribbon);
-                let scale = scale.as_ref().filter(|_| ribbon.surface != ribbon.surface.unmarked());
-                draped.markings = scale.map(|scale| faded(&draped.ribbon, scale));
-                let lake = lakes.get(&ribbon.feature).filter(|_| ribbon.surface == RibbonSurface::Lake);
-                draped.tint = lake.map(|lake| {
-                    let tint = lake.tint();
-                    tint.lay_over(&mut draped.ribbon);
-                    tint.pixels
-                });
-            }
-            draped
-        })
-        .collect();
+    let draped_ribbon = |ribbon: &Ribbon| {
+        let mut draped = DrapedRibbon::default();
+        if shows.get(&ribbon.feature) != Some(&RibbonShow::Replaced) {
+            let source = sources.get(&ribbon.feature).filter(|_| scale.is_some());
+            let tapered = source.and_then(|symbol| tapered(ribbon, symbol));
+            drape(tapered.as_ref().unwrap_or(&ribbon.plan), displayed, &mut draped.ribbon);
+            let scale = scale.as_ref().filter(|_| ribbon.surface != ribbon.surface.unmarked());
+            draped.markings = scale.map(|scale| faded(&draped.ribbon, scale));
+            let lake = lakes.get(&ribbon.feature).filter(|_| ribbon.surface == RibbonSurface::Lake);
+            draped.tint = lake.map(|lake| {
+                let tint = lake.tint();
+                tint.lay_over(&mut draped.ribbon);
+                tint.pixels
+            });
+        }
+        draped
+    };
+    let mut meshes: Vec<DrapedRibbon> = Vec::with_capacity(scene.ribbons.len());
+    for portion in scene.ribbons.chunks(PORTION) {
+        let made: Vec<DrapedRibbon> = portion.par_iter().map(draped_ribbon).collect();
+        meshes.extend(made.into_iter().map(DrapedRibbon::packed));
+    }
     let (mut shores, mut rivers, mut roads) = (Vec::new(), Vec::new(), Vec::new());
     let (raised, draped): (Vec<_>, Vec<_>) = draped.into_iter().partition(|draped| draped.is_raised);
     for draped in draped {
@@ -152,6 +153,13 @@ pub(super) fn add(
     }
     add_up_to(&mut ribbons, u8::MAX);
     RaisedSymbols::new(raised)
+}
+
+impl DrapedRibbon {
+    fn packed(self) -> Self {
+        let Self { ribbon, markings, tint } = self;
+        Self { ribbon: ribbon.packed(), markings: markings.map(DrawMesh::packed), tint }
+    }
 }
 
 /// The rivers that have a source, by feature.

@@ -59,6 +59,10 @@ const DASH_PX: [f64; 2] = [7.0, 4.0];
 /// How many times as wide as it is a line is drawn where nothing but a symbol is left of it.
 const ALL_SYMBOL: f64 = 2.5;
 
+/// Lines of which threads make symbols before these are kept: enough that no thread waits, and few beside all lines of a
+/// city.
+pub(super) const PORTION: usize = 1024;
+
 /// Sides of a round end.
 const CAP_SIDES: u32 = 4;
 
@@ -161,7 +165,13 @@ pub(super) fn symbols<'a>(
         fill: mesh(&fill, deck, FILL_ABOVE_M),
         is_raised: deck.is_some(),
     };
-    let (draped, shows) = planned(scene, camera, LineScale::new(camera), draped);
+    let packed = |draped: DrapedSymbol<'a>| DrapedSymbol {
+        casing: draped.casing.packed(),
+        fill: draped.fill.packed(),
+        ..draped
+    };
+    let finish = PlanFinish { make: draped, keep: packed };
+    let (draped, shows) = planned_with(scene, camera, LineScale::new(camera), SymbolUv::Share, finish);
     Symbols { draped, shows }
 }
 
@@ -190,7 +200,15 @@ pub(super) fn planned<'a, T: Send>(
     scale: LineScale<'_>,
     finish: impl Fn(PlannedSymbol<'a>) -> T + Sync,
 ) -> (Vec<T>, BTreeMap<FeatureId, RibbonShow>) {
-    planned_with(scene, camera, scale, SymbolUv::Share, finish)
+    planned_with(scene, camera, scale, SymbolUv::Share, PlanFinish { make: finish, keep: |made| made })
+}
+
+/// What is made of each planned symbol.
+pub(super) struct PlanFinish<M, K> {
+    /// Makes it, on any thread.
+    pub make: M,
+    /// Readies it to be kept, on the calling thread.
+    pub keep: K,
 }
 
 /// [`planned`] with texture coordinates of another meaning.
@@ -199,7 +217,7 @@ pub(super) fn planned_with<'a, T: Send>(
     camera: &Camera,
     scale: LineScale<'_>,
     uv: SymbolUv,
-    finish: impl Fn(PlannedSymbol<'a>) -> T + Sync,
+    PlanFinish { make, keep }: PlanFinish<impl Fn(PlannedSymbol<'a>) -> T + Sync, impl Fn(T) -> T>,
 ) -> (Vec<T>, BTreeMap<FeatureId, RibbonShow>) {
     let lines = LineView::new(scene, camera, scale);
     let view = SymbolView { lines, scale: scene.scale, water: scene.water() };
@@ -219,11 +237,13 @@ pub(super) fn planned_with<'a, T: Send>(
         let most = shows.entry(symbol.feature).or_insert(show);
         *most = show.max(*most);
     }
-    let plan = |(symbol, seen): (&'a LineSymbol, SeenLine)| {
+    let plan = |(symbol, seen): &(&'a LineSymbol, SeenLine)| {
+        let dashed: Vec<Vec<SymbolVertex>>;
         let runs = if symbol.surface == RibbonSurface::Track {
-            seen.runs.iter().flat_map(|run| dashes(run, symbol.least_px)).collect()
+            dashed = seen.runs.iter().flat_map(|run| dashes(run, symbol.least_px)).collect();
+            &dashed
         } else {
-            seen.runs
+            &seen.runs
         };
         let strokes = |part: SymbolPart| {
             let mut plan = PlanMesh::default();
@@ -236,10 +256,15 @@ pub(super) fn planned_with<'a, T: Send>(
             PlanMesh::default()
         };
         let deck = symbol.deck.as_ref().filter(|deck| view.shows_apart(deck));
-        finish(PlannedSymbol { symbol, casing, fill: strokes(SymbolPart::Fill), deck })
+        make(PlannedSymbol { symbol, casing, fill: strokes(SymbolPart::Fill), deck })
     };
-    let narrow = seen.into_par_iter().filter(|(_, seen)| !seen.runs.is_empty());
-    (narrow.map(plan).collect(), shows)
+    let mut kept = Vec::new();
+    for portion in seen.chunks(PORTION) {
+        let narrow = portion.par_iter().filter(|(_, seen)| !seen.runs.is_empty());
+        let made: Vec<T> = narrow.map(plan).collect();
+        kept.extend(made.into_iter().map(&keep));
+    }
+    (kept, shows)
 }
 
 /// A vertex of a line in view.

@@ -84,10 +84,10 @@ impl LightBox {
 }
 
 impl ListTriangles {
-    /// The memory that the triangles of a checked list take, with those along the lights of two maps; 0 where no solid casts.
+    /// The memory that the triangles of a checked list take, with those along the light of a map; 0 where no solid casts.
     pub fn bytes_of(list: &DrawList) -> u64 {
         const COLLECTED: u64 = 2;
-        const BYTES: u64 = COLLECTED * (size_of::<CasterTriangle>() + 2 * LightTriangles::BYTES) as u64;
+        const BYTES: u64 = COLLECTED * (size_of::<CasterTriangle>() + LightTriangles::BYTES) as u64;
         if !list.items.iter().any(|item| is_caster(list, item)) {
             return 0;
         }

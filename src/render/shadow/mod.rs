@@ -30,8 +30,8 @@
 //! for soft edges, and a graphics adapter could not do the same.
 //!
 //! # Cost
-//! Nothing where a list has no solids. Else, for the time of drawing, 44 bytes per triangle of a solid or of the ground
-//! and 60 for each map that it is near pages of, twice that while they are collected; 8 bytes per stored texel, and up to 4 more
+//! Nothing where a list has no solids. Else, while the maps are made, 44 bytes per triangle of a solid or of the ground
+//! and 60 if it is near pages of the map at work, twice that while they are collected; 8 bytes per stored texel, and up to 4 more
 //! while it is drawn, of which there are at most [`MOST_PAGES`] pages per map; these are asked for before they are drawn. A pixel costs
 //! one look-up per map where nothing is near, and from 9 to some 100 readings where a solid lies toward the light.
 
@@ -189,8 +189,9 @@ impl Shadows {
             true => map(to_sun, SUN_TEXEL_PX, ShadowPurpose::Sun),
             false => Ok(None),
         };
-        let (sun, sky) = rayon::join(sun, || map(Vec3::Z, SKY_TEXEL_PX, ShadowPurpose::Contact));
-        Ok(Self { sun: sun?, sky: sky? })
+        // One after the other, each by all threads: what they are made of takes more memory than they do.
+        let sun = sun()?;
+        Ok(Self { sun, sky: map(Vec3::Z, SKY_TEXEL_PX, ShadowPurpose::Contact)? })
     }
 }
 
