@@ -418,6 +418,19 @@ mod tests {
         }
     }
 
+    /// Whole meters from −2 to 3 without order, as radar measures a polder.
+    #[test]
+    fn noise_around_0_is_no_sea() {
+        let noise = |x: f32, y: f32| {
+            let mut bits = (x as u32).wrapping_mul(0x9E37_79B9) ^ (y as u32).wrapping_mul(0x85EB_CA6B);
+            bits ^= bits >> 15;
+            bits = bits.wrapping_mul(0x2C1B_3C6D);
+            ((bits >> 12) % 6) as f32 - 2.0
+        };
+        let cover = water_cover(&lattice(noise));
+        assert_eq!((cover.sea_posts, cover.lakes.len()), (0, 0));
+    }
+
     #[test]
     fn a_polder_beside_the_sea_stays_dry_and_a_lake_below_0_is_a_lake() {
         let coast = |x: f32, y: f32| match (x, y) {
