@@ -391,14 +391,15 @@ mod tests {
         assert!(cover.sea_posts == 0 && cover.lakes.is_empty() && cover.open_low_posts == 0, "{cover:?}");
     }
 
+    type Height = fn(f32, f32) -> f32;
+
     /// At four rotations: a valley that falls to −70 m, a plain of whole meters that falls through 0, a level polder.
     #[test]
     fn dry_ground_below_0_that_meets_the_border_is_land() {
         let valley = |x: f32, y: f32| -20.0 - (30.0 - (x - 30.0).abs()) - y / 8.0;
         let plain = |x: f32, _: f32| (6.0 - x / 5.0).round();
         let polder = |x: f32, y: f32| if y > 45.0 { 4.0 } else { -3.5 - 0.02 * ((x * 3.0 + y * 7.0) % 11.0) };
-        let grounds: [(&str, fn(f32, f32) -> f32); 3] =
-            [("valley", valley), ("plain", plain), ("polder", polder)];
+        let grounds: [(&str, Height); 3] = [("valley", valley), ("plain", plain), ("polder", polder)];
         for (name, height) in grounds {
             for turn in 0..4 {
                 let turned = |x: f32, y: f32| match turn {
