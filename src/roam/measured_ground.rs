@@ -128,7 +128,7 @@ impl MeasuredGround {
     }
 
     /// The ground as `camera` shows it, off by at most `tolerance_px` pixels. Errors of ground with more than
-    /// [`MOST_KEPT`] posts are not kept, unless [`Self::exact`] has them already.
+    /// eight million posts are not kept, unless [`Self::exact`] has them already.
     pub fn displayed_to(&self, camera: &Camera, tolerance_px: f32) -> DisplayedTerrain {
         if self.exact.get().is_none() && self.lattice.heights().len() > MOST_KEPT {
             let errors = ErrorMap::exact(&self.lattice, &self.layout);

@@ -203,7 +203,7 @@ fn the_symbol_of_a_bridge_lies_on_its_deck_and_not_on_the_ground_below() {
 }
 
 #[test]
-fn the_symbol_of_a_bridge_seen_from_above_lies_on_the_ground_and_from_aside_on_the_deck() {
+fn the_symbol_of_a_bridge_lies_on_the_ground_only_where_it_is_seen_from_above() {
     for (view, count) in [
         ("projection = \"plan\"", 0),
         ("projection = \"orthographic\"\npitch = 20", 2),

@@ -55,7 +55,7 @@ use crate::cpu::geometry::GeometrySource;
 use crate::cpu::pattern::{EIGHT, FOUR, ONE, SamplePattern};
 use crate::cpu::screen::Screen;
 use crate::cpu::shade::Shader;
-use crate::cpu::strips::Strips;
+use crate::cpu::strips::RowStrips;
 use crate::cpu::tile::TileContext;
 use crate::cpu::visibility::TILE;
 use crate::picture::Rendering;
@@ -125,7 +125,7 @@ pub fn render(
     // Before there are faces: what a map is made of takes as much memory as they do.
     let shadows = Shadows::new(list, camera)?;
     let shader = Shader::new(list, &screen, &shadows, quality.anisotropy.clamp(1, 16));
-    let strips = Strips::new(&source);
+    let strips = RowStrips::new(&source);
     Ok(match quality.samples {
         SampleCount::One => draw(&source, &strips, &shader, &ONE, true),
         SampleCount::Four => draw(&source, &strips, &shader, &FOUR, true),
@@ -155,7 +155,7 @@ pub fn render_buffers(list: &DrawList, camera: &Camera) -> Result<Rendering, Cpu
     let source = source(list, &screen)?;
     let shadows = Shadows::default();
     let shader = Shader::new(list, &screen, &shadows, RenderQuality::default().anisotropy);
-    Ok(draw(&source, &Strips::new(&source), &shader, &EIGHT, false))
+    Ok(draw(&source, &RowStrips::new(&source), &shader, &EIGHT, false))
 }
 
 fn source<'a>(list: &'a DrawList, screen: &'a Screen) -> Result<GeometrySource<'a>, CpuRenderError> {
@@ -164,7 +164,7 @@ fn source<'a>(list: &'a DrawList, screen: &'a Screen) -> Result<GeometrySource<'
 
 fn draw<const N: usize>(
     source: &GeometrySource,
-    strips: &Strips,
+    strips: &RowStrips,
     shader: &Shader,
     pattern: &SamplePattern<N>,
     is_colored: bool,
@@ -241,10 +241,10 @@ mod tests {
         let (screen, shadows) = (Screen::new(&camera), Shadows::default());
         let source = GeometrySource::new(&list, &screen).expect("few triangles");
         let shader = Shader::new(&list, &screen, &shadows, 8);
-        let drawn = |strips: &Strips| draw(&source, strips, &shader, &FOUR, true);
-        let whole = drawn(&Strips::new(&source));
+        let drawn = |strips: &RowStrips| draw(&source, strips, &shader, &FOUR, true);
+        let whole = drawn(&RowStrips::new(&source));
         for (most, count) in [(1, 6), (3000, 2)] {
-            let strips = Strips::of(&source, most);
+            let strips = RowStrips::of(&source, most);
             assert!(strips.rows.len() >= count, "{:?}", strips.rows);
             let parts = drawn(&strips);
             assert!(whole.pixels == parts.pixels && whole.features == parts.features, "{most}");

@@ -17,14 +17,14 @@ use crate::cpu::visibility::TILE;
 const MOST_PIECES: u64 = 1 << 18;
 
 /// The strips of a picture.
-pub struct Strips {
+pub struct RowStrips {
     /// The rows of each, from the top; all but the last end at a band's end.
     pub rows: Vec<Range<u32>>,
     /// The rows that each chunk of triangles may touch; empty for a picture in one strip.
     pub chunk_rows: Vec<Range<u32>>,
 }
 
-impl Strips {
+impl RowStrips {
     /// The strips that a source needs.
     pub fn new(source: &GeometrySource) -> Self {
         Self::of(source, MOST_PIECES)
