@@ -164,8 +164,12 @@ table! {
         /// Whether samples without data that others enclose are filled by a membrane, up to 100000 at a place; `true` fills
         /// the source as well, so that height queries on it see no voids.
         fill_voids: Option<bool> = key::switch(), otherwise "the ground is filled, the source stays as it is read";
-        /// Whether ground at or below 0 m that is connected to the border is drawn as sea, and level basins as lakes.
+        /// Whether level ground is drawn as water: at 0 m and connected to the border as sea, unless `sea_level` is stated, and
+        /// level basins as lakes.
         infer_water: bool = key::switch(), default true;
+        /// The level of the sea: ground at or below it that is connected to the border is drawn as sea. State it where the model
+        /// holds the depths of the sea; ground below 0 m alone is no sea.
+        sea_level: Option<f64> = key::number(Bounds::ELEVATION, "m"), otherwise "none: level ground at 0 m is sea, by `infer_water`";
         /// Points around the part that the scene is made of, such as two corners of a map. Of a large
         /// model only that part is read.
         extent: Option<Stated<Vec<[f64; 2]>>> = key::points(2),

@@ -36,16 +36,19 @@ pub fn bathymetry() -> &'static ColorRamp {
     &RAMP
 }
 
-/// `land` with [`bathymetry`] in place of its colors below 0 m: the meaning of colors on a map with a sea.
-pub fn with_bathymetry(land: &ColorRamp) -> ColorRamp {
-    /// How far below 0 the water begins, meters: less than any legend shows.
-    const SHORE_M: f32 = 1e-3;
+/// `land` with [`bathymetry`] in place of its colors below `shore_m` meters: the meaning of colors on a map with a sea.
+pub fn with_bathymetry(land: &ColorRamp, shore_m: f32) -> ColorRamp {
+    /// How far below the shore the water begins, meters: less than any legend shows, and a share of the height, since
+    /// numbers are of 24 bits.
+    const BELOW: f32 = 1e-3;
+    let surface_m = shore_m - BELOW * (shore_m.abs() * 1e-3).max(1.0);
     let color = |light: Vec3| Srgba::from_linear(light);
-    let water = STOPS.iter().map(|&(height, color)| (height.min(-SHORE_M), color));
-    let shore = (0.0, color(land.linear_at(0.0)));
+    let water = STOPS.iter().copied().filter(|stop| stop.0 < surface_m);
+    let surface = (surface_m, color(bathymetry().linear_at(shore_m)));
+    let shore = (shore_m, color(land.linear_at(shore_m)));
     let above =
-        land.stops().iter().filter(|stop| stop.0 > 0.0).map(|&(height, light)| (height, color(light)));
-    ColorRamp::new(water.chain([shore]).chain(above).collect()).expect("the heights rise")
+        land.stops().iter().filter(|stop| stop.0 > shore_m).map(|&(height, light)| (height, color(light)));
+    ColorRamp::new(water.chain([surface, shore]).chain(above).collect()).expect("the heights rise")
 }
 
 #[cfg(test)]
@@ -65,9 +68,15 @@ mod tests {
     fn a_map_with_a_sea_has_depths_below_0_and_its_own_tints_above() {
         let land =
             ColorRamp::new(vec![(-30.0, Srgba::WHITE), (40.0, Srgba::opaque(9, 9, 9))]).expect("rising");
-        let both = with_bathymetry(&land);
+        let both = with_bathymetry(&land, 0.0);
         assert_eq!(both.linear_at(-1000.0), Srgba::opaque(52, 103, 154).linear());
         assert!(both.linear_at(-0.01).abs_diff_eq(WaterColor::SURFACE.linear(), 1e-3));
         assert!(both.linear_at(20.0).abs_diff_eq(land.linear_at(20.0), 0.01));
+        for shore_m in [-1e7, -9000.0, -28.0, 12.5, 1e7] {
+            let both = with_bathymetry(&land, shore_m);
+            assert!(both.linear_at(shore_m).abs_diff_eq(land.linear_at(shore_m), 1e-3), "{shore_m}");
+            let below = both.linear_at(shore_m - shore_m.abs() * 1e-5 - 1.0);
+            assert!(below.abs_diff_eq(bathymetry().linear_at(shore_m), 0.02), "{shore_m}: {below}");
+        }
     }
 }

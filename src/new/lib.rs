@@ -26,7 +26,7 @@ use glam::DVec2;
 use crate::cameras::cameras;
 use crate::crop::{around_vectors, with_straight_edges};
 use crate::folder::{FolderError, SceneFolder};
-use crate::survey::SurveyError;
+use crate::survey::{SurveyError, SurveyedLayer};
 use crate::text::{SceneDraft, VectorDraft};
 use sandtable_annotate::nice::NiceNumber;
 use sandtable_description::parse::parse;
@@ -160,6 +160,7 @@ fn complete(
     if draft.extent.is_some() {
         scene = built(&draft)?;
     }
+    draft.has_sea_bed = has_sea_bed(surveyed, &scene);
     draft.title = title::of_vectors(surveyed, &scene).unwrap_or_default();
     let (lattice, (low, high)) = (&scene.lattice, scene.height_range_m);
     let size_m = lattice.extent().size().max_element();
@@ -172,6 +173,19 @@ fn complete(
         camera.shown = camera.shown.map(|shown| stated(shown, &scene));
     }
     Ok(draft)
+}
+
+/// Whether a coastline of the vectors runs through ground below 0 m that reaches the border, and no level sea shows.
+fn has_sea_bed(vectors: &[VectorDraft], scene: &SceneModel) -> bool {
+    let water = scene.water();
+    let ground = scene.lattice.map_extent();
+    let is_on_ground = |layer: &SurveyedLayer| {
+        let mut coast = layer.coast.iter().filter_map(|at| layer.crs.transform(&scene.crs, *at).ok());
+        coast.any(|at| ground.contains(at))
+    };
+    water.sea_posts == 0
+        && water.open_low_posts > 0
+        && vectors.iter().flat_map(|vector| &vector.layers).any(is_on_ground)
 }
 
 /// A rectangle of the ground, in the system of inline points; where that is another one, the largest whose sides cut

@@ -40,6 +40,8 @@ pub(super) struct SurveyedLayer {
     pub places: Vec<NamedPlace>,
     /// Districts with administrative boundaries.
     pub districts: Vec<NamedDistrict>,
+    /// Vertices of the coastlines of OpenStreetMap, up to [`MOST_COAST`], in its system.
+    pub coast: Vec<DVec2>,
     /// Whether its features have the property `fclass` of Geofabrik's shapefiles.
     pub has_fclass: bool,
     /// Its coordinate system.
@@ -92,6 +94,9 @@ pub(super) struct NamedDistrict {
 
 /// As many properties as a reader looks over.
 const MOST_EXAMPLES: usize = 12;
+
+/// As many vertices of a coast say whether it runs through a model: a coast is long.
+const MOST_COAST: usize = 4096;
 
 /// A vector file that cannot be surveyed.
 #[derive(Debug, thiserror::Error)]
@@ -197,8 +202,21 @@ fn survey(layer: Arc<VectorLayer>, name: Option<String>, title: &str) -> Surveye
     let bounds = if around.is_empty() { Rect::around(all) } else { around };
     let corners = if bounds.is_empty() { Vec::new() } else { bounds.grid_points().collect() };
     let districts = districts(&layer);
+    let coast = coast(&layer);
     let has_fclass = layer.features.iter().any(|feature| feature.properties.contains_key("fclass"));
-    SurveyedLayer { name, matches, rest, places, districts, has_fclass, crs: layer.crs.clone(), corners }
+    let crs = layer.crs.clone();
+    SurveyedLayer { name, matches, rest, places, districts, coast, has_fclass, crs, corners }
+}
+
+/// Evenly chosen vertices of coastlines.
+fn coast(layer: &VectorLayer) -> Vec<DVec2> {
+    let is_coast = |feature: &&Feature| {
+        let mut kinds = ["natural", "fclass"].into_iter().filter_map(|key| feature.properties.get(key));
+        kinds.any(|kind| kind.as_str() == Some("coastline"))
+    };
+    let vertices = || layer.features.iter().filter(is_coast).flat_map(|feature| feature.geometry.vertices());
+    let step = vertices().count().div_ceil(MOST_COAST).max(1);
+    vertices().step_by(step).copied().collect()
 }
 
 /// The table that the name of a layer suggests.

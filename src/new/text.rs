@@ -30,6 +30,8 @@ pub(super) struct SceneDraft {
     pub exaggeration: f64,
     pub contours_m: Option<f64>,
     pub cameras: Vec<CameraDraft>,
+    /// Whether a coast runs through ground that holds the depths of the sea.
+    pub has_sea_bed: bool,
     /// The part of the elevation that the scene is made of, in the scene's system; `None` for all of it.
     pub extent: Option<ExtentDraft>,
 }
@@ -107,6 +109,13 @@ pub(super) fn terrain(draft: &SceneDraft) -> String {
     if let Some(ExtentDraft { rect, holds }) = &draft.extent {
         let corners = corners(rect);
         let _ = writeln!(out, "# {holds}; remove it to see the whole elevation model.\nextent = {corners}");
+    }
+    if draft.has_sea_bed {
+        let _ = writeln!(
+            out,
+            "# A coastline runs through the ground, which reaches below 0 m at its border; remove the next line where that \
+             is dry.\nsea_level = 0"
+        );
     }
     if draft.exaggeration > 0.0 {
         let _ = writeln!(out, "# 1 is true to scale; flat country shows its forms at 2 or 3.");

@@ -17,7 +17,7 @@ use crate::drapes::{
 use crate::lake_tint::longest_lakes;
 use crate::line_scale::LineScale;
 use crate::placed_text::PlacedText;
-use crate::symbols::{DrapedSymbol, PlannedSymbol, SymbolUv, planned_with};
+use crate::symbols::{DrapedSymbol, PlanFinish, PlannedSymbol, SymbolUv, planned_with};
 use crate::{airspace, ground, models, overlay, solids, table, uprights, voids};
 use sandtable_draw::lighting::Lighting;
 use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, FeatureId, MaterialId};
@@ -152,8 +152,7 @@ fn add_laid(
     let bands = if scene.symbols.is_empty() { &[][..] } else { &BANDS[..] };
     for (band, &fineness) in bands.iter().enumerate() {
         let camera = overview(scene, fineness)?;
-        let mut scale = LineScale::new(&camera);
-        scale.px = WIDEST * SPREAD;
+        let scale = LineScale::all_round(&camera, WIDEST * SPREAD);
         bands_m.push(WIDEST / f64::from(camera.pixels_per_meter(1.0)));
         let shown = ItemShown::Band(band as u8);
         laid.extend(symbols(list, &mut looks, scene, displayed, &camera, scale, shown));
@@ -221,16 +220,24 @@ fn symbols<'a>(
     scale: LineScale<'_>,
     shown: ItemShown,
 ) -> Vec<LaidItem> {
-    let draped = |PlannedSymbol { symbol, casing, fill }: PlannedSymbol<'a>| {
+    let draped = |PlannedSymbol { symbol, casing, fill, deck }: PlannedSymbol<'a>| {
+        // A page shows bridges as they are, and drapes all symbols.
+        let [casing, fill] = if deck.is_some() { Default::default() } else { [casing, fill] };
         let [casing, fill] = [casing, fill].map(|plan| {
             let mut mesh = DrawMesh::default();
             drape(&plan, displayed, &mut mesh);
             mesh.vertices.iter_mut().for_each(|vertex| vertex.uv = [CLASS_U, vertex.uv[0]]);
             mesh
         });
-        DrapedSymbol { symbol, casing, fill }
+        DrapedSymbol { symbol, casing, fill, is_raised: false }
     };
-    let (mut lines, _) = planned_with(scene, camera, scale, SymbolUv::Across, draped);
+    let (mut lines, _) = planned_with(
+        scene,
+        camera,
+        scale,
+        SymbolUv::Across,
+        PlanFinish { make: draped, keep: |draped| draped },
+    );
     // Mouths of rivers lie over shores.
     lines.sort_by(|a, b| {
         let is_shore = |line: &DrapedSymbol<'_>| line.symbol.surface == RibbonSurface::ShoreLine;
@@ -243,7 +250,7 @@ fn symbols<'a>(
         LaidItem { layer, mesh, material, feature: symbol.feature, shown }
     };
     let (mut casings, mut fills) = (Vec::new(), Vec::new());
-    for DrapedSymbol { symbol, casing, fill } in lines {
+    for DrapedSymbol { symbol, casing, fill, .. } in lines {
         casings.push(item(casing, RibbonLook::Casing(symbol.surface), symbol));
         fills.push(item(fill, RibbonLook::Fill(symbol.surface, fill_color(symbol)), symbol));
     }

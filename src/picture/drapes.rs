@@ -1,7 +1,8 @@
 //! Ribbons, cut to the displayed triangles, over the line symbols that show them from afar.
 //!
 //! Symbols of one sort, from below: all casings, then the fills of class after class, so that lines that meet are one. They
-//! lie over the ribbons that the true ones of their sort lie over.
+//! lie over the ribbons that the true ones of their sort lie over. The symbol of a bridge that would lie beside it on the
+//! picture lies on its deck instead.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +14,7 @@ use crate::detail::Viewer;
 use crate::lake_tint::large_lakes;
 use crate::line_scale::LineScale;
 use crate::markings::faded;
-use crate::symbols::{DrapedSymbol, RibbonShow, Symbols, symbols};
+use crate::symbols::{DrapedSymbol, PORTION, RibbonShow, Symbols, symbols};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh, FeatureId, MaterialId};
 use sandtable_draw::material::{AlphaMode, Material, NormalSource};
@@ -44,13 +45,46 @@ const PAVED_FILLS: [(f64, Srgba); 4] = [
     (0.0, Srgba::opaque(244, 241, 233)),
 ];
 
-/// Adds all ribbons and symbols, lower layers first.
+/// The symbols on decks, which are solids.
+#[must_use]
+pub(super) struct RaisedSymbols(Vec<RaisedMesh>);
+
+/// A part of a symbol on a deck.
+struct RaisedMesh {
+    mesh: DrawMesh,
+    look: RibbonLook,
+    feature: FeatureId,
+}
+
+impl RaisedSymbols {
+    fn new(symbols: Vec<DrapedSymbol<'_>>) -> Self {
+        let parts = |DrapedSymbol { symbol, casing, fill, .. }: DrapedSymbol<'_>| {
+            let (feature, surface) = (symbol.feature, symbol.surface);
+            let fill_look = RibbonLook::RaisedFill(surface, fill_color(symbol));
+            [
+                RaisedMesh { mesh: casing, look: RibbonLook::RaisedCasing(surface), feature },
+                RaisedMesh { mesh: fill, look: fill_look, feature },
+            ]
+        };
+        Self(symbols.into_iter().flat_map(parts).collect())
+    }
+
+    /// Adds them.
+    pub fn add_to(self, list: &mut DrawList) {
+        let mut ribbons = Ribbons { list, materials: BTreeMap::new() };
+        for RaisedMesh { mesh, look, feature } in self.0 {
+            ribbons.add(mesh, look, DepthLayer::Solid, feature);
+        }
+    }
+}
+
+/// Adds all ribbons and symbols on the ground, lower layers first; returns the symbols that solids carry.
 pub(super) fn add(
     list: &mut DrawList,
     scene: &SceneModel,
     displayed: &dyn TriangleSurface,
     viewer: Viewer<'_>,
-) {
+) -> RaisedSymbols {
     let Symbols { draped, shows } = match viewer {
         Viewer::Anyone => Symbols::default(),
         Viewer::Camera(camera) | Viewer::Around(camera) => symbols(scene, camera, displayed),
@@ -61,28 +95,30 @@ pub(super) fn add(
     };
     let sources = sources(scene);
     let lakes = scale.as_ref().map(|scale| large_lakes(scene, scale)).unwrap_or_default();
-    let meshes: Vec<DrapedRibbon> = scene
-        .ribbons
-        .par_iter()
-        .map(|ribbon| {
-            let mut draped = DrapedRibbon::default();
-            if shows.get(&ribbon.feature) != Some(&RibbonShow::Replaced) {
-                let source = sources.get(&ribbon.feature).filter(|_| scale.is_some());
-                let tapered = source.and_then(|symbol| tapered(ribbon, symbol));
-                drape(tapered.as_ref().unwrap_or(&ribbon.plan), displayed, &mut draped.ribbon);
-                let scale = scale.as_ref().filter(|_| ribbon.surface != ribbon.surface.unmarked());
-                draped.markings = scale.map(|scale| faded(&draped.ribbon, scale));
-                let lake = lakes.get(&ribbon.feature).filter(|_| ribbon.surface == RibbonSurface::Lake);
-                draped.tint = lake.map(|lake| {
-                    let tint = lake.tint();
-                    tint.lay_over(&mut draped.ribbon);
-                    tint.pixels
-                });
-            }
-            draped
-        })
-        .collect();
+    let draped_ribbon = |ribbon: &Ribbon| {
+        let mut draped = DrapedRibbon::default();
+        if shows.get(&ribbon.feature) != Some(&RibbonShow::Replaced) {
+            let source = sources.get(&ribbon.feature).filter(|_| scale.is_some());
+            let tapered = source.and_then(|symbol| tapered(ribbon, symbol));
+            drape(tapered.as_ref().unwrap_or(&ribbon.plan), displayed, &mut draped.ribbon);
+            let scale = scale.as_ref().filter(|_| ribbon.surface != ribbon.surface.unmarked());
+            draped.markings = scale.map(|scale| faded(&draped.ribbon, scale));
+            let lake = lakes.get(&ribbon.feature).filter(|_| ribbon.surface == RibbonSurface::Lake);
+            draped.tint = lake.map(|lake| {
+                let tint = lake.tint();
+                tint.lay_over(&mut draped.ribbon);
+                tint.pixels
+            });
+        }
+        draped
+    };
+    let mut meshes: Vec<DrapedRibbon> = Vec::with_capacity(scene.ribbons.len());
+    for portion in scene.ribbons.chunks(PORTION) {
+        let made: Vec<DrapedRibbon> = portion.par_iter().map(draped_ribbon).collect();
+        meshes.extend(made.into_iter().map(DrapedRibbon::packed));
+    }
     let (mut shores, mut rivers, mut roads) = (Vec::new(), Vec::new(), Vec::new());
+    let (raised, draped): (Vec<_>, Vec<_>) = draped.into_iter().partition(|draped| draped.is_raised);
     for draped in draped {
         match draped.symbol.surface {
             RibbonSurface::ShoreLine => shores.push(draped),
@@ -116,6 +152,14 @@ pub(super) fn add(
         ribbons.add_symbols(symbols, DepthLayer::Draped(layer));
     }
     add_up_to(&mut ribbons, u8::MAX);
+    RaisedSymbols::new(raised)
+}
+
+impl DrapedRibbon {
+    fn packed(self) -> Self {
+        let Self { ribbon, markings, tint } = self;
+        Self { ribbon: ribbon.packed(), markings: markings.map(DrawMesh::packed), tint }
+    }
 }
 
 /// The rivers that have a source, by feature.
@@ -164,6 +208,10 @@ pub(super) enum RibbonLook {
     Fill(RibbonSurface, Option<[u8; 4]>),
     /// The outline of a symbol.
     Casing(RibbonSurface),
+    /// The inside of a symbol on a deck.
+    RaisedFill(RibbonSurface, Option<[u8; 4]>),
+    /// The outline of a symbol on a deck.
+    RaisedCasing(RibbonSurface),
 }
 
 /// A draw list with the materials of ribbons so far.
@@ -205,8 +253,15 @@ pub(super) fn add_material(list: &mut DrawList, look: RibbonLook) -> MaterialId 
         RibbonLook::Markings(surface) => marking_material(list, surface),
         RibbonLook::Fill(surface, color) => fill_material(list, surface, color.map(Srgba)),
         RibbonLook::Casing(surface) => flat_material("casing", surface, CASING_LIGHT),
+        RibbonLook::RaisedFill(surface, color) => raised(fill_material(list, surface, color.map(Srgba))),
+        RibbonLook::RaisedCasing(surface) => raised(flat_material("casing", surface, CASING_LIGHT)),
     };
     list.add_material(material)
+}
+
+/// A symbol's material on a deck: it lies level, and as a sign casts no shadow, which what is blended does not.
+fn raised(material: Material) -> Material {
+    Material { normals: NormalSource::Vertex, alpha: AlphaMode::Blend, two_sided: true, ..material }
 }
 
 fn draped_material(list: &mut DrawList, surface: RibbonSurface, tint: Srgba) -> Material {

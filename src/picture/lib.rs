@@ -177,7 +177,7 @@ fn listed(
     let walls = ground::add(&mut list, scene, displayed);
     let ground_triangles = list.triangle_count();
     progress("draping features");
-    drapes::add(&mut list, scene, displayed, viewer);
+    let raised = drapes::add(&mut list, scene, displayed, viewer);
     let annotated = camera.filter(|_| purpose != ListPurpose::Relief);
     let graphic_texts = annotated.map(|camera| overlay::add(&mut list, scene, camera, displayed, progress));
     progress("setting models");
@@ -186,6 +186,7 @@ fn listed(
         table::add(&mut list, scene);
     }
     solids::add(&mut list, scene);
+    raised.add_to(&mut list);
     if annotated.is_some() {
         voids::add(&mut list, scene);
     }

@@ -131,8 +131,9 @@ fn skirt_depth_m(coarser: &SceneModel) -> f32 {
 /// What lies and stands on a ground.
 fn add_features(list: &mut DrawList, scene: &SceneModel, displayed: &DisplayedTerrain, camera: &Camera) {
     let viewer = Viewer::Camera(camera);
-    drapes::add(list, scene, displayed, viewer);
+    let raised = drapes::add(list, scene, displayed, viewer);
     solids::add(list, scene);
+    raised.add_to(list);
     uprights::add(list, scene, displayed);
     models::add(list, scene, displayed, viewer);
 }

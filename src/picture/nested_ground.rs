@@ -43,20 +43,21 @@ impl NestedGround {
         Rect { min: min + self.origin, max: max + self.origin }
     }
 
-    /// This ground without a sea where the outer scene has none: a hollow below 0 m may reach the border of a part, but not
-    /// that of the model.
+    /// This ground without a sea where the outer scene has none: a hollow below the sea may reach the border of a part, but
+    /// not that of the model.
     fn with_sea_of(mut self, outer: &SceneModel) -> Self {
         if self.scene.water().sea_posts == 0 {
             return self;
         }
         let (lattice, cover) = (Arc::clone(&self.scene.lattice), outer.water());
         let mut water = self.scene.water().clone();
+        let highest_m = self.scene.water_rules.highest_sea_m();
         let heights = lattice.heights().iter().enumerate();
-        for (index, _) in heights.filter(|(_, height)| **height <= 0.0) {
+        for (index, _) in heights.filter(|(_, height)| **height <= highest_m) {
             let world = (lattice.post_at(index).grid() * lattice.cell()) + self.origin;
             if water.is_water[index] && !cover.is_beside(&outer.lattice, world) {
                 water.is_water[index] = false;
-                water.sea_posts -= 1;
+                water.sea_posts = water.sea_posts.saturating_sub(1);
             }
         }
         self.scene.water = water.into();

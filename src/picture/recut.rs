@@ -238,7 +238,8 @@ impl GroundSheets {
     pub fn plan_symbols(&mut self, scene: &SceneModel, camera: &Camera) -> Vec<usize> {
         let (lines, shows) = planned(scene, camera, LineScale::around(camera), |symbol| symbol);
         let (mut shores, mut rivers, mut roads) = (Vec::new(), Vec::new(), Vec::new());
-        for line in lines {
+        // A walk shows bridges as they are, and drapes all symbols.
+        for line in lines.into_iter().filter(|line| line.deck.is_none()) {
             match line.symbol.surface {
                 RibbonSurface::ShoreLine => shores.push(line),
                 RibbonSurface::River => rivers.push(line),
@@ -249,7 +250,7 @@ impl GroundSheets {
         for (layer, mut lines) in [(BELOW_RIVERS, shores), (BELOW_RIVERS, rivers), (BELOW_ROADS, roads)] {
             lines.sort_by(|a, b| a.symbol.least_px.total_cmp(&b.symbol.least_px));
             let mut fills = Vec::new();
-            for PlannedSymbol { symbol, casing, fill } in lines {
+            for PlannedSymbol { symbol, casing, fill, .. } in lines {
                 plans.push(self.line(RibbonLook::Casing(symbol.surface), symbol, layer));
                 shapes.push(casing);
                 fills.push((

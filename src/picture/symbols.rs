@@ -5,6 +5,9 @@
 //!             ─► runs that are too narrow ─► stroked in plan: casing and fill ─► draped
 //! ```
 //!
+//! The symbol of a bridge lies on the ground below as long as the deck lies over it on the picture, too; else it is raised to
+//! the deck.
+//!
 //! A width on the picture depends on the depth of a vertex and, where the camera looks across the ground at a low angle,
 //! on the line's direction. It is taken at each vertex for the level ground there. On a straight leg the width that a
 //! depth needs is straight too, so that few vertices are enough.
@@ -29,7 +32,8 @@ use sandtable_ribbon::plan::{PlanMesh, PlanVertex};
 use sandtable_ribbon::stroke::{StrokeOptions, StrokePath, stroke};
 use sandtable_ribbon::texture::RibbonSurface;
 use sandtable_scene::scene_model::SceneModel;
-use sandtable_scene::symbols::{LineSymbol, drawn_width_m};
+use sandtable_scene::symbols::{DeckLine, LineSymbol, drawn_width_m};
+use sandtable_scene::vertical_scale::VerticalScale;
 use sandtable_terrain::triangle_surface::TriangleSurface;
 use sandtable_terrain::water_cover::WaterCover;
 use sandtable_view::camera::Camera;
@@ -54,6 +58,10 @@ const DASH_PX: [f64; 2] = [7.0, 4.0];
 
 /// How many times as wide as it is a line is drawn where nothing but a symbol is left of it.
 const ALL_SYMBOL: f64 = 2.5;
+
+/// Lines of which threads make symbols before these are kept: enough that no thread waits, and few beside all lines of a
+/// city.
+pub(super) const PORTION: usize = 1024;
 
 /// Sides of a round end.
 const CAP_SIDES: u32 = 4;
@@ -83,6 +91,18 @@ const CASED_RIVER_PX: [f64; 2] = [1.4, 2.2];
 /// How often the leg on which a river reaches the sea is halved: to a thousandth of it.
 const SHORE_STEPS: u32 = 10;
 
+/// How far on the picture a deck lies from the ground below it at the least whose symbol lies on it, in pixels of a picture
+/// 1080 lines high: less is hidden by the symbol's own width.
+const APART_PX: f64 = 1.5;
+
+/// In how many steps that is looked for along a deck.
+const DECK_STEPS: u32 = 32;
+
+/// How far above the parapets the casing and the fill of a symbol on a deck lie, in meters: they hide the deck, and the fill
+/// the casing.
+const CASING_ABOVE_M: f64 = 0.1;
+const FILL_ABOVE_M: f64 = 0.3;
+
 /// A symbol, draped.
 pub(super) struct DrapedSymbol<'a> {
     /// The line.
@@ -91,6 +111,8 @@ pub(super) struct DrapedSymbol<'a> {
     pub casing: DrawMesh,
     /// Its inside.
     pub fill: DrawMesh,
+    /// Whether it lies on the deck of its bridge.
+    pub is_raised: bool,
 }
 
 /// How the ribbons of a feature show beside its symbols.
@@ -119,6 +141,8 @@ pub(super) struct PlannedSymbol<'a> {
     pub casing: PlanMesh,
     /// Its inside.
     pub fill: PlanMesh,
+    /// The deck that it lies on where it would lie beside it on the ground.
+    pub deck: Option<&'a DeckLine>,
 }
 
 /// The symbols that `camera` sees, on the ground that it is shown.
@@ -127,18 +151,37 @@ pub(super) fn symbols<'a>(
     camera: &Camera,
     displayed: &dyn TriangleSurface,
 ) -> Symbols<'a> {
-    let mesh = |plan: &PlanMesh| {
+    let mesh = |plan: &PlanMesh, deck: Option<&DeckLine>, above_m: f64| {
         let mut mesh = DrawMesh::default();
         drape(plan, displayed, &mut mesh);
+        if let Some(deck) = deck {
+            raise(&mut mesh, |at| scene.scale.world_z(deck.level_at(at)) + deck.parapet_m + above_m);
+        }
         mesh
     };
-    let draped = |PlannedSymbol { symbol, casing, fill }: PlannedSymbol<'a>| DrapedSymbol {
+    let draped = |PlannedSymbol { symbol, casing, fill, deck }: PlannedSymbol<'a>| DrapedSymbol {
         symbol,
-        casing: mesh(&casing),
-        fill: mesh(&fill),
+        casing: mesh(&casing, deck, CASING_ABOVE_M),
+        fill: mesh(&fill, deck, FILL_ABOVE_M),
+        is_raised: deck.is_some(),
     };
-    let (draped, shows) = planned(scene, camera, LineScale::new(camera), draped);
+    let packed = |draped: DrapedSymbol<'a>| DrapedSymbol {
+        casing: draped.casing.packed(),
+        fill: draped.fill.packed(),
+        ..draped
+    };
+    let finish = PlanFinish { make: draped, keep: packed };
+    let (draped, shows) = planned_with(scene, camera, LineScale::new(camera), SymbolUv::Share, finish);
     Symbols { draped, shows }
+}
+
+/// Raises a mesh on the ground to `z` where that is higher: a wide symbol does not sink into the slopes where a bridge ends.
+fn raise(mesh: &mut DrawMesh, z: impl Fn(DVec2) -> f64) {
+    for vertex in &mut mesh.vertices {
+        let [x, y, ground_z] = vertex.position;
+        vertex.position[2] = ground_z.max(z(DVec2::new(f64::from(x), f64::from(y))) as f32);
+        vertex.normal = [0.0, 0.0, 1.0];
+    }
 }
 
 /// What the texture coordinates of symbols say.
@@ -157,7 +200,15 @@ pub(super) fn planned<'a, T: Send>(
     scale: LineScale<'_>,
     finish: impl Fn(PlannedSymbol<'a>) -> T + Sync,
 ) -> (Vec<T>, BTreeMap<FeatureId, RibbonShow>) {
-    planned_with(scene, camera, scale, SymbolUv::Share, finish)
+    planned_with(scene, camera, scale, SymbolUv::Share, PlanFinish { make: finish, keep: |made| made })
+}
+
+/// What is made of each planned symbol.
+pub(super) struct PlanFinish<M, K> {
+    /// Makes it, on any thread.
+    pub make: M,
+    /// Readies it to be kept, on the calling thread.
+    pub keep: K,
 }
 
 /// [`planned`] with texture coordinates of another meaning.
@@ -166,9 +217,10 @@ pub(super) fn planned_with<'a, T: Send>(
     camera: &Camera,
     scale: LineScale<'_>,
     uv: SymbolUv,
-    finish: impl Fn(PlannedSymbol<'a>) -> T + Sync,
+    PlanFinish { make, keep }: PlanFinish<impl Fn(PlannedSymbol<'a>) -> T + Sync, impl Fn(T) -> T>,
 ) -> (Vec<T>, BTreeMap<FeatureId, RibbonShow>) {
-    let view = SymbolView { lines: LineView::new(scene, camera, scale), water: scene.water() };
+    let lines = LineView::new(scene, camera, scale);
+    let view = SymbolView { lines, scale: scene.scale, water: scene.water() };
     let seen = |symbol: &'a LineSymbol| {
         let seen = view.seen(symbol, LineSmoothing::None);
         // Beside a ribbon in its true width a line keeps to the centerline that both have.
@@ -185,11 +237,13 @@ pub(super) fn planned_with<'a, T: Send>(
         let most = shows.entry(symbol.feature).or_insert(show);
         *most = show.max(*most);
     }
-    let plan = |(symbol, seen): (&'a LineSymbol, SeenLine)| {
+    let plan = |(symbol, seen): &(&'a LineSymbol, SeenLine)| {
+        let dashed: Vec<Vec<SymbolVertex>>;
         let runs = if symbol.surface == RibbonSurface::Track {
-            seen.runs.iter().flat_map(|run| dashes(run, symbol.least_px)).collect()
+            dashed = seen.runs.iter().flat_map(|run| dashes(run, symbol.least_px)).collect();
+            &dashed
         } else {
-            seen.runs
+            &seen.runs
         };
         let strokes = |part: SymbolPart| {
             let mut plan = PlanMesh::default();
@@ -201,10 +255,16 @@ pub(super) fn planned_with<'a, T: Send>(
         } else {
             PlanMesh::default()
         };
-        finish(PlannedSymbol { symbol, casing, fill: strokes(SymbolPart::Fill) })
+        let deck = symbol.deck.as_ref().filter(|deck| view.shows_apart(deck));
+        make(PlannedSymbol { symbol, casing, fill: strokes(SymbolPart::Fill), deck })
     };
-    let narrow = seen.into_par_iter().filter(|(_, seen)| !seen.runs.is_empty());
-    (narrow.map(plan).collect(), shows)
+    let mut kept = Vec::new();
+    for portion in seen.chunks(PORTION) {
+        let narrow = portion.par_iter().filter(|(_, seen)| !seen.runs.is_empty());
+        let made: Vec<T> = narrow.map(plan).collect();
+        kept.extend(made.into_iter().map(&keep));
+    }
+    (kept, shows)
 }
 
 /// A vertex of a line in view.
@@ -279,11 +339,25 @@ impl LinePoint {
 
 struct SymbolView<'a> {
     lines: LineView<'a>,
+    scale: VerticalScale,
     /// The water that the elevations show, on the lattice.
     water: &'a WaterCover,
 }
 
 impl SymbolView<'_> {
+    /// Whether the ground under a deck lies beside it on the picture.
+    fn shows_apart(&self, deck: &DeckLine) -> bool {
+        let is_apart = |step: u32| {
+            let station_m = deck.line.length() * f64::from(step) / f64::from(DECK_STEPS);
+            let at = deck.line.at(station_m);
+            self.lines.ground.displayed_z(at).is_some_and(|ground_z| {
+                let rise_m = self.scale.world_z(deck.level.at(station_m)) - ground_z;
+                self.lines.scale.rise_px(at.extend(ground_z), rise_m) > APART_PX
+            })
+        };
+        (0..=DECK_STEPS).any(is_apart)
+    }
+
     fn seen(&self, symbol: &LineSymbol, smoothing: LineSmoothing) -> SeenLine {
         let mut seen = SeenLine::default();
         let mut end = None;

@@ -18,6 +18,10 @@ use sandtable_terrain::lattice::Lattice;
 use sandtable_view::camera::Camera;
 use sandtable_view::frustum::Frustum;
 
+/// The most posts whose errors are kept from picture to picture: 32 MiB. Those of the largest ground take as much memory as
+/// its heights, and a few tenths of a second to measure.
+const MOST_KEPT: usize = 1 << 23;
+
 /// A displayed lattice, the patches over it, and measures of both.
 #[derive(Debug)]
 pub struct MeasuredGround {
@@ -123,8 +127,14 @@ impl MeasuredGround {
         ScreenError::new(self.patched(), self.exact(), self.heights(), camera, tolerance_px)
     }
 
-    /// The ground as `camera` shows it, off by at most `tolerance_px` pixels.
+    /// The ground as `camera` shows it, off by at most `tolerance_px` pixels. Errors of ground with more than
+    /// eight million posts are not kept, unless [`Self::exact`] has them already.
     pub fn displayed_to(&self, camera: &Camera, tolerance_px: f32) -> DisplayedTerrain {
+        if self.exact.get().is_none() && self.lattice.heights().len() > MOST_KEPT {
+            let errors = ErrorMap::exact(&self.lattice, &self.layout);
+            let criterion = ScreenError::new(self.patched(), &errors, self.heights(), camera, tolerance_px);
+            return self.displayed(&criterion, self.in_view(camera));
+        }
         self.displayed(&self.screen_error(camera, tolerance_px), self.in_view(camera))
     }
 

@@ -22,6 +22,7 @@ use crate::roads::levels::{self, ChainRun, Site};
 use crate::roads::profiles::BridgeProfile;
 use crate::roads::spans::{self, RoadSpan};
 use crate::sources::Sources;
+use crate::symbols::DeckLine;
 use sandtable_base::limits::BRIDGE_PIERS;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
@@ -107,6 +108,9 @@ pub fn build(
     collected.decks = bridges.iter().flat_map(|planned| bridge::deck(&planned.sections)).collect();
     let decks = Deck::new(&collected.decks).map_err(|error| document.error_at(0..0, error))?;
     for planned in bridges {
+        if let Some(road) = spans[planned.link.line].road {
+            roads[road].deck = Some(planned.deck_line());
+        }
         planned.build(&decks, collected);
     }
     Ok(())
@@ -157,6 +161,16 @@ struct PlannedBridge<'a> {
 }
 
 impl PlannedBridge<'_> {
+    /// Its deck, for the symbol of its road.
+    fn deck_line(&self) -> DeckLine {
+        let street = &self.chain.spans[self.link.line].street;
+        DeckLine {
+            line: street.alignment.line.clone(),
+            level: self.chain.level(self.link),
+            parapet_m: bridge::parapet_m(street.width_m),
+        }
+    }
+
     /// Builds it as it is drawn.
     fn build(mut self, decks: &Deck, collected: &mut SceneBuilder) {
         let (street, site) = (&self.chain.spans[self.link.line].street, self.chain.site);

@@ -47,6 +47,7 @@ use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::query::deck::Deck;
 use sandtable_terrain::query::service::HeightService;
 use sandtable_terrain::triangle_surface::SurfaceTriangle;
+use sandtable_terrain::water_cover::WaterRules;
 
 /// The ground of a scene: all that height queries, profiles and lines of sight need.
 pub struct SceneGround {
@@ -181,7 +182,10 @@ pub fn build_with(
         haze_m: surroundings.haze_m,
         table: surroundings.table,
         maps: Default::default(),
-        infers_water: document.terrain.infer_water,
+        water_rules: WaterRules {
+            infers_level: document.terrain.infer_water,
+            sea_level_m: document.terrain.sea_level.map(|level_m| level_m as f32),
+        },
         water: OnceLock::new(),
         has_voids: OnceLock::new(),
         lattice,

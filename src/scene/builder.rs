@@ -115,6 +115,8 @@ impl SceneBuilder {
         let parts = partition::apart(from_above.iter().copied());
         for (ribbon, plan) in self.ribbons.iter_mut().rev().zip(parts) {
             ribbon.plan = plan;
+            ribbon.plan.vertices.shrink_to_fit();
+            ribbon.plan.triangles.shrink_to_fit();
         }
         self.ribbons.retain(|ribbon| !ribbon.plan.triangles.is_empty());
     }

@@ -26,7 +26,7 @@ use sandtable_earthworks::level_ground::LevelGround;
 use sandtable_earthworks::pad::Batters;
 use sandtable_geom::polyline::Polyline;
 use sandtable_terrain::lattice::{Lattice, Post};
-use sandtable_terrain::water_cover::{WaterCover, water_cover};
+use sandtable_terrain::water_cover::{WaterCover, WaterRules, water_cover};
 
 /// Sizes in meters where none are stated: a heavy bomb's crater, a trench to stand in, a truck's track, a bank.
 const RADIUS_M: f64 = 10.0;
@@ -102,15 +102,15 @@ pub fn build(
 }
 
 /// The water that the elevations show without earthworks, on the ground that they left dry: a level pit is no lake.
-pub fn water_beside(dug: &[Change], lattice: &Lattice) -> WaterCover {
+pub fn water_beside(dug: &[Change], lattice: &Lattice, rules: &WaterRules) -> WaterCover {
     if dug.is_empty() {
-        return water_cover(lattice);
+        return water_cover(lattice, rules);
     }
     let mut before = lattice.clone();
     for Change { posts, before: heights } in dug.iter().rev() {
         set_heights(&mut before, *posts, heights);
     }
-    let mut cover = water_cover(&before);
+    let mut cover = water_cover(&before, rules);
     let is_other = |&post: &Post| before.height(post).to_bits() != lattice.height(post).to_bits();
     if !cover.is_water.is_empty() {
         for post in dug.iter().flat_map(|change| change.posts.posts()).filter(is_other) {

@@ -42,7 +42,7 @@ use sandtable_roam::layout::PatchLayout;
 use sandtable_roam::measured_ground::MeasuredGround;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::query::service::HeightService;
-use sandtable_terrain::water_cover::WaterCover;
+use sandtable_terrain::water_cover::{WaterCover, WaterRules};
 
 /// A digital terrain model: the ground, the features on it, labels and views.
 pub struct SceneModel {
@@ -99,7 +99,8 @@ pub struct SceneModel {
     /// What the block stands on where it is seen as a whole.
     pub table: TableTop,
     pub(crate) maps: GroundMapCache,
-    pub(crate) infers_water: bool,
+    /// What is water besides the features of the scene file.
+    pub water_rules: WaterRules,
     /// The water that the elevations themselves show, once it is found; see [`SceneModel::water`].
     pub water: OnceLock<WaterCover>,
     pub(crate) has_voids: OnceLock<bool>,
@@ -159,18 +160,23 @@ impl SceneModel {
         self.ground.get_or_init(|| MeasuredGround::with_layout(self.scale.drawn(&self.lattice), self.layout))
     }
 
-    /// The water that the elevations themselves show, found on first use; none where the scene file forbids it.
+    /// The water that the elevations themselves show, found on first use by [`Self::water_rules`].
     pub fn water(&self) -> &WaterCover {
-        self.water.get_or_init(|| {
-            if self.infers_water { water_beside(&self.dug, &self.lattice) } else { WaterCover::default() }
-        })
+        self.water.get_or_init(|| water_beside(&self.dug, &self.lattice, &self.water_rules))
     }
 
-    /// The colors of the ground by height. Where there is a sea they begin at 0 m: its bed has colors of its own,
-    /// [`bathymetry`](sandtable_draw::bathymetry::bathymetry).
+    /// The elevation in meters below which all colors are those of a sea's bed,
+    /// [`bathymetry`](sandtable_draw::bathymetry::bathymetry); `None` without a sea, and where land lies lower.
+    pub fn shore_m(&self) -> Option<f32> {
+        let stated_m = self.water_rules.sea_level_m;
+        let shore_m = stated_m.or_else(|| (self.water().low_posts == 0).then_some(0.0));
+        shore_m.filter(|_| self.has_sea())
+    }
+
+    /// The colors of the ground by height; they begin at [`Self::shore_m`].
     pub fn ramp(&self) -> ColorRamp {
         let (low, high) = self.height_range_m;
-        let low = if self.has_sea() && high > 0.0 { low.max(0.0) } else { low };
+        let low = self.shore_m().filter(|&shore_m| high > shore_m).map_or(low, |shore_m| low.max(shore_m));
         self.ramp.over(&TintedGround { range_m: (low, high), latitude_deg: self.latitude_deg })
     }
 
@@ -208,12 +214,24 @@ impl SceneModel {
 
     /// Notes for the user about what a picture shows and no file states.
     pub fn inferred_notes(&self) -> Vec<String> {
-        let WaterCover { sea_posts, lakes, .. } = self.water();
+        let WaterCover { sea_posts, lakes, open_low_posts, .. } = self.water();
         let area = |posts: usize| format!("{:.2} km²", posts as f64 * self.lattice.cell_m2() / 1e6);
-        let sea = (*sea_posts > 0).then(|| {
+        let stated_m = self.water_rules.sea_level_m;
+        let sea = (*sea_posts > 0 && stated_m.is_none()).then(|| {
             format!(
-                "{} are drawn as sea: ground at or below 0 m that is connected to the border",
+                "{} are drawn as sea: level ground at 0 m that is connected to the border",
                 area(*sea_posts)
+            )
+        });
+        let dry = stated_m.filter(|_| *sea_posts == 0).map(|level_m| {
+            format!(
+                "`sea_level = {level_m}` has no effect: no ground at or below it is connected to the border"
+            )
+        });
+        let low = (*open_low_posts > 0).then(|| {
+            format!(
+                "{} below 0 m that reach the border are not drawn as sea (`sea_level = 0` in [terrain] draws them so)",
+                area(*open_low_posts)
             )
         });
         let lakes = (!lakes.is_empty()).then(|| {
@@ -221,7 +239,7 @@ impl SceneModel {
             format!("{} level basins are drawn as lakes, {area} in all", lakes.len())
         });
         let off = |note| format!("{note} (inferred; `infer_water = false` in [terrain] switches it off)");
-        sea.into_iter().chain(lakes).map(off).collect()
+        sea.into_iter().chain(lakes).map(off).chain(dry).chain(low).collect()
     }
 
     /// Whether [`SceneModel::map`] has been made.

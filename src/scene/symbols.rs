@@ -12,6 +12,7 @@ use sandtable_draw::list::FeatureId;
 use sandtable_earthworks::alignment::{Alignment, Support, Width};
 use sandtable_geom::polyline::Polyline;
 use sandtable_geom::profile::Profile;
+use sandtable_geom::segment;
 use sandtable_ribbon::junction::Street;
 use sandtable_ribbon::texture::RibbonSurface;
 
@@ -66,13 +67,39 @@ pub struct LineSymbol {
     pub order: Option<Profile>,
     /// The width of the bank on either side in meters, where it is a river.
     pub bank_m: f64,
+    /// The deck that carries it, where it is a bridge.
+    pub deck: Option<DeckLine>,
     /// The feature it belongs to.
     pub feature: FeatureId,
 }
 
+/// The deck of a bridge along its centerline.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DeckLine {
+    /// The centerline, within the elevation model.
+    pub line: Polyline,
+    /// Its elevation along the centerline, in meters.
+    pub level: Profile,
+    /// How high parapets stand over it as they are drawn, in meters.
+    pub parapet_m: f64,
+}
+
+impl DeckLine {
+    /// The elevation in meters at the station that is the nearest to a place.
+    pub fn level_at(&self, at: DVec2) -> f64 {
+        let legs = self.line.points().windows(2).zip(self.line.stations().windows(2));
+        let off = |leg: &[DVec2]| segment::distance_squared((leg[0], leg[1]), at);
+        let nearest = legs.min_by(|(a, _), (b, _)| off(a).total_cmp(&off(b)));
+        let station_m = nearest.map_or(0.0, |(leg, stations)| {
+            stations[0] + (stations[1] - stations[0]) * segment::nearest_part((leg[0], leg[1]), at)
+        });
+        self.level.at(station_m)
+    }
+}
+
 impl LineSymbol {
-    /// The symbol of a street; `None` in a tunnel.
-    pub fn of(street: &Street, feature: FeatureId) -> Option<Self> {
+    /// The symbol of a street, which `deck` carries where it is a bridge; `None` in a tunnel.
+    pub fn of(street: &Street, deck: Option<&DeckLine>, feature: FeatureId) -> Option<Self> {
         let Street { alignment, width_m, surface, .. } = street;
         let least_px = least_px(*surface, *width_m);
         let symbol = || Self {
@@ -81,6 +108,7 @@ impl LineSymbol {
             least_px,
             order: None,
             bank_m: 0.0,
+            deck: deck.filter(|_| alignment.support == Support::Bridge).cloned(),
             feature,
         };
         (alignment.support != Support::Tunnel).then(symbol)
@@ -95,6 +123,7 @@ impl LineSymbol {
             least_px: least_px(*surface, *width_m),
             order: Some(order.clone()),
             bank_m,
+            deck: None,
             feature,
         }
     }
@@ -162,6 +191,7 @@ impl LineSymbol {
             least_px: SHORE_PX,
             order: None,
             bank_m: 0.0,
+            deck: None,
             feature,
         })
     }
@@ -208,6 +238,16 @@ mod tests {
         assert_eq!(drawn_width_m(6.0, 2.5, 0.1), 6.0);
         assert_eq!(drawn_width_m(6.0, 2.5, 2.4), 6.0);
         assert_eq!(drawn_width_m(6.0, 2.5, 20.0), 50.0);
+    }
+
+    #[test]
+    fn a_deck_has_the_level_of_the_nearest_station() {
+        let line = Polyline::new([(0.0, 0.0), (100.0, 0.0), (100.0, 50.0)].map(DVec2::from), 0.0);
+        let level = Profile::new(vec![0.0, 150.0], vec![10.0, 25.0]).expect("rising");
+        let deck = DeckLine { line: line.expect("a line"), level, parapet_m: 1.1 };
+        let levels =
+            [(-20.0, 3.0), (40.0, -9.0), (108.0, 20.0), (99.0, 80.0)].map(|at| deck.level_at(at.into()));
+        assert_eq!(levels, [10.0, 14.0, 22.0, 25.0]);
     }
 
     #[test]

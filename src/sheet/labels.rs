@@ -133,7 +133,7 @@ fn legend(scene: &SceneModel) -> Legend {
     let (low_m, high_m) = scene.height_range_m;
     let datum = scene.heights.snapshot().source().vertical_datum.clone();
     Legend {
-        ramp: if scene.has_sea() { with_bathymetry(&scene.ramp()) } else { scene.ramp() },
+        ramp: scene.shore_m().map_or_else(|| scene.ramp(), |shore_m| with_bathymetry(&scene.ramp(), shore_m)),
         low_m,
         high_m,
         vertical_exaggeration: scene.scale.0,

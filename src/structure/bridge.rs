@@ -103,6 +103,11 @@ pub fn magnified(width_m: f64) -> f64 {
     (width_m / WIDEST_REAL_M).max(1.0)
 }
 
+/// How high parapets stand over a carriageway of this width, in meters.
+pub fn parapet_m(width_m: f64) -> f64 {
+    PARAPET_M * magnified(width_m)
+}
+
 /// The carriageway over the sections of a course.
 pub fn deck(sections: &[DeckSection]) -> Vec<SurfaceTriangle> {
     carriageway(sections).map(|corners| corners.map(|(section, side)| section.edges()[side])).collect()
@@ -250,7 +255,7 @@ struct RingPoint {
 
 fn cross_section(width_m: f64, options: &BridgeOptions) -> [RingPoint; 12] {
     let by = magnified(width_m);
-    let (parapet, thick) = (PARAPET_M * by, PARAPET_THICK_M * by);
+    let (parapet, thick) = (parapet_m(width_m), PARAPET_THICK_M * by);
     let outer = 1.0 + thick / (width_m / 2.0);
     let (edge, depth) = (-0.4 * options.depth_m, -options.depth_m);
     [
@@ -278,7 +283,7 @@ fn ring(points: &[RingPoint; 12], section: &DeckSection) -> [Vec3; 12] {
     })
 }
 
-/// How high parapets stand over the carriageway, in meters.
+/// [`parapet_m`] of bridges of usual widths.
 const PARAPET_M: f64 = 1.1;
 /// How thick they are, in meters.
 pub(crate) const PARAPET_THICK_M: f64 = 0.4;

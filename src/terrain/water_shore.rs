@@ -137,7 +137,7 @@ fn open(is_water: &[bool], columns: usize, cell: DVec2) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::water_cover::water_cover;
+    use crate::water_cover::{WaterRules, water_cover};
 
     /// A coast that runs from the south-west to the north-east in steps of a post.
     fn coast() -> Lattice {
@@ -148,7 +148,7 @@ mod tests {
     #[test]
     fn every_post_stays_on_its_side_of_the_shore() {
         let lattice = coast();
-        let cover = water_cover(&lattice);
+        let cover = water_cover(&lattice, &WaterRules::default());
         let shore = WaterShore::new(&lattice, &cover).expect("a sea");
         for row in 0..80 {
             for (value, &is_water) in shore.row(row).into_iter().zip(&cover.is_water[row * 80..]) {
@@ -160,7 +160,7 @@ mod tests {
     #[test]
     fn the_shore_of_a_staircase_is_nearly_straight() {
         let lattice = coast();
-        let cover = water_cover(&lattice);
+        let cover = water_cover(&lattice, &WaterRules::default());
         let shore = WaterShore::new(&lattice, &cover).expect("a sea");
         let columns: Vec<Vec<f32>> = (0..80).map(|row| shore.row(row)).collect();
         // Where the shore crosses each column of posts, against the line that the stairs follow.
@@ -182,7 +182,7 @@ mod tests {
         };
         let heights = (0..80 * 80).map(height).collect();
         let lattice = Lattice::new(DVec2::ZERO, DVec2::splat(30.0), 80, heights).expect("sound");
-        let cover = water_cover(&lattice);
+        let cover = water_cover(&lattice, &WaterRules::default());
         assert!(cover.sea_posts > 0 && cover.lakes.len() == 1);
         let shore = WaterShore::new(&lattice, &cover).expect("water");
         let at = |column: usize, row: usize| shore.row(row)[column];

@@ -7,7 +7,7 @@ use sandtable_base::message::chain::error_text;
 use sandtable_scene::scene_file::{open_scene, open_scene_ground};
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::lattice::{Lattice, Post};
-use sandtable_terrain::water_cover::water_cover;
+use sandtable_terrain::water_cover::{WaterRules, water_cover};
 
 use crate::common::scratch::Scratch;
 
@@ -98,8 +98,11 @@ fn a_leveled_pit_is_not_drawn_as_a_lake_nor_is_a_bank_in_the_sea_water() {
     let scene = sound(pit);
     let dug = scene.report.earthworks[0].area;
     assert!(scene.water().lakes.is_empty() && dug > 90_000.0, "{:?} of {dug}", scene.water().lakes);
-    assert!(water_cover(&scene.lattice).lakes.len() == 1, "its heights alone would make it one");
-    let sea = "height_offset = -200\n";
+    assert!(
+        water_cover(&scene.lattice, &WaterRules::default()).lakes.len() == 1,
+        "its heights alone would make it one"
+    );
+    let sea = "height_offset = -200\nsea_level = 0\n";
     let bank = "[[earthwork]]\nkind = \"raise\"\npoints = [[300, 300], [900, 900]]\nlevel = 5\nwidth = 40\n";
     let scene = sound(&format!("{sea}{bank}"));
     let water = scene.water();

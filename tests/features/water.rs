@@ -479,3 +479,54 @@ fn a_view_of_wide_water_is_drawn() {
     let camera = camera(&scene, &scene.cameras[0], (480, 270)).expect("sound");
     assert!(build_draw_list(&scene, &camera, &|_| {}).list.check().is_ok());
 }
+
+/// A scene of 60 × 50 posts, 10 m apart, whose heights are `height` of column and row from the south-west.
+fn posts(height: impl Fn(u32, u32) -> f64, keys: &str) -> SceneModel {
+    let folder = Scratch::new();
+    let grid = "ncols 60\nnrows 50\nxllcenter 500000\nyllcenter 5000000\ncellsize 10\n".to_owned();
+    let height = &height;
+    let heights: Vec<String> = (0..50)
+        .rev()
+        .flat_map(|row| (0..60).map(move |column| format!("{:.2}", height(column, row))))
+        .collect();
+    folder.write("ground.asc", grid + &heights.join(" "));
+    let path = folder.write("scene.toml", format!("[terrain]\ndem = \"ground.asc\"\n{keys}"));
+    open_scene(&path, &[], &|_| ()).unwrap_or_else(|failure| panic!("{failure:?}"))
+}
+
+#[test]
+fn sloping_ground_below_0_is_land_and_a_note_says_how_to_make_it_sea() {
+    let valley = |column: u32, row: u32| -70.0 + f64::from(column) * 0.8 + f64::from(row) * 0.013;
+    let scene = posts(valley, "");
+    assert!(!scene.has_sea() && scene.shore_m().is_none());
+    let notes = scene.inferred_notes().join("\n");
+    assert!(notes.contains("0.30 km² below 0 m") && notes.contains("`sea_level = 0`"), "{notes}");
+    assert_eq!(scene.ramp().stops()[0].0, scene.height_range_m.0, "the colors are those of land");
+
+    let scene = posts(valley, "sea_level = -40");
+    assert!(scene.has_sea() && scene.shore_m() == Some(-40.0));
+    let count = scene.lattice.heights().iter().filter(|height| **height <= -40.0).count();
+    assert_eq!(scene.water().sea_posts, count);
+    assert!(scene.inferred_notes().is_empty(), "{:?}", scene.inferred_notes());
+    let dry = posts(valley, "sea_level = -100").inferred_notes().join("\n");
+    assert!(dry.contains("`sea_level = -100` has no effect"), "{dry}");
+    let off = posts(valley, "infer_water = false").inferred_notes();
+    assert!(off.is_empty(), "{off:?}");
+}
+
+#[test]
+fn a_polder_beside_the_sea_keeps_the_colors_of_land() {
+    let coast = |column: u32, row: u32| match row {
+        0..20 => 0.0,
+        20 => 6.0,
+        _ => -4.0 + f64::from(column) * 0.2 + f64::from(row) * 0.013,
+    };
+    let scene = posts(coast, "");
+    assert_eq!(scene.water().sea_posts, 20 * 60);
+    assert_eq!(scene.shore_m(), None, "land lies below the sea");
+    let notes = scene.inferred_notes().join("\n");
+    assert!(notes.contains("0.12 km² are drawn as sea: level ground at 0 m"), "{notes}");
+    assert!(notes.contains("below 0 m that reach the border are not drawn as sea"), "{notes}");
+    let above = |column: u32, row: u32| coast(column, row).abs();
+    assert_eq!(posts(above, "").shore_m(), Some(0.0));
+}

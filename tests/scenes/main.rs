@@ -19,6 +19,7 @@ mod models;
 mod odd_scenes;
 mod own_models;
 mod parallel;
+mod parallel_shadows;
 mod placement;
 mod recut;
 mod scatter;

@@ -2,7 +2,8 @@
 
 use glam::{DVec2, Vec2, Vec3};
 use sandtable_description::parse::parse_bytes;
-use sandtable_draw::list::FeatureId;
+use sandtable_draw::list::{DepthLayer, DrawItem, FeatureId};
+use sandtable_draw::material::AlphaMode;
 use sandtable_geom::polyline::Polyline;
 use sandtable_picture::{build_draw_list, draw_list};
 use sandtable_render::cpu::{RenderQuality, render};
@@ -127,4 +128,91 @@ fn what_no_camera_sees_has_its_true_width() {
     let found: f64 = roads.map(|item| area(&list.meshes[item.mesh.0 as usize])).sum();
     let expected: f64 = scene.ribbons.iter().map(|ribbon| ribbon.plan.area_m2()).sum();
     assert!((found - expected).abs() < 1e-3 * expected, "{found} m², not {expected}");
+}
+
+/// A valley 55 m deep, 30 cells of 10 m wide, with a road over it that has `keys`, as `camera` sees it.
+fn valley(keys: &str, camera: &str) -> (SceneModel, Camera) {
+    let folder = Scratch::new();
+    let height = |column: u32| {
+        let off = f64::from(column).mul_add(10.0, -500.0) / 150.0;
+        100.0 - 55.0 * libm::exp(-off.powi(4))
+    };
+    let row: Vec<String> = (0..101).map(|column| format!("{:.2}", height(column))).collect();
+    let row = row.join(" ");
+    let grid = "ncols 101\nnrows 101\nxllcenter 0\nyllcenter 0\ncellsize 10\n".to_owned();
+    folder.write("valley.asc", grid + &[row.as_str(); 101].join("\n"));
+    let text = format!(
+        "[terrain]\ndem = \"valley.asc\"\ninfer_water = false\n[[road]]\npoints = [[100, 500], [300, 500], [700, 500], \
+         [900, 500]]\nwidth = 9\n{keys}\n[[camera]]\nname = \"a\"\n{camera}\n"
+    );
+    let path = folder.write("scene.toml", &text);
+    let document = parse_bytes("scene.toml", text.as_bytes()).expect("a scene file");
+    let assets = Assets::new(&path, &[]).expect("the folder is there");
+    let scene = build(&document, &assets, &|_| ()).unwrap_or_else(|error| panic!("{error}"));
+    let camera = sandtable_picture::camera(&scene, &scene.cameras[0], (900, 600)).expect("sound");
+    (scene, camera)
+}
+
+/// What the picture shows at a place in the world.
+fn seen_at(picture: &Rendering, camera: &Camera, at: Vec3) -> FeatureId {
+    let pixel = camera.project(at).expect("in view").pixel;
+    picture.features[pixel.y as usize * picture.pixels.width() as usize + pixel.x as usize]
+}
+
+/// The parts of the symbols of roads that lie on decks, in a picture of `camera`.
+fn raised(scene: &SceneModel, camera: &Camera) -> usize {
+    let list = build_draw_list(scene, camera, &|_| ()).list;
+    let is_raised = |item: &&DrawItem| {
+        item.layer == DepthLayer::Solid && scene.feature_name(item.feature).starts_with("road")
+    };
+    let parts: Vec<&DrawItem> = list.items.iter().filter(is_raised).collect();
+    for item in &parts {
+        let alpha = list.materials[item.material.0 as usize].alpha;
+        assert_eq!(alpha, AlphaMode::Blend, "what blends casts no shadow");
+    }
+    parts.len()
+}
+
+#[test]
+fn the_symbol_of_a_bridge_lies_on_its_deck_and_not_on_the_ground_below() {
+    let views = [
+        "projection = \"orthographic\"\nazimuth = 20\npitch = 20",
+        "projection = \"orthographic\"\nazimuth = 20\npitch = 35",
+        "projection = \"oblique\"",
+        "azimuth = 20\npitch = 20",
+        "azimuth = 200\npitch = 35",
+    ];
+    for keys in ["profile = \"conform\"\nmax_fill = 10", "bridge = \"true\""] {
+        for view in views {
+            let (scene, camera) = valley(keys, view);
+            let symbol = scene.symbols.iter().find(|symbol| symbol.deck.is_some()).expect("a bridge");
+            let deck = symbol.deck.as_ref().expect("its deck");
+            let list = build_draw_list(&scene, &camera, &|_| ()).list;
+            let picture = render(&list, &camera, &RenderQuality::default()).expect("sound");
+            let names = |at: Vec3| scene.feature_name(seen_at(&picture, &camera, at));
+            for x in [440.0, 480.0, 500.0, 520.0, 560.0] {
+                let ground = Vec3::new(x, 500.0, 45.0);
+                assert!(!names(ground).starts_with("road"), "{keys} {view}: {} below", names(ground));
+                let level_m = deck.level_at(DVec2::new(f64::from(x), 500.0));
+                let carried = names(Vec3::new(x, 500.0, level_m as f32));
+                let is_bridge = carried.starts_with("road") || carried.starts_with("bridge");
+                assert!(is_bridge, "{keys} {view}: {carried} on the deck");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_symbol_of_a_bridge_lies_on_the_ground_only_where_it_is_seen_from_above() {
+    for (view, count) in [
+        ("projection = \"plan\"", 0),
+        ("projection = \"orthographic\"\npitch = 20", 2),
+        ("projection = \"orthographic\"\nazimuth = 20\npitch = 20", 2),
+        ("pitch = 20", 2),
+    ] {
+        for keys in ["profile = \"conform\"\nmax_fill = 10", "bridge = \"true\""] {
+            let (scene, camera) = valley(keys, view);
+            assert_eq!(raised(&scene, &camera), count, "casing and fill: {keys} {view}");
+        }
+    }
 }

@@ -4,6 +4,9 @@
 //! usually the only one. Triangles are processed in parallel in chunks of [`CHUNK`], each from its three vertices:
 //! projecting a vertex again for each of its triangles costs less than storing it. Chunks keep the list's order, so that
 //! the picture does not depend on threads.
+//!
+//! A picture of many triangles is drawn in [`strips`](crate::cpu::strips) of rows, one after the other, each from the faces
+//! that it may show, so that memory does not grow with the list.
 
 use std::ops::Range;
 
@@ -73,9 +76,20 @@ struct FaceChunk {
     rows: Range<u32>,
 }
 
+/// The faces of a strip of rows.
 #[derive(Debug)]
 pub struct ScreenGeometry {
     chunks: Vec<FaceChunk>,
+}
+
+/// A list as a screen sees it, before its triangles are faces.
+#[derive(Debug)]
+pub struct GeometrySource<'a> {
+    list: &'a DrawList,
+    screen: &'a Screen,
+    /// The triangles up to the end of each item.
+    ends: Vec<u64>,
+    total: u64,
 }
 
 struct ItemSetup<'a> {
@@ -86,26 +100,74 @@ struct ItemSetup<'a> {
     projection: Projection<'a>,
     alpha: AlphaMode,
     two_sided: bool,
+    /// The rows of pixels that are drawn.
+    drawn: &'a Range<u32>,
 }
 
-impl ScreenGeometry {
-    /// The faces of a checked `list` that `screen` may see, in the list's order. `None` where the list draws more
-    /// triangles than ids can number (2^32).
-    pub fn new(list: &DrawList, screen: &Screen) -> Option<Self> {
+impl<'a> GeometrySource<'a> {
+    /// The source of a checked list. `None` where the list draws more triangles than ids can number (2^32).
+    pub fn new(list: &'a DrawList, screen: &'a Screen) -> Option<Self> {
         let mut total = 0;
         let ends = list.items.iter().map(|item| {
             total += item.triangles.len() as u64;
             total
         });
         let ends: Vec<u64> = ends.collect();
-        if total >= u64::from(u32::MAX) - CHUNK {
-            return None;
-        }
-        let chunk =
-            |number: u64| build_chunk(list, screen, &ends, number * CHUNK..((number + 1) * CHUNK).min(total));
-        Some(Self { chunks: (0..total.div_ceil(CHUNK)).into_par_iter().map(chunk).collect() })
+        (total < u64::from(u32::MAX) - CHUNK).then_some(Self { list, screen, ends, total })
     }
 
+    /// The screen.
+    pub fn screen(&self) -> &'a Screen {
+        self.screen
+    }
+
+    /// The number of triangles, seen or not.
+    pub fn triangle_count(&self) -> u64 {
+        self.total
+    }
+
+    /// The rows of all pixels.
+    pub fn rows(&self) -> Range<u32> {
+        0..self.screen.size[1]
+    }
+
+    /// The faces that may be seen in `rows`, in the list's order. `chunk_rows` are those that each chunk may touch, where that
+    /// is known.
+    pub fn geometry(&self, rows: &Range<u32>, chunk_rows: &[Range<u32>]) -> ScreenGeometry {
+        let is_seen = |number: u64| {
+            let own = chunk_rows.get(number as usize);
+            own.is_none_or(|own| own.start < rows.end && rows.start < own.end)
+        };
+        let chunk = |number: u64| if is_seen(number) { self.chunk(number, rows) } else { FaceChunk::EMPTY };
+        ScreenGeometry { chunks: self.chunk_numbers().map(chunk).collect() }
+    }
+
+    /// The rows that each chunk may touch; calls `visit` with those of each piece, in any order and on all threads.
+    pub fn survey(&self, visit: impl Fn(Range<u32>) + Sync) -> Vec<Range<u32>> {
+        let rows = self.rows();
+        let surveyed = |number: u64| {
+            let chunk = self.chunk(number, &rows);
+            chunk.pieces.iter().for_each(|piece| visit(piece.window.from[1]..piece.window.to[1]));
+            chunk.rows
+        };
+        self.chunk_numbers().map(surveyed).collect()
+    }
+
+    fn chunk_numbers(&self) -> rayon::range::Iter<u64> {
+        (0..self.total.div_ceil(CHUNK)).into_par_iter()
+    }
+
+    fn chunk(&self, number: u64, rows: &Range<u32>) -> FaceChunk {
+        let triangles = number * CHUNK..((number + 1) * CHUNK).min(self.total);
+        build_chunk(self, triangles, rows)
+    }
+}
+
+impl FaceChunk {
+    const EMPTY: Self = Self { faces: Vec::new(), pieces: Vec::new(), rows: 0..0 };
+}
+
+impl ScreenGeometry {
     /// The face with this id, which must be one of this geometry's.
     pub fn face(&self, id: FaceId) -> &ScreenFace {
         let id = u64::from(id.0);
@@ -124,17 +186,16 @@ impl ScreenGeometry {
     }
 }
 
-/// The faces of the triangles number `triangles`, counted through all items; `ends` counts the triangles up to the end
-/// of each item.
-fn build_chunk(list: &DrawList, screen: &Screen, ends: &[u64], triangles: Range<u64>) -> FaceChunk {
-    // Memory that no face is written to is not taken from the system.
+/// The faces of the triangles number `triangles`, counted through all items, that may be seen in the rows `drawn`.
+fn build_chunk(source: &GeometrySource, triangles: Range<u64>, drawn: &Range<u32>) -> FaceChunk {
+    let &GeometrySource { list, screen, ref ends, .. } = source;
     let most = (triangles.end - triangles.start) as usize;
     let (faces, pieces) = (Vec::with_capacity(most), Vec::with_capacity(most));
     let mut chunk = FaceChunk { faces, pieces, rows: 0..0 };
     let mut index = ends.partition_point(|&end| end <= triangles.start);
     let mut next = triangles.start;
     while next < triangles.end {
-        let setup = ItemSetup::new(list, screen, index);
+        let setup = ItemSetup::new(list, screen, index, drawn);
         let range = &setup.item.triangles;
         let start = ends[index] - range.len() as u64;
         let end = ends[index].min(triangles.end);
@@ -149,11 +210,14 @@ fn build_chunk(list: &DrawList, screen: &Screen, ends: &[u64], triangles: Range<
         (top, bottom) = (top.min(from[1]), bottom.max(to[1]));
     }
     chunk.rows = top..bottom;
+    // Of many triangles most are out of view.
+    chunk.faces.shrink_to_fit();
+    chunk.pieces.shrink_to_fit();
     chunk
 }
 
 impl<'a> ItemSetup<'a> {
-    fn new(list: &'a DrawList, screen: &'a Screen, index: usize) -> Self {
+    fn new(list: &'a DrawList, screen: &'a Screen, index: usize, drawn: &'a Range<u32>) -> Self {
         let item = &list.items[index];
         let material = &list.materials[item.material.0 as usize];
         Self {
@@ -164,6 +228,7 @@ impl<'a> ItemSetup<'a> {
             projection: screen.projection(&item.world_from_mesh),
             alpha: material.alpha,
             two_sided: material.two_sided,
+            drawn,
         }
     }
 
@@ -202,7 +267,7 @@ impl<'a> ItemSetup<'a> {
         chunk.faces.push(ScreenFace { item: self.index, triangle, planes, range, reach });
     }
 
-    /// The outline as a fan of snapped triangles that may touch a pixel.
+    /// The outline as a fan of snapped triangles that may touch a pixel that is drawn.
     fn push_pieces(&self, pieces: &mut Vec<FacePiece>, outline: &Outline, faces_eye: bool, face: FaceId) {
         let snap = |corner: &DVec3| [snapped(corner.x / corner.z), snapped(corner.y / corner.z)];
         let [first, rest @ ..] = outline.corners() else { return };
@@ -211,7 +276,8 @@ impl<'a> ItemSetup<'a> {
             // Counter-clockwise as seen is the negative sense on a picture whose rows run down.
             let corners = if faces_eye { [a, c, b] } else { [a, b, c] };
             let window = PixelWindow::around(&corners, self.screen.size);
-            if doubled_area(&corners) > 0 && !window.is_empty() {
+            let is_drawn = window.from[1] < self.drawn.end && self.drawn.start < window.to[1];
+            if is_drawn && doubled_area(&corners) > 0 && !window.is_empty() {
                 pieces.push(FacePiece { corners, window, face, alpha: self.alpha });
             }
         }

@@ -24,7 +24,7 @@
 //! # Cost
 //! Shading takes two thirds of the time and more, shadows where solids are a tenth of that; the rest is triangles (three
 //! corners projected, three planes) and one depth test per covered sample. Eight samples per pixel take a third more time
-//! than one. Memory: 12 bytes per pixel for the picture; 150 bytes per visible triangle; for each band of 64 rows in work
+//! than one. Memory: 12 bytes per pixel for the picture; 150 bytes per visible triangle of a strip; for each band of 64 rows in work
 //! 12 bytes per pixel and 52 per triangle in it; for each thread 0.3 MiB, and up to 2 MiB more under transparent
 //! surfaces; a third of each texture and of the ground map for their coarser levels, and as much again of a texture with
 //! holes for its alpha; the shadow maps.
@@ -44,6 +44,7 @@ mod plane;
 pub(crate) mod raster;
 mod screen;
 mod shade;
+mod strips;
 mod texture;
 mod tile;
 mod visibility;
@@ -51,10 +52,11 @@ mod visibility;
 use rayon::prelude::*;
 
 use crate::cpu::band::{BandRows, draw_band};
-use crate::cpu::geometry::ScreenGeometry;
+use crate::cpu::geometry::GeometrySource;
 use crate::cpu::pattern::{EIGHT, FOUR, ONE, SamplePattern};
 use crate::cpu::screen::Screen;
 use crate::cpu::shade::Shader;
+use crate::cpu::strips::RowStrips;
 use crate::cpu::tile::TileContext;
 use crate::cpu::visibility::TILE;
 use crate::picture::Rendering;
@@ -120,13 +122,15 @@ pub fn render(
     list.check()?;
     check_memory(bytes_of(list, camera), "the picture", "draw a smaller one")?;
     let screen = Screen::new(camera);
-    let geometry = geometry(list, &screen)?;
+    let source = source(list, &screen)?;
+    // Before there are faces: what a map is made of takes as much memory as they do.
     let shadows = Shadows::new(list, camera)?;
     let shader = Shader::new(list, &screen, &shadows, quality.anisotropy.clamp(1, 16));
+    let strips = RowStrips::new(&source);
     Ok(match quality.samples {
-        SampleCount::One => draw(&screen, &geometry, &shader, &ONE, true),
-        SampleCount::Four => draw(&screen, &geometry, &shader, &FOUR, true),
-        SampleCount::Eight => draw(&screen, &geometry, &shader, &EIGHT, true),
+        SampleCount::One => draw(&source, &strips, &shader, &ONE, true),
+        SampleCount::Four => draw(&source, &strips, &shader, &FOUR, true),
+        SampleCount::Eight => draw(&source, &strips, &shader, &EIGHT, true),
     })
 }
 
@@ -149,37 +153,103 @@ fn bytes_of(list: &DrawList, camera: &Camera) -> u64 {
 pub fn render_buffers(list: &DrawList, camera: &Camera) -> Result<Rendering, CpuRenderError> {
     list.check()?;
     let screen = Screen::new(camera);
-    let geometry = geometry(list, &screen)?;
+    let source = source(list, &screen)?;
     let shadows = Shadows::default();
     let shader = Shader::new(list, &screen, &shadows, RenderQuality::default().anisotropy);
-    Ok(draw(&screen, &geometry, &shader, &EIGHT, false))
+    Ok(draw(&source, &RowStrips::new(&source), &shader, &EIGHT, false))
 }
 
-fn geometry(list: &DrawList, screen: &Screen) -> Result<ScreenGeometry, CpuRenderError> {
-    ScreenGeometry::new(list, screen).ok_or_else(|| CpuRenderError::TooManyTriangles(list.triangle_count()))
+fn source<'a>(list: &'a DrawList, screen: &'a Screen) -> Result<GeometrySource<'a>, CpuRenderError> {
+    GeometrySource::new(list, screen).ok_or_else(|| CpuRenderError::TooManyTriangles(list.triangle_count()))
 }
 
 fn draw<const N: usize>(
-    screen: &Screen,
-    geometry: &ScreenGeometry,
+    source: &GeometrySource,
+    strips: &RowStrips,
     shader: &Shader,
     pattern: &SamplePattern<N>,
     is_colored: bool,
 ) -> Rendering {
-    let frame = TileContext { screen, geometry, shader, pattern, is_colored };
+    let screen = source.screen();
     let [width, height] = screen.size;
     let (count, band) = (width as usize * height as usize, (width * TILE) as usize);
     let mut pixels = Pixels::filled(width, height, Srgba::WHITE);
     let mut depth_m = vec![f32::INFINITY; count];
     let mut features = vec![FeatureId::NONE; count];
-    pixels
-        .data_mut()
-        .par_chunks_mut(band)
-        .zip(depth_m.par_chunks_mut(band))
-        .zip(features.par_chunks_mut(band))
-        .enumerate()
-        .for_each(|(number, ((colors, depths_m), features))| {
-            draw_band(&frame, number as u32, BandRows { colors, depths_m, features });
-        });
+    for rows in &strips.rows {
+        let geometry = source.geometry(rows, &strips.chunk_rows);
+        let frame = TileContext { screen, geometry: &geometry, shader, pattern, is_colored };
+        let first = rows.start / TILE;
+        let strip = (rows.start * width) as usize..(rows.end * width) as usize;
+        pixels.data_mut()[strip.clone()]
+            .par_chunks_mut(band)
+            .zip(depth_m[strip.clone()].par_chunks_mut(band))
+            .zip(features[strip].par_chunks_mut(band))
+            .enumerate()
+            .for_each(|(number, ((colors, depths_m), features))| {
+                draw_band(&frame, first + number as u32, BandRows { colors, depths_m, features });
+            });
+    }
     Rendering { pixels, depth_m, features }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{Mat4, Vec3};
+
+    use super::*;
+    use sandtable_draw::list::{DepthLayer, DrawItem, DrawMesh, DrawVertex};
+    use sandtable_draw::material::{AlphaMode, Material};
+    use sandtable_mesh::sink::MeshSink;
+
+    /// Triangles of all sizes all over the picture, the later ones transparent.
+    fn confetti() -> DrawList {
+        let mut list = DrawList::default();
+        let mut state = 1u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as f32 / (1 << 24) as f32
+        };
+        for alpha in [AlphaMode::Opaque, AlphaMode::Blend] {
+            let mut mesh = DrawMesh::default();
+            for _ in 0..4000 {
+                let at = Vec3::new(random() - 0.5, random() + 0.5, random() - 0.5) * 200.0;
+                let size = 40.0 * random() * random();
+                let color = Srgba([random(), random(), random(), random()].map(|part| (part * 255.0) as u8));
+                let ids = [(); 3].map(|()| {
+                    let position = (at + Vec3::new(random(), random(), random()) * size).to_array();
+                    mesh.vertex(DrawVertex { position, normal: [0.0, 0.0, 1.0], uv: [0.0; 2], color })
+                });
+                mesh.triangle(ids);
+            }
+            let item = DrawItem {
+                triangles: 0..4000,
+                mesh: list.add_mesh(mesh),
+                material: list.add_material(Material { alpha, two_sided: true, ..Material::default() }),
+                world_from_mesh: Mat4::IDENTITY,
+                layer: DepthLayer::Solid,
+                feature: FeatureId(2 + u32::from(alpha == AlphaMode::Blend)),
+            };
+            list.items.push(item);
+        }
+        list
+    }
+
+    #[test]
+    fn strips_draw_the_same_picture_as_one() {
+        let list = confetti();
+        let camera = Camera::new(Vec3::ZERO, Vec3::Y, 0.9, (150, 330), (0.5, 1000.0)).expect("sound");
+        let (screen, shadows) = (Screen::new(&camera), Shadows::default());
+        let source = GeometrySource::new(&list, &screen).expect("few triangles");
+        let shader = Shader::new(&list, &screen, &shadows, 8);
+        let drawn = |strips: &RowStrips| draw(&source, strips, &shader, &FOUR, true);
+        let whole = drawn(&RowStrips::new(&source));
+        for (most, count) in [(1, 6), (3000, 2)] {
+            let strips = RowStrips::of(&source, most);
+            assert!(strips.rows.len() >= count, "{:?}", strips.rows);
+            let parts = drawn(&strips);
+            assert!(whole.pixels == parts.pixels && whole.features == parts.features, "{most}");
+            assert!(whole.depth_m == parts.depth_m, "{most}");
+        }
+    }
 }

@@ -9,10 +9,11 @@ use rayon::prelude::*;
 use crate::cpu::alpha::AlphaMask;
 use crate::mip_levels::smaller_levels;
 use crate::shadow::LightAxes;
+use crate::shadow::cut::cut_at;
 use sandtable_draw::list::{DepthLayer, DrawItem, DrawList};
 use sandtable_draw::material::AlphaMode;
 use sandtable_mesh::sink::VertexId;
-use sandtable_view::camera::Camera;
+use sandtable_view::camera::{Camera, ParallelFrame};
 
 /// How far outside the picture a corner still counts as seen, as a share of its half.
 const SEEN_MARGIN: f32 = 1.05;
@@ -42,7 +43,7 @@ pub struct ListTriangles {
     pub solids: Vec<CasterTriangle>,
     /// Of the ground.
     pub ground: Vec<CasterTriangle>,
-    /// The least and greatest depth of what is seen, in meters; above 0.
+    /// The least and greatest depth of what is seen, in meters; above 0 in perspective.
     pub depths_m: [f32; 2],
     /// The masks of the textures of solids, by texture.
     pub masks: BTreeMap<u32, AlphaMask>,
@@ -83,10 +84,10 @@ impl LightBox {
 }
 
 impl ListTriangles {
-    /// The memory that the triangles of a checked list take, with those along the lights of two maps; 0 where no solid casts.
+    /// The memory that the triangles of a checked list take, with those along the light of a map; 0 where no solid casts.
     pub fn bytes_of(list: &DrawList) -> u64 {
         const COLLECTED: u64 = 2;
-        const BYTES: u64 = COLLECTED * (size_of::<CasterTriangle>() + 2 * LightTriangles::BYTES) as u64;
+        const BYTES: u64 = COLLECTED * (size_of::<CasterTriangle>() + LightTriangles::BYTES) as u64;
         if !list.items.iter().any(|item| is_caster(list, item)) {
             return 0;
         }
@@ -186,8 +187,12 @@ fn add_triangles(
     }
 }
 
-/// The least and greatest depth of the corners that the camera sees, in meters.
+/// The least and greatest depth of what the camera sees, in meters: in perspective of corners, with parallel rays of
+/// triangles, since there one map must hold all of it; the first is the greater where it sees nothing.
 fn seen_depths(triangles: &[CasterTriangle], camera: &Camera) -> [f32; 2] {
+    if let Some(frame) = camera.parallel_frame() {
+        return depths_in_frame(triangles, camera, frame);
+    }
     let tan = camera.tan_half_fov() * SEEN_MARGIN;
     let (near, far) = camera.planes();
     let (right, up) = (camera.right() / tan.x, camera.up() / tan.y);
@@ -205,9 +210,52 @@ fn seen_depths(triangles: &[CasterTriangle], camera: &Camera) -> [f32; 2] {
         }
         range
     };
-    let wider = |a: [f32; 2], b: [f32; 2]| [a[0].min(b[0]), a[1].max(b[1])];
     let none = || [f32::MAX, 0.0];
     triangles.par_iter().with_min_len(1024).fold(none, widened).reduce(none, wider)
+}
+
+/// The wider of two ranges of depths.
+fn wider(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
+    [a[0].min(b[0]), a[1].max(b[1])]
+}
+
+/// The least and greatest depth of what parallel rays see of triangles; no plane cuts it off.
+fn depths_in_frame(
+    triangles: &[CasterTriangle],
+    camera: &Camera,
+    ParallelFrame { half_m, .. }: ParallelFrame,
+) -> [f32; 2] {
+    let half = half_m * SEEN_MARGIN;
+    let widened = |range: [f32; 2], triangle: &CasterTriangle| {
+        let seen = triangle.corners.map(|corner| {
+            let across = Vec2::new(corner.dot(camera.right()), corner.dot(camera.up()));
+            (across / half).extend(corner.dot(camera.forward()))
+        });
+        wider(range, depths_in_square(&seen))
+    };
+    let none = || [f32::MAX, f32::MIN];
+    triangles.par_iter().with_min_len(1024).fold(none, widened).reduce(none, wider)
+}
+
+/// The least and greatest Z of the part of a triangle between −1 and 1 along X and Y; the first is the greater where there
+/// is none.
+fn depths_in_square(corners: &[Vec3; 3]) -> [f32; 2] {
+    let range = |corners: &[Vec3]| {
+        corners.iter().fold([f32::MAX, f32::MIN], |range, corner| wider(range, [corner.z, corner.z]))
+    };
+    let [a, b, c] = corners.map(Vec3::truncate);
+    let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+    if low.min_element() >= -1.0 && high.max_element() <= 1.0 {
+        return range(corners);
+    }
+    if low.max_element() > 1.0 || high.min_element() < -1.0 {
+        return range(&[]);
+    }
+    let mut outline = corners.to_vec();
+    for (axis, sign) in [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)] {
+        outline = cut_at(&outline, |corner| 1.0 - sign * corner[axis]);
+    }
+    range(&outline)
 }
 
 fn masks(list: &DrawList, solids: &[DrawItem]) -> BTreeMap<u32, AlphaMask> {

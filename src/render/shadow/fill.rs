@@ -10,6 +10,7 @@ use crate::cpu::alpha::AlphaMask;
 use crate::cpu::raster::{PixelWindow, doubled_area, snapped};
 use crate::shadow::casters::{CasterTriangle, LightTriangles};
 use crate::shadow::coverage::cover_centers;
+use crate::shadow::cut::cut_at;
 use crate::shadow::levels::{KeptPages, MapSource, PageRange};
 use crate::shadow::{NOTHING, PAGE, ShadowLevel, ShadowPage, ShadowPurpose, ShadowTexel};
 use sandtable_draw::material::{AlphaMode, TextureWrap};
@@ -294,25 +295,13 @@ fn is_within_guard(corners: &[Vec2; 3], size: [u32; 2]) -> bool {
     corners.iter().all(|corner| corner.cmpge(low).all() && corner.cmple(high).all())
 }
 
-/// The part of a triangle that the rasterizer's coordinates can hold (Sutherland and Hodgman 1974).
+/// The part of a triangle that the rasterizer's coordinates can hold.
 fn cut(corners: [Vec2; 3], size: [u32; 2]) -> Vec<Vec2> {
     let low = Vec2::splat(-GUARD_TEXELS);
     let high = Vec2::new(size[0] as f32, size[1] as f32) + GUARD_TEXELS;
     let mut outline = corners.to_vec();
     for (axis, limit, sign) in [(0, low.x, 1.0), (1, low.y, 1.0), (0, high.x, -1.0), (1, high.y, -1.0)] {
-        let inside = |corner: Vec2| (corner[axis] - limit) * sign;
-        let mut kept = Vec::with_capacity(outline.len() + 1);
-        for (index, &here) in outline.iter().enumerate() {
-            let next = outline[(index + 1) % outline.len()];
-            let (from, to) = (inside(here), inside(next));
-            if from >= 0.0 {
-                kept.push(here);
-            }
-            if (from >= 0.0) != (to >= 0.0) {
-                kept.push(here + (next - here) * (from / (from - to)));
-            }
-        }
-        outline = kept;
+        outline = cut_at(&outline, |corner| (corner[axis] - limit) * sign);
     }
     outline
 }

@@ -64,8 +64,7 @@ impl ShadowMap {
             return Ok(None);
         }
         let bytes = stored as u64 * u64::from(PAGE * PAGE) * BYTES_PER_TEXEL;
-        // The other map is made at the same time.
-        check_memory(2 * bytes, "drawing shadow maps", "draw a smaller picture, or fewer solids")?;
+        check_memory(bytes, "drawing shadow maps", "draw a smaller picture, or fewer solids")?;
         let mut map = Self {
             eye: camera.eye(),
             forward: camera.forward(),

@@ -15,6 +15,8 @@
 //!   texel: [greatest height toward the light of a solid, of the displayed ground]
 //! ```
 //!
+//! A picture with parallel rays has pixels of one size, and so one level for all depths.
+//!
 //! `casters` turns triangles to the map's space, `levels` finds the pages, `fill` and `coverage` rasterize them with integer
 //! coverage, row of pages by row of pages in parallel; the greatest height does not depend on the order. [`filter`]
 //! reads them. Both renderers read the same map, so that they show the same shadows.
@@ -28,13 +30,14 @@
 //! for soft edges, and a graphics adapter could not do the same.
 //!
 //! # Cost
-//! Nothing where a list has no solids. Else, for the time of drawing, 44 bytes per triangle of a solid or of the ground
-//! and 60 for each map that it is near pages of, twice that while they are collected; 8 bytes per stored texel, and up to 4 more
+//! Nothing where a list has no solids. Else, while the maps are made, 44 bytes per triangle of a solid or of the ground
+//! and 60 if it is near pages of the map at work, twice that while they are collected; 8 bytes per stored texel, and up to 4 more
 //! while it is drawn, of which there are at most [`MOST_PAGES`] pages per map; these are asked for before they are drawn. A pixel costs
 //! one look-up per map where nothing is near, and from 9 to some 100 readings where a solid lies toward the light.
 
 mod casters;
 mod coverage;
+mod cut;
 mod fill;
 pub mod filter;
 mod levels;
@@ -186,8 +189,9 @@ impl Shadows {
             true => map(to_sun, SUN_TEXEL_PX, ShadowPurpose::Sun),
             false => Ok(None),
         };
-        let (sun, sky) = rayon::join(sun, || map(Vec3::Z, SKY_TEXEL_PX, ShadowPurpose::Contact));
-        Ok(Self { sun: sun?, sky: sky? })
+        // One after the other, each by all threads: what they are made of takes more memory than they do.
+        let sun = sun()?;
+        Ok(Self { sun, sky: map(Vec3::Z, SKY_TEXEL_PX, ShadowPurpose::Contact)? })
     }
 }
 
@@ -225,6 +229,8 @@ mod tests {
     use sandtable_draw::list::{DepthLayer, DrawItem, DrawMesh, DrawVertex, FeatureId};
     use sandtable_draw::material::Material;
     use sandtable_mesh::sink::MeshSink;
+    use sandtable_view::axes::DirectionAxes;
+    use sandtable_view::camera::ParallelFrame;
 
     fn rectangle(low: Vec2, high: Vec2, z: f32) -> DrawMesh {
         let mut mesh = DrawMesh::default();
@@ -265,6 +271,15 @@ mod tests {
         Camera::new(eye, Vec3::ZERO, 0.8, (1920, 1080), (1.0, 200_000.0)).expect("sound")
     }
 
+    /// The village as parallel rays see it, looking down by `pitch_deg`, `width_m` meters wide.
+    fn parallel(pitch_deg: f32, width_m: f32, stretch: f32) -> Camera {
+        let axes = DirectionAxes::new(0.3, pitch_deg.to_radians());
+        let half_m = Vec2::new(width_m, width_m / stretch * (1080.0 / 1920.0)) / 2.0;
+        let frame = ParallelFrame { half_m, dpi: 96.0 };
+        let eye = Vec3::new(40.0, 30.0, 0.0) - axes.forward * 900.0;
+        Camera::parallel(eye, &axes, frame, (1920, 1080), (0.5, 200_000.0)).expect("sound")
+    }
+
     fn of(list: &DrawList, camera: &Camera) -> Shadows {
         Shadows::new(list, camera).expect("memory")
     }
@@ -303,6 +318,64 @@ mod tests {
         assert_eq!(sun.sun(Vec3::new(6.0, 6.0, 8.0), Vec3::Z, ShadowReceiver::Solid), 1.0, "the roof itself");
         let edge = under + Vec3::X * 6.0;
         assert!((0.2..0.8).contains(&share(edge)), "{}", share(edge));
+    }
+
+    #[test]
+    fn parallel_rays_see_the_same_shadows_as_an_eye_does() {
+        let list = village(12);
+        let central = of(&list, &looking(Vec3::new(0.0, -80.0, 60.0)));
+        let central = central.sun.expect("solids");
+        let to_sun = list.lighting.to_sun;
+        let under = Vec3::new(6.0, 6.0, 8.0) - to_sun * (8.0 / to_sun.z);
+        for (pitch_deg, stretch) in [(90.0, 1.0), (60.0, 1.0), (45.0, std::f32::consts::SQRT_2), (5.0, 1.0)] {
+            for width_m in [150.0, 400.0] {
+                let shadows = of(&list, &parallel(pitch_deg, width_m, stretch));
+                let (sun, sky) = (shadows.sun.expect("solids"), shadows.sky.expect("solids"));
+                assert_eq!(sun.levels.len(), 1, "one size of pixel");
+                assert!(sun.levels[0].texel_m <= SUN_TEXEL_PX * width_m / 1920.0);
+                let differences = (0..60).map(|step| {
+                    let at = under + Vec3::new(step as f32 * 0.4 - 12.0, step as f32 * 0.1 - 3.0, 0.0);
+                    let [own, other] =
+                        [&sun, &central].map(|map| map.sun(at, Vec3::Z, ShadowReceiver::Ground));
+                    (own - other).abs()
+                });
+                // Texels of other sizes blur edges by other breadths.
+                let count = differences.filter(|difference| *difference > 0.02).count();
+                assert!(count < 12, "{count} of 60 places, {pitch_deg}° {width_m} m");
+                assert_eq!(sun.sun(under, Vec3::Z, ShadowReceiver::Ground), 0.0);
+                assert_eq!(sun.sun(under + Vec3::X * 20.0, Vec3::Z, ShadowReceiver::Ground), 1.0);
+                assert!(sky.contact(Vec3::new(6.0, 6.0, 0.0), ShadowReceiver::Ground) < 1.0);
+            }
+        }
+    }
+
+    /// No corner of the only roof is in view, and the ground has two triangles.
+    #[test]
+    fn parallel_rays_see_a_roof_wider_than_the_picture_and_what_lies_behind_the_eye() {
+        for height_m in [8.0, 5_000.0] {
+            let mut list = village(0);
+            let roof = rectangle(Vec2::splat(-500.0), Vec2::new(500.0, 30.0), height_m);
+            add(&mut list, roof, DepthLayer::Solid);
+            let camera = parallel(90.0, 100.0, 1.0);
+            let sky = of(&list, &camera).sky.expect("a solid");
+            assert!(sky.contact(Vec3::new(40.0, 20.0, height_m - 0.5), ShadowReceiver::Ground) < 1.0);
+            assert!(of(&list, &camera).sun.is_some());
+        }
+    }
+
+    #[test]
+    fn parallel_rays_that_see_no_solid_nor_its_shadow_make_no_map() {
+        let list = village(4);
+        let aside = parallel(90.0, 100.0, 1.0).moved(Vec3::X * 30_000.0);
+        let shadows = of(&list, &aside);
+        assert!(shadows.sun.is_none() && shadows.sky.is_none());
+        for far in [1e9, 1e30, f32::MAX, f32::INFINITY, f32::NAN] {
+            let mut list = village(1);
+            add(&mut list, rectangle(Vec2::splat(-far), Vec2::splat(far), 500.0), DepthLayer::Solid);
+            let shadows = of(&list, &parallel(40.0, 200.0, 1.0));
+            let stored = shadows.sun.map_or(0, |map| map.texels.len()) / (PAGE * PAGE) as usize;
+            assert!(stored <= MOST_PAGES, "{stored} pages at {far}");
+        }
     }
 
     #[test]

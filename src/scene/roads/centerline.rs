@@ -7,6 +7,7 @@ use crate::meant_number::Meaning;
 use crate::near;
 use crate::scene_findings::FeatureTable;
 use crate::sources::Sources;
+use crate::symbols::DeckLine;
 use crate::tag_notes::{NumberLimits, TagNotes};
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
@@ -31,6 +32,8 @@ pub struct Centerline {
     pub street: Street,
     /// The width of the unpaved strip on either side in meters; 0 for none.
     pub shoulder_m: f64,
+    /// The deck that carries it, once it is planned, where it is a bridge.
+    pub deck: Option<DeckLine>,
     /// Its feature.
     pub feature: FeatureId,
     /// The index of its table in the document.
@@ -103,6 +106,7 @@ fn centerline(
     Centerline {
         street,
         shoulder_m,
+        deck: None,
         feature: collected.add(
             FeatureKind::Road,
             attributes.name(road.name.as_deref()),
@@ -169,6 +173,7 @@ pub(in crate::roads) mod tests {
         Centerline {
             street,
             shoulder_m: 0.0,
+            deck: None,
             feature: FeatureId(2),
             table: 0,
             attributes: Attributes::default(),

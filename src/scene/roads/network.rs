@@ -37,7 +37,9 @@ const JOINTS: [RibbonSurface; 3] =
 
 /// Lays the roads that the ground carries on it.
 pub fn lay(all: &[Centerline], extent: &Rect, collected: &mut SceneBuilder) {
-    collected.symbols.extend(all.iter().filter_map(|road| LineSymbol::of(&road.street, road.feature)));
+    collected
+        .symbols
+        .extend(all.iter().filter_map(|road| LineSymbol::of(&road.street, road.deck.as_ref(), road.feature)));
     let with_shoulders =
         |road: &Centerline| road.street.with_more(2.0 * road.shoulder_m, RibbonSurface::Shoulder);
     let shouldered = all.iter().filter(|road| road.shoulder_m > 0.0);

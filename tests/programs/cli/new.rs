@@ -227,3 +227,32 @@ fn a_layer_without_properties_is_taken_for_what_its_name_says() {
         assert!(text.contains(wanted), "{wanted} in\n{text}");
     }
 }
+
+/// Ground that falls from 20 m in the north to −28 m in the south, and a coastline across it.
+#[test]
+fn a_coastline_through_ground_with_the_depths_of_the_sea_states_its_level() {
+    let scratch = Scratch::new();
+    let row = |row: u32| format!("{} ", 20.0 - f64::from(row)).repeat(49);
+    let rows: Vec<String> = (0..49).map(row).collect();
+    let grid = "ncols 49\nnrows 49\nxllcorner 500000\nyllcorner 4000000\ncellsize 10\n";
+    scratch.write("project/data/shelf.asc", format!("{grid}{}", rows.join("\n")));
+    let line = |kind: &str, north: f64| {
+        format!(
+            r#"{{"type":"FeatureCollection","crs":{{"type":"name","properties":{{"name":"urn:ogc:def:crs:EPSG::32616"}}}},
+            "features":[{{"type":"Feature","properties":{{"natural":"{kind}"}},"geometry":{{"type":"LineString",
+            "coordinates":[[500010,{north}],[500400,{north}]]}}}}]}}"#
+        )
+    };
+    for (kind, north, is_sea) in
+        [("coastline", 4_000_285.0, true), ("coastline", 4_900_000.0, false), ("cliff", 4_000_285.0, false)]
+    {
+        scratch.write("project/data/coast.geojson", line(kind, north));
+        let arguments = ["new", "scene", "--dem", "data/shelf.asc", "--crs", "EPSG:32616"];
+        let more = ["--vectors", "data/coast.geojson"];
+        run_in(&scratch.at("project"), &[&arguments[..], &more].concat()).ok();
+        assert_eq!(text_of(&scratch).contains("\nsea_level = 0\n"), is_sea, "{kind} {north}");
+        let check = run_in(&scratch.at("project"), &["check", "scene/scene.toml"]);
+        assert!(check.code == 0, "{check:?}");
+        std::fs::remove_dir_all(scratch.at("project/scene")).expect("removed");
+    }
+}
