@@ -38,6 +38,9 @@ pub enum CrsFault {
     /// A transform's result is not finite.
     #[error("the result is not finite")]
     NotFinite,
+    /// A transform's result is no longitude and latitude.
+    #[error("there is no such place on Earth")]
+    NoPlaceOnEarth,
     /// The projection library refuses it.
     #[error(transparent)]
     Proj(#[from] ProjError),
