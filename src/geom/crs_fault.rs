@@ -38,6 +38,9 @@ pub enum CrsFault {
     /// A transform's result is not finite.
     #[error("the result is not finite")]
     NotFinite,
+    /// The data state no system.
+    #[error("the data state no coordinate system, so that positions in them are two numbers")]
+    NoSystem,
     /// A transform's result is no longitude and latitude.
     #[error("there is no such place on Earth")]
     NoPlaceOnEarth,

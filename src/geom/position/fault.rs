@@ -37,6 +37,11 @@ impl PositionError {
         (!matches!(self.fault, PositionFault::Ambiguous { .. })).then_some(POSITION_FORMS)
     }
 
+    /// Whether the text is in none of the forms.
+    pub fn is_unlike_any(&self) -> bool {
+        self.fault == PositionFault::Form
+    }
+
     /// What is wrong.
     pub fn fault(&self) -> &PositionFault {
         &self.fault

@@ -35,6 +35,7 @@ use std::sync::OnceLock;
 use glam::DVec2;
 
 use crate::crs::{Crs, CrsError};
+use crate::crs_fault::CrsFault;
 use crate::mgrs::{GridCell, ZonePoint};
 
 pub use degrees::DegreeAxis;
@@ -73,6 +74,11 @@ impl Position {
         parsed(text).map(|stated| Self { stated }).map_err(|fault| PositionError::new(text, fault))
     }
 
+    /// The place at a longitude and latitude on WGS 84, degrees.
+    pub fn on_earth(lonlat: DVec2) -> Self {
+        Self { stated: StatedPlace::Degrees(lonlat) }
+    }
+
     /// Its numbers, where it is two numbers of a system that it does not name.
     pub fn numbers(&self) -> Option<DVec2> {
         match self.stated {
@@ -95,16 +101,23 @@ impl Position {
     /// # Errors
     /// As [`Crs::transform`].
     pub fn in_system(&self, crs: &Crs) -> Result<DVec2, CrsError> {
-        match self.stated {
-            StatedPlace::Numbers(at) => Ok(at),
-            StatedPlace::Degrees(place) => wgs84().transform(crs, place),
+        let (system, at) = match self.stated {
+            StatedPlace::Numbers(at) => return Ok(at),
+            StatedPlace::Degrees(place) => (wgs84().clone(), place),
             StatedPlace::Zone(point) | StatedPlace::Cell(GridCell { middle: point, .. }) => {
-                match (point.zone.crs(), point.lonlat()) {
-                    (Some(zone), _) => zone.transform(crs, point.at),
-                    (None, lonlat) => wgs84().transform(crs, lonlat.unwrap_or(DVec2::NAN)),
+                match point.zone.crs() {
+                    Some(zone) => (zone, point.at),
+                    None => (wgs84().clone(), point.lonlat().unwrap_or(DVec2::NAN)),
                 }
             }
-        }
+        };
+        system.transform(crs, at).map_err(|error| match error {
+            // The shift of a datum is not what is missing.
+            CrsError::Datum { from, to, .. } if crs.proj_text().is_empty() => {
+                CrsError::Transform { from, to, x: at.x, y: at.y, reason: Box::new(CrsFault::NoSystem) }
+            }
+            error => error,
+        })
     }
 }
 
@@ -138,8 +151,8 @@ pub fn parse_angle(text: &str, axis: DegreeAxis) -> Result<f64, PositionError> {
     parsed.map_err(|fault| PositionError::new(text, fault))
 }
 
-/// WGS 84, made once.
-pub(crate) fn wgs84() -> &'static Crs {
+/// WGS 84 longitude and latitude, made once.
+pub fn wgs84() -> &'static Crs {
     static WGS84: OnceLock<Crs> = OnceLock::new();
     WGS84.get_or_init(Crs::wgs84)
 }
