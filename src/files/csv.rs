@@ -26,12 +26,27 @@ pub fn numbered_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
 /// A quote opens a field at its beginning and closes it at its end, so that a separator within is text, and a mark of
 /// seconds of arc is one: `"36.3N, 84.2W",hill` has two fields, as has `36°16'37"N,84°12'54"W`.
 pub fn fields(line: &str) -> impl Iterator<Item = &str> {
-    let unquoted = |separator: char| match line.contains('"') {
-        false => line.contains(separator),
-        true => Fields { rest: Some(line), separator: Some(separator) }.nth(1).is_some(),
-    };
-    let separator = [',', ';'].into_iter().find(|&separator| unquoted(separator));
-    Fields { rest: Some(line), separator }
+    Fields { rest: Some(line), separator: separator_of(line) }
+}
+
+/// A comma or else a semicolon that stands outside quotes.
+fn separator_of(line: &str) -> Option<char> {
+    if !line.contains('"') {
+        return [',', ';'].into_iter().find(|&separator| line.contains(separator));
+    }
+    let is_either = |at: char| at == ',' || at == ';';
+    let (mut rest, mut found) = (line, None);
+    loop {
+        let end = match quoted(rest, is_either) {
+            Some((_, after)) => after.map(|after| rest.len() - after.len() - 1),
+            None => rest.find(is_either),
+        };
+        match end.map(|end| rest.split_at(end)) {
+            None => return found,
+            Some((_, after)) if after.starts_with(',') => return Some(','),
+            Some((_, after)) => (rest, found) = (&after[1..], Some(';')),
+        }
+    }
 }
 
 /// What is left of a line.

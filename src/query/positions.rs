@@ -262,8 +262,8 @@ fn unnamed(line: &str, first: &str) -> Result<Position, PositionLineFault> {
     match Position::parse(first) {
         Ok(position) => Ok(position),
         // What is wrong is said of a line that looks like a position; others have no numbers.
-        Err(_) if whole.is_unlike_any() => Err(PositionLineFault::Line(line.into())),
-        Err(error) if error.is_unlike_any() => Err(PositionLineFault::Position(whole)),
+        Err(_) if !whole.is_unlike_any() => Err(PositionLineFault::Position(whole)),
+        Err(error) if error.is_unlike_any() => Err(PositionLineFault::Line(line.into())),
         Err(error) => Err(PositionLineFault::Position(error)),
     }
 }
