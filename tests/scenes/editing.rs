@@ -211,7 +211,8 @@ fn places_are_written_in_the_system_of_the_file() {
     let at = DVec2::new(750_123.0, 4_017_500.5);
     editor.apply(&SceneEdit::add_label("Here", at.to_array(), "point"), &scene).expect("sound");
     let stated = **editor.document().labels[0].at.as_ref().expect("stated");
-    assert!((-85.0..-83.0).contains(&stated[0]) && (36.0..37.0).contains(&stated[1]), "{stated:?}");
+    let at = stated.numbers().expect("two numbers");
+    assert!((-85.0..-83.0).contains(&at.x) && (36.0..37.0).contains(&at.y), "{stated:?}");
     let built = editor.source().build(&|_| ()).expect("sound");
     let label = built.labels[0].ground.truncate().as_dvec2() + built.lattice.origin();
     assert!(label.distance(at) < 0.1, "{label} for {at}");
