@@ -64,7 +64,7 @@ pub struct HeightArguments {
 pub struct DatasetArguments {
     /// The elevation file or scene
     pub file: PathBuf,
-    /// System of positions that are two numbers: EPSG:4326 for longitude,latitude [default: the file's or scene's]
+    /// System of positions X,Y: EPSG:4326 for longitude,latitude [default: the file's or scene's]
     #[arg(long, value_name = "CRS", value_parser = Crs::parse)]
     pub crs: Option<Crs>,
     /// Print JSON

@@ -10,7 +10,8 @@ use serde_json::Value;
 use crate::error::CliError;
 use crate::output::warn;
 use sandtable_geom::crs::Crs;
-use sandtable_geom::position::{PositionForm, wgs84};
+use sandtable_geom::position::notation::PositionForm;
+use sandtable_geom::position::wgs84;
 use sandtable_query::positions::{PositionArgument, WrittenPosition, shift_note};
 
 /// How positions are printed.

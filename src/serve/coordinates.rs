@@ -127,7 +127,7 @@ impl Coordinates {
         let position = match Position::parse(text) {
             Ok(position) if position.numbers().is_none() => position,
             Err(error) if !error.is_unlike_any() => {
-                return Err(HttpError::wrong(format!("{what}: {}", error.with_forms())));
+                return Err(HttpError::wrong(format!("{what} {}", error.with_forms())));
             }
             Ok(_) | Err(_) => return Err(self.refusal(what, text)),
         };
@@ -206,8 +206,8 @@ mod tests {
             assert_eq!(lat_lng().positions(text, 9), Ok(vec![at]));
         }
         for (wrong, part) in [
-            ("16S 755447 4024162", "location 1: '16S 755447 4024162' can be read as zone 16, band S"),
-            ("36N,84W|16SGF50018", "location 2: '16SGF50018' is not a grid reference"),
+            ("16S 755447 4024162", "location 1 '16S 755447 4024162' can be read as zone 16, band S"),
+            ("36N,84W|16SGF50018", "location 2 '16SGF50018' is not a grid reference"),
             ("36.2°,84.1°", "can be read as 36.2N 84.1E, or as 84.1N 36.2E"),
         ] {
             let refusal = lat_lng().positions(wrong, 9).expect_err(wrong);

@@ -1,7 +1,8 @@
 //! Why a text is not a position.
 
 use crate::mgrs::GridFault;
-use crate::position::{DegreeAxis, POSITION_FORMS};
+use crate::position::POSITION_FORMS;
+use crate::position::degrees::DegreeAxis;
 
 /// A text that is not a position.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

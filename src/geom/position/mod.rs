@@ -23,10 +23,10 @@
 //! assert_eq!(place.side_m(), Some(100.0));
 //! ```
 
-mod degrees;
-mod fault;
+pub mod degrees;
+pub mod fault;
 mod grid;
-mod notation;
+pub mod notation;
 mod token;
 
 use std::str::FromStr;
@@ -37,13 +37,11 @@ use glam::DVec2;
 use crate::crs::{Crs, CrsError};
 use crate::crs_fault::CrsFault;
 use crate::mgrs::{GridCell, ZonePoint};
-
-pub use degrees::DegreeAxis;
-pub use fault::{PositionError, PositionFault};
-pub use notation::{PositionForm, spaced};
+use crate::position::degrees::DegreeAxis;
+use crate::position::fault::{PositionError, PositionFault};
 
 /// The forms of a position, for messages.
-pub const POSITION_FORMS: &str = "write two numbers (750000,4018000), a grid reference (16S GF 50000 18000), UTM (16N 750000 4018000), or \
+pub const POSITION_FORMS: &str = "write X,Y, two numbers with a comma between (750000,4018000), a grid reference (16S GF 50000 18000), UTM (16N 750000 4018000), or \
      latitude and longitude with their letters (36.277N 84.215W, 36°16'37\"N 84°12'54\"W)";
 
 /// The longest text of a position in bytes; the longest that anyone writes has half of it.

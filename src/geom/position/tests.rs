@@ -1,5 +1,8 @@
+//! Positions as people write them: every form, what is refused, and the way back.
+
 use super::*;
 use crate::mgrs::tests::places;
+use crate::position::notation::{PositionForm, spaced};
 
 fn lonlat(text: &str) -> DVec2 {
     let position = Position::parse(text).unwrap_or_else(|error| panic!("{error}"));
@@ -242,7 +245,7 @@ fn every_form_comes_back_at_ten_thousand_places() {
 }
 
 #[test]
-fn references_are_read_and_written_as_an_independent_program_does_at_ten_thousand_places() {
+fn references_are_read_as_an_independent_program_does_at_ten_thousand_places() {
     for (index, place) in places().enumerate() {
         let theirs = geoconvert::LatLon::create(place.y, place.x).expect("in range");
         let digits = (index % 6) as i32;
