@@ -66,10 +66,10 @@ pub enum PositionLineFault {
     Line(String),
     /// A line holds a position that is wrong.
     #[error("{}", .0.with_forms())]
-    Position(PositionError),
+    Position(Box<PositionError>),
     /// A position has no coordinates in the system.
     #[error(transparent)]
-    System(#[from] CrsError),
+    System(Box<CrsError>),
 }
 
 /// A file that does not give a line.
@@ -233,12 +233,18 @@ impl PositionColumns {
                 unnamed(line, field(0))?
             }
         };
-        Ok(WrittenPosition::brought(&position, crs)?)
+        WrittenPosition::brought(&position, crs).map_err(|error| PositionLineFault::System(Box::new(error)))
+    }
+}
+
+impl PositionLineFault {
+    fn position(error: PositionError) -> Self {
+        Self::Position(Box::new(error))
     }
 }
 
 fn parsed(text: &str) -> Result<Position, PositionLineFault> {
-    Position::parse(text).map_err(PositionLineFault::Position)
+    Position::parse(text).map_err(PositionLineFault::position)
 }
 
 /// The place of two angles in columns of their own; `None` where they are not angles.
@@ -252,7 +258,7 @@ fn named_angles(x: &str, y: &str, axes: NamedAxes) -> Option<Result<Position, Po
     }
     let longitude = parse_angle(x, DegreeAxis::Longitude);
     let place = longitude.and_then(|x| Ok(DVec2::new(x, parse_angle(y, DegreeAxis::Latitude)?)));
-    Some(place.map(Position::on_earth).map_err(PositionLineFault::Position))
+    Some(place.map(Position::on_earth).map_err(PositionLineFault::position))
 }
 
 /// The position of a line without a header: all of it, or its first field.
@@ -264,9 +270,9 @@ fn unnamed(line: &str, first: &str) -> Result<Position, PositionLineFault> {
     match Position::parse(first) {
         Ok(position) => Ok(position),
         // What is wrong is said of a line that looks like a position; others have no numbers.
-        Err(_) if !whole.is_unlike_any() => Err(PositionLineFault::Position(whole)),
+        Err(_) if !whole.is_unlike_any() => Err(PositionLineFault::position(whole)),
         Err(error) if error.is_unlike_any() => Err(PositionLineFault::Line(line.into())),
-        Err(error) => Err(PositionLineFault::Position(error)),
+        Err(error) => Err(PositionLineFault::position(error)),
     }
 }
 
