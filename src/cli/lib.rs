@@ -27,6 +27,7 @@ mod output;
 mod output_format;
 mod pick;
 mod plan;
+mod positions;
 mod profile;
 mod progress;
 mod remote;

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use crate::error::CliError;
 use crate::options::{ChartArguments, DatasetArguments};
 use crate::output::{print, print_lines, row};
+use crate::positions::{PositionPrinter, PositionsArguments, placed_one};
 use crate::values::{RaisedPosition, number, raised_position};
 use sandtable_annotate::chart_sight::paint;
 use sandtable_annotate::nice;
@@ -27,11 +28,11 @@ use sandtable_terrain::sight::rise::Rise;
 pub struct LosArguments {
     #[command(flatten)]
     pub dataset: DatasetArguments,
-    /// The position of the observer, and meters above the ground there
-    #[arg(long, value_name = "X,Y[,H]", allow_hyphen_values = true, value_parser = raised_position)]
+    /// The position of the observer in any form, and meters above the ground there
+    #[arg(long, value_name = "POSITION[,H]", allow_hyphen_values = true, value_parser = raised_position)]
     pub from: RaisedPosition,
-    /// The position of the target, and meters above the ground there
-    #[arg(long, value_name = "X,Y[,H]", allow_hyphen_values = true, value_parser = raised_position)]
+    /// The position of the target in any form, and meters above the ground there
+    #[arg(long, value_name = "POSITION[,H]", allow_hyphen_values = true, value_parser = raised_position)]
     pub to: RaisedPosition,
     /// Meters of the observer's eye above the ground, where --from states none
     #[arg(long, value_name = "METERS", default_value = "2", allow_negative_numbers = true, value_parser = number::<f64>(.., "write a number"))]
@@ -46,6 +47,8 @@ pub struct LosArguments {
     #[arg(long, conflicts_with = "refraction")]
     pub flat: bool,
     #[command(flatten)]
+    pub positions: PositionsArguments,
+    #[command(flatten)]
     pub chart: ChartArguments,
 }
 
@@ -53,16 +56,21 @@ pub fn run(arguments: &LosArguments) -> Result<(), CliError> {
     arguments.chart.check(&arguments.dataset.file)?;
     let dataset = arguments.dataset.open()?;
     let crs = arguments.dataset.crs(&dataset);
-    let at = [arguments.from.at, arguments.to.at];
+    let printer = arguments.positions.printer(&crs)?;
+    let (from, to) = (&arguments.from, &arguments.to);
+    let at = [placed_one("--from", &from.at, &crs)?, placed_one("--to", &to.at, &crs)?];
     let reach = GroundReach { crs: &crs, at: &at, around_m: 0.0 };
     let ground = arguments.dataset.ground(&dataset, &reach)?;
-    let end = |position: RaisedPosition, default_m: f64| SightEnd {
-        at: position.at,
-        above_m: position.above_m.unwrap_or(default_m),
+    let end = |at: DVec2, stated_m: Option<f64>, default_m: f64| SightEnd {
+        at,
+        above_m: stated_m.unwrap_or(default_m),
     };
     let query = SightQuery {
-        ends: [end(arguments.from, arguments.observer_height), end(arguments.to, arguments.target_height)],
-        crs,
+        ends: [
+            end(at[0], from.above_m, arguments.observer_height),
+            end(at[1], to.above_m, arguments.target_height),
+        ],
+        crs: crs.clone(),
         curvature: curvature(arguments.flat, arguments.refraction),
     };
     let report = SightReport::new(&ground, query)?;
@@ -71,7 +79,11 @@ pub fn run(arguments: &LosArguments) -> Result<(), CliError> {
         let chart = report.chart(&ground, arguments.dataset.chart_title("Line of sight"))?;
         disk::write_picture(path, &paint((size.width, size.height), &chart))?;
     }
-    if arguments.dataset.json { print(&format!("{}\n", json(&report))) } else { print_lines(&text(&report)) }
+    if arguments.dataset.json {
+        print(&format!("{}\n", json(&report, printer)))
+    } else {
+        print_lines(&text(&report, printer))
+    }
 }
 
 /// The curvature that `--flat` and `--refraction` state.
@@ -83,11 +95,20 @@ pub fn curvature(flat: bool, refraction: Option<f64>) -> Curvature {
     }
 }
 
-fn json(report: &SightReport) -> Value {
-    let place = |Blocker { at, distance_m, height_m }: Blocker| json!({"x": at.x, "y": at.y, "distance_m": distance_m, "height_m": height_m});
+fn json(report: &SightReport, printer: PositionPrinter<'_>) -> Value {
+    let with_position = |mut object: Value, at: DVec2| {
+        printer.add_to(&mut object, at);
+        object
+    };
+    let place = |Blocker { at, distance_m, height_m }: Blocker| {
+        with_position(json!({"x": at.x, "y": at.y, "distance_m": distance_m, "height_m": height_m}), at)
+    };
     let [observer, target] = report.ends.map(|end: GroundedEnd| {
         let GroundedEnd { at, ground_m, above_m } = end;
-        json!({"x": at.x, "y": at.y, "ground_m": ground_m, "above_m": above_m, "height_m": end.height_m()})
+        let height_m = end.height_m();
+        let object =
+            json!({"x": at.x, "y": at.y, "ground_m": ground_m, "above_m": above_m, "height_m": height_m});
+        with_position(object, at)
     });
     let grazing = |rise: Option<Rise>| rise.map(|rise| place(rise.grazing));
     let rise_m = |rise: Option<Rise>| rise.map(|rise| rise.rise_m);
@@ -109,8 +130,8 @@ fn json(report: &SightReport) -> Value {
     })
 }
 
-fn text(report: &SightReport) -> Vec<String> {
-    let position = |at: DVec2| format_position(&report.query.crs, at);
+fn text(report: &SightReport, printer: PositionPrinter<'_>) -> Vec<String> {
+    let position = |at: DVec2| printer.row(at, || format_position(&report.query.crs, at));
     let mut lines = vec![match &report.blocker {
         None => "visible".to_owned(),
         Some(Blocker { at, distance_m, height_m }) => format!(

@@ -12,9 +12,9 @@ use sandtable_dem::formats::raw_layout::RawLayout;
 use sandtable_dem::hints::DemOptions;
 use sandtable_files::disk;
 use sandtable_geom::crs::Crs;
-use sandtable_geom::datum_shift::DatumShift;
 use sandtable_query::dataset::{Dataset, DatasetOptions};
 use sandtable_query::ground::QueriedGround;
+use sandtable_query::positions::shift_note;
 use sandtable_query::windowed_elevation::GroundReach;
 use sandtable_raster::height_datum::HeightDatum;
 use sandtable_sheet::picture::PictureSize;
@@ -64,7 +64,7 @@ pub struct HeightArguments {
 pub struct DatasetArguments {
     /// The elevation file or scene
     pub file: PathBuf,
-    /// System of positions: EPSG:4326 for longitude,latitude [default: the file's or scene's]
+    /// System of positions X,Y: EPSG:4326 for longitude,latitude [default: the file's or scene's]
     #[arg(long, value_name = "CRS", value_parser = Crs::parse)]
     pub crs: Option<Crs>,
     /// Print JSON
@@ -136,12 +136,8 @@ impl DatasetArguments {
     pub fn crs(&self, dataset: &Dataset) -> Crs {
         let own = dataset.crs();
         let Some(stated) = &self.crs else { return own };
-        // A shift that is not known is an error of the query.
-        if let Ok(shift @ DatumShift::ByWgs84 { .. }) = stated.datum_shift_to(&own) {
-            let (from, to, most_m) = (stated.name(), own.name(), shift.accuracy_m().unwrap_or_default());
-            warn(&format!(
-                "note: positions are brought from {from} to {to} by the datum shift {shift}, good to about {most_m} m"
-            ));
+        if let Some(note) = shift_note(stated, &own) {
+            warn(&format!("note: {note}"));
         }
         stated.clone()
     }

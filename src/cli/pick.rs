@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 use crate::error::CliError;
 use crate::options::SceneArguments;
 use crate::output::{print, print_lines, row};
+use crate::positions::{PositionPrinter, PositionsArguments};
 use crate::progress::StepTimer;
 use crate::render::find_camera;
 use crate::values::{picture_size, pixel};
@@ -34,6 +35,8 @@ pub struct PickArguments {
     /// Print JSON
     #[arg(long)]
     pub json: bool,
+    #[command(flatten)]
+    pub positions: PositionsArguments,
 }
 
 pub fn run(arguments: &PickArguments) -> Result<(), CliError> {
@@ -41,6 +44,7 @@ pub fn run(arguments: &PickArguments) -> Result<(), CliError> {
     let progress = |step| steps.begin(step);
     let scene = open_scene(&arguments.scene.scene, &arguments.scene.access.allow, &progress)?;
     let view = find_camera(&scene, arguments.camera.as_deref())?;
+    let printer = arguments.positions.printer(&scene.crs)?;
     let size = arguments.size.unwrap_or_else(|| PictureSize::of(&scene, view));
     let PictureSize { width, height } = size;
     if let Some([x, y]) = arguments.pixel.iter().find(|[x, y]| *x >= width || *y >= height) {
@@ -55,36 +59,51 @@ pub fn run(arguments: &PickArguments) -> Result<(), CliError> {
     let picked = arguments.pixel.iter().zip(&places);
     if arguments.json {
         let places: Vec<Value> =
-            picked.map(|(pixel, place)| as_json(&scene, *pixel, place.as_ref())).collect();
+            picked.map(|(pixel, place)| as_json(&scene, *pixel, place.as_ref(), printer)).collect();
         return print(&format!("{:#}\n", Value::from(places)));
     }
-    let lines: Vec<String> = picked.flat_map(|(pixel, place)| text(&scene, *pixel, place.as_ref())).collect();
+    let lines: Vec<String> =
+        picked.flat_map(|(pixel, place)| text(&scene, *pixel, place.as_ref(), printer)).collect();
     print_lines(&lines)
 }
 
-fn text(scene: &SceneModel, [x, y]: [u32; 2], place: Option<&PickedPlace>) -> Vec<String> {
+fn text(
+    scene: &SceneModel,
+    [x, y]: [u32; 2],
+    place: Option<&PickedPlace>,
+    printer: PositionPrinter<'_>,
+) -> Vec<String> {
     let Some(PickedPlace { at, elevation_m, distance_m, feature }) = place else {
         return vec![format!("{x},{y}"), row(10, "shows", "nothing of the scene")];
     };
     vec![
         format!("{x},{y}"),
         row(10, "shows", scene.feature_name(*feature)),
-        row(10, "at", format!("{}, {} in {}", fixed(at.x, 1), fixed(at.y, 1), scene.crs.name())),
+        row(10, "at", {
+            printer.row(*at, || format!("{}, {} in {}", fixed(at.x, 1), fixed(at.y, 1), scene.crs.name()))
+        }),
         row(10, "elevation", format!("{} m", fixed(*elevation_m, 2))),
         row(10, "distance", format!("{distance_m:.1} m")),
     ]
 }
 
-fn as_json(scene: &SceneModel, pixel: [u32; 2], place: Option<&PickedPlace>) -> Value {
-    match place {
-        None => json!({ "pixel": pixel, "feature": null }),
-        Some(PickedPlace { at, elevation_m, distance_m, feature }) => json!({
-            "pixel": pixel,
-            "feature": scene.feature_name(*feature),
-            "at": [at.x, at.y],
-            "crs": scene.crs.name(),
-            "elevation_m": elevation_m,
-            "distance_m": distance_m,
-        }),
-    }
+fn as_json(
+    scene: &SceneModel,
+    pixel: [u32; 2],
+    place: Option<&PickedPlace>,
+    printer: PositionPrinter<'_>,
+) -> Value {
+    let Some(PickedPlace { at, elevation_m, distance_m, feature }) = place else {
+        return json!({ "pixel": pixel, "feature": null });
+    };
+    let mut object = json!({
+        "pixel": pixel,
+        "feature": scene.feature_name(*feature),
+        "at": [at.x, at.y],
+        "crs": scene.crs.name(),
+        "elevation_m": elevation_m,
+        "distance_m": distance_m,
+    });
+    printer.add_to(&mut object, *at);
+    object
 }

@@ -149,8 +149,10 @@ fn run_heights(arguments: &PlanHeightsArguments) -> Result<(), CliError> {
     if surface != Surface::Source {
         dataset.note_ground(&queried.dataset)?;
     }
+    // What is gathered has positions in the system in which they were planned.
+    let crs = Some(&queried.crs).filter(|crs| **crs != Crs::local());
     let planned = HeightsArguments {
-        dataset: planned(dataset, folder),
+        dataset: PlannedDataset::new(&dataset.file, &dataset.options(), crs, folder),
         points: written(points, folder),
         surface: PlannedWord(surface),
         interpolation: PlannedWord(query.interpolation),

@@ -4,9 +4,9 @@ use std::ops::RangeBounds;
 use std::str::FromStr;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use glam::DVec2;
 
 use sandtable_base::message::choice::Choice;
+use sandtable_query::positions::PositionArgument;
 use sandtable_sheet::picture::PictureSize;
 
 /// Parses one of the words of a [`Choice`].
@@ -56,30 +56,58 @@ pub fn number_pair(text: &str) -> Result<[f64; 2], &'static str> {
 }
 
 /// One or more positions.
-pub type PositionList = Vec<DVec2>;
+pub type PositionList = Vec<PositionArgument>;
 
-/// Parses one or more positions with spaces between.
-pub fn positions(text: &str) -> Result<PositionList, &'static str> {
-    let positions: Option<PositionList> =
-        text.split_whitespace().map(|position| number_pair(position).ok().map(DVec2::from)).collect();
-    let positions = positions.filter(|positions| !positions.is_empty());
-    positions.ok_or("write positions as X,Y, for example 731500,4017200")
+/// Parses a position in any form.
+pub fn position(text: &str) -> Result<PositionArgument, String> {
+    PositionArgument::parse(text).map_err(|error| error.with_forms())
+}
+
+/// Parses one position, or several with semicolons or spaces between.
+pub fn positions(text: &str) -> Result<PositionList, String> {
+    let whole = match PositionArgument::parse(text) {
+        Ok(position) => return Ok(vec![position]),
+        Err(error) => error,
+    };
+    let parts: Vec<&str> = match text.contains(';') {
+        true => text.split(';').map(str::trim).filter(|part| !part.is_empty()).collect(),
+        false => text.split_whitespace().collect(),
+    };
+    let positions: Result<PositionList, _> = parts.iter().map(|part| PositionArgument::parse(part)).collect();
+    match positions {
+        Ok(positions) if !positions.is_empty() => Ok(positions),
+        Err(error) if whole.is_unlike_any() => Err(error.with_forms()),
+        _ => Err(whole.with_forms()),
+    }
 }
 
 /// A position, and meters above the ground there.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RaisedPosition {
-    pub at: DVec2,
+    pub at: PositionArgument,
     /// Meters above the ground, where they are stated.
     pub above_m: Option<f64>,
 }
 
 /// Parses a position with or without meters above the ground.
-pub fn raised_position(text: &str) -> Result<RaisedPosition, &'static str> {
-    match numbers(text).as_deref() {
-        Some(&[x, y]) => Ok(RaisedPosition { at: DVec2::new(x, y), above_m: None }),
-        Some(&[x, y, above_m]) => Ok(RaisedPosition { at: DVec2::new(x, y), above_m: Some(above_m) }),
-        _ => Err("write a position as X,Y or, with meters above the ground, X,Y,H"),
+pub fn raised_position(text: &str) -> Result<RaisedPosition, String> {
+    let raised = text.rsplit_once(',').and_then(|(at, above)| {
+        let above_m = above.trim().parse::<f64>().ok().filter(|above_m| above_m.is_finite())?;
+        Some(PositionArgument::parse(at).map(|at| RaisedPosition { at, above_m: Some(above_m) }))
+    });
+    let forms = "; meters above the ground may follow, after a comma";
+    match (PositionArgument::parse(text), raised) {
+        (Ok(_), Some(Ok(RaisedPosition { at, above_m }))) => Err(format!(
+            "'{text}' can be read as one position with decimal commas, or as {at} and {} m above the ground there; write \
+             decimal points",
+            above_m.unwrap_or_default()
+        )),
+        (Ok(at), _) => Ok(RaisedPosition { at, above_m: None }),
+        (Err(_), Some(Ok(raised))) => Ok(raised),
+        (Err(whole), Some(Err(error))) if whole.is_unlike_any() || error.help().is_none() => {
+            Err(error.with_forms() + forms)
+        }
+        (Err(whole), _) => Err(whole.with_forms() + forms),
     }
 }
 
@@ -88,19 +116,41 @@ mod tests {
     use super::*;
 
     #[test]
-    fn positions_are_two_finite_numbers_and_ends_may_have_a_height() {
-        assert_eq!(positions("1.5,-2e3"), Ok(vec![DVec2::new(1.5, -2e3)]));
-        let two = vec![DVec2::new(-84.1, 36.2), DVec2::new(-84.0, 36.0)];
-        assert_eq!(positions("-84.1,36.2 -84,36"), Ok(two));
-        assert_eq!(
-            raised_position("1,2,30"),
-            Ok(RaisedPosition { at: DVec2::new(1.0, 2.0), above_m: Some(30.0) })
-        );
-        assert_eq!(raised_position("1,2"), Ok(RaisedPosition { at: DVec2::new(1.0, 2.0), above_m: None }));
-        for wrong in ["", "1", "1,2,3,4", "a,b", "NaN,1", "1,inf", "1;2"] {
+    fn positions_may_be_several_and_ends_may_have_a_height() {
+        let all =
+            |texts: &[&str]| texts.iter().map(|text| position(text).expect("sound")).collect::<Vec<_>>();
+        for (text, expected) in [
+            ("1.5,-2e3", &["1.5,-2e3"][..]),
+            ("-84.1,36.2 -84,36", &["-84.1,36.2", "-84,36"]),
+            ("16S GF 500 180", &["16S GF 500 180"]),
+            ("16SGF500180 16SGF510180", &["16SGF500180", "16SGF510180"]),
+            ("16S GF 500 180; 16N 751000 4018000;", &["16S GF 500 180", "16N 751000 4018000"]),
+            ("36.2N,84.1W 36N,84W", &["36.2N,84.1W", "36N,84W"]),
+            ("36.2N 84.1W; 36N 84W", &["36.2N 84.1W", "36N 84W"]),
+        ] {
+            assert_eq!(positions(text), Ok(all(expected)), "{text}");
+        }
+        for (text, at, above_m) in [
+            ("1,2,30", "1,2", Some(30.0)),
+            ("1,2", "1,2", None),
+            ("16S GF 500 180, 2.5", "16S GF 500 180", Some(2.5)),
+            ("16SGF55,30", "16SGF55", Some(30.0)),
+            ("16N 750000,4018000", "16N 750000,4018000", None),
+            ("16N 750000,4018000,30", "16N 750000,4018000", Some(30.0)),
+            ("36.2N,84.1W,30", "36.2N,84.1W", Some(30.0)),
+            ("36.2N,84.1W", "36.2N,84.1W", None),
+        ] {
+            let raised = raised_position(text).unwrap_or_else(|error| panic!("{error}"));
+            assert_eq!(raised, RaisedPosition { at: position(at).expect("sound"), above_m }, "{text}");
+        }
+        let ambiguous = raised_position("N48,2 E16,3").expect_err("in two ways");
+        assert!(ambiguous.contains("decimal commas, or as N48,2 E16 and 3 m"), "{ambiguous}");
+        for wrong in ["", "1", "1,2,3,4", "a,b", "NaN,1", "1,inf", "1;2", "16S 755447 4024162,30"] {
             assert!(positions(wrong).is_err(), "{wrong}");
             assert!(raised_position(wrong).is_err(), "{wrong}");
         }
+        let both = raised_position("16S 755447 4024162,30").expect_err("in two ways");
+        assert!(both.contains("band S") && both.contains("southern hemisphere"), "{both}");
     }
 
     #[test]

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::slice;
 
 use clap::Args;
+use glam::DVec2;
 use serde_json::json;
 
 use crate::error::CliError;
@@ -13,13 +14,14 @@ use crate::los::curvature;
 use crate::options::DatasetArguments;
 use crate::output::{print, print_lines, row};
 use crate::output_format::raster_format;
+use crate::positions::{PositionsArguments, placed_one};
 use crate::progress::StepTimer;
-use crate::values::{number, number_pair};
+use crate::values::{number, number_pair, position};
 use sandtable_dem::dem_format::DemFormat;
 use sandtable_files::{disk, raster_file};
-use sandtable_geom::crs::Crs;
 use sandtable_query::dataset::{QueryError, transform};
 use sandtable_query::ground::QueriedGround;
+use sandtable_query::positions::PositionArgument;
 use sandtable_query::viewshed::{ViewshedSummary, raster, windows};
 use sandtable_query::windowed_elevation::GroundReach;
 use sandtable_sheet::viewshed_map::{SheetText, viewshed_map};
@@ -36,9 +38,11 @@ const HEIGHT_ADVICE: &str = "write meters as a number from 0 to 100000";
 pub struct ViewshedArguments {
     #[command(flatten)]
     pub dataset: DatasetArguments,
-    /// The position of the observer
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = number_pair)]
-    pub at: [f64; 2],
+    /// The position of the observer: X,Y, a grid reference, UTM, or latitude and longitude with letters
+    #[arg(long, value_name = "POSITION", allow_hyphen_values = true, value_parser = position)]
+    pub at: PositionArgument,
+    #[command(flatten)]
+    pub positions: PositionsArguments,
     #[command(flatten)]
     pub conditions: SightConditions,
     /// Look only between two azimuths, in degrees clockwise from north
@@ -81,14 +85,16 @@ pub fn run(arguments: &ViewshedArguments) -> Result<(), CliError> {
     steps.begin("reading the ground");
     let dataset = arguments.dataset.open()?;
     let crs = arguments.dataset.crs(&dataset);
+    let printer = arguments.positions.printer(&crs)?;
+    let at = placed_one("--at", &arguments.at, &crs)?;
     let around_m = arguments.conditions.range.unwrap_or(f64::INFINITY);
-    let reach = GroundReach { crs: &crs, at: &[arguments.at.into()], around_m };
+    let reach = GroundReach { crs: &crs, at: &[at], around_m };
     let ground = arguments.dataset.ground(&dataset, &reach)?;
-    let options = options(arguments, &crs, &ground.crs)?;
+    let options = options(arguments, transform("the observer at", &crs, &ground.crs, at)?);
     steps.begin("looking around");
     let viewshed = viewshed(&ground.lattice, &options).map_err(|answer| QueryError::NoGround {
         what: "the observer at".into(),
-        at: arguments.at.into(),
+        at,
         answer,
     })?;
     let summary = ViewshedSummary::new(&ground.lattice, &viewshed);
@@ -98,9 +104,12 @@ pub fn run(arguments: &ViewshedArguments) -> Result<(), CliError> {
     }
     steps.finish();
     if arguments.dataset.json {
-        print(&format!("{:#}\n", json(arguments, &options, &summary)))
+        let mut answer = json(arguments, &options, &summary);
+        printer.add_to(&mut answer["observer"], at);
+        print(&format!("{answer:#}\n"))
     } else {
-        print_lines(&text(arguments, &summary))
+        let observer = printer.text(at).map(|position| row(9, "observer", position));
+        print_lines(&text(arguments, &summary, observer))
     }
 }
 
@@ -112,15 +121,15 @@ fn output<'a>(path: &'a Path, input: &PathBuf) -> Result<ViewshedOutput<'a>, Cli
     Ok(ViewshedOutput::Raster(path, raster_format(path, slice::from_ref(input))?))
 }
 
-fn options(arguments: &ViewshedArguments, crs: &Crs, ground: &Crs) -> Result<ViewshedOptions, QueryError> {
-    let at = transform("the observer at", crs, ground, arguments.at.into())?;
-    Ok(ViewshedOptions {
+/// The options for an observer at `at` in the ground's system.
+fn options(arguments: &ViewshedArguments, at: DVec2) -> ViewshedOptions {
+    ViewshedOptions {
         observer: SightEnd { at, above_m: arguments.conditions.observer_height },
         target_above_m: arguments.conditions.target_height,
         range_m: arguments.conditions.range.unwrap_or(f64::INFINITY),
         sector: arguments.sector.map_or(Sector::ALL, |[from, to]| Sector::between(from, to)),
         curvature: curvature(arguments.conditions.flat, Some(arguments.conditions.refraction)),
-    })
+    }
 }
 
 fn write(
@@ -188,9 +197,10 @@ fn json(
     })
 }
 
-fn text(arguments: &ViewshedArguments, summary: &ViewshedSummary) -> Vec<String> {
+fn text(arguments: &ViewshedArguments, summary: &ViewshedSummary, observer: Option<String>) -> Vec<String> {
     let ViewshedCounts { visible, hidden, no_data, beyond } = summary.counts;
     let mut lines: Vec<String> = arguments.output.iter().map(|path| path.display().to_string()).collect();
+    lines.extend(observer);
     let (km2, percent) = (summary.visible_m2 / 1e6, summary.visible_share * 100.0);
     lines.push(row(9, "in sight", format!("{km2:.3} km², {percent:.2} % of what was looked at")));
     let posts = format!("{visible} visible, {hidden} hidden, {no_data} without data, {beyond} beyond");

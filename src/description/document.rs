@@ -62,6 +62,7 @@ use crate::words::{
     CameraProjection, GridName, HeightEncodingWord, LabelKind, PaperName, SheetLayout, StylePreset, TableTop,
 };
 use sandtable_geom::crs::Crs;
+use sandtable_geom::position::Position;
 
 table! {
     /// A whole scene file.
@@ -172,7 +173,7 @@ table! {
         sea_level: Option<f64> = key::number(Bounds::ELEVATION, "m"), otherwise "none: level ground at 0 m is sea, by `infer_water`";
         /// Points around the part that the scene is made of, such as two corners of a map. Of a large
         /// model only that part is read.
-        extent: Option<Stated<Vec<[f64; 2]>>> = key::points(2),
+        extent: Option<Stated<Vec<Position>>> = key::points(2),
             otherwise "the whole model; of one in degrees or turned against north, the largest part with straight edges";
         /// Distance between samples of a file without georeference; its south-west sample is at (0, 0). Of tiles whose
         /// cells do not nest: the cell that all are resampled to, in units of their system.
@@ -254,7 +255,7 @@ table! {
         /// in its result `{property}` becomes the value of that property, as in `'{name} {ele} m'`.
         text: Stated<String> = key::filled_text(), required;
         /// The place that it names.
-        at: Option<Stated<[f64; 2]>> = key::point(), otherwise "by `file`";
+        at: Option<Stated<Position>> = key::point(), otherwise "by `file`";
         /// Instead of `at`: a vector file whose features are labeled: points where they are; lines along their course, each
         /// name again at a distance; polygons across their area. Where a name is too long for that, or with `height`, it
         /// stands at the middle of the longest line, or at a point inside.
@@ -299,7 +300,7 @@ table! {
         /// How far the eye looks down from the horizon.
         pitch: f64 = key::number(Within(-60.0, 89.0), "°"), default 20;
         /// Place on the ground that the eye looks at all the way.
-        look_at: Option<Stated<[f64; 2]>> = key::point(), otherwise "ahead, along the path";
+        look_at: Option<Stated<Position>> = key::point(), otherwise "ahead, along the path";
         /// Vertical field of view.
         field_of_view: f64 = key::number(Within(1.0, 170.0), "°"), default 45;
     }
@@ -335,13 +336,13 @@ table! {
         /// Whether the paper stands upright.
         portrait: bool = key::switch(), default false;
         /// Place of the eye.
-        eye: Option<Stated<[f64; 2]>> = key::point(), otherwise "where the ground fills the picture";
+        eye: Option<Stated<Position>> = key::point(), otherwise "where the ground fills the picture";
         /// Height of the eye above the ground.
         eye_height: f64 = key::number(Within(0.0, 1e7), "m"), default 2;
         /// Elevation of the eye, instead of `eye_height`.
         eye_elevation: Option<f64> = key::number(Bounds::ELEVATION, "m"), otherwise "by `eye_height`";
         /// Place on the ground that the camera looks at.
-        look_at: Option<Stated<[f64; 2]>> = key::point(), otherwise "by `azimuth` and `pitch`";
+        look_at: Option<Stated<Position>> = key::point(), otherwise "by `azimuth` and `pitch`";
         /// Height above that place that it looks at.
         look_at_height: f64 = key::number(Bounds::ELEVATION, "m"), default 0;
         /// Coordinate system of `eye` and `look_at`.
@@ -352,7 +353,7 @@ table! {
         /// Of a camera without an eye: how far it looks down from the horizon.
         pitch: Option<f64> = key::number(Within(5.0, 89.0), "°"), otherwise "what fills the picture best, from 40 to 50; 45 of an orthographic one";
         /// Of a camera without an eye: points around what it shows, such as two corners of a map.
-        shows: Option<Stated<Vec<[f64; 2]>>> = key::points(2), otherwise "the whole ground";
+        shows: Option<Stated<Vec<Position>>> = key::points(2), otherwise "the whole ground";
         /// Vertical field of view; 40 is about that of a normal lens held upright, 28 that of a portrait lens.
         field_of_view: Option<f64> = key::number(Within(1.0, 170.0), "°"), otherwise "40 with an eye, 28 without";
     }

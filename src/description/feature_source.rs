@@ -9,12 +9,13 @@ use crate::selection::Selection;
 use crate::stated::Stated;
 use crate::table::Table;
 use sandtable_geom::crs::Crs;
+use sandtable_geom::position::Position;
 
 table! {
     /// Where the coordinates of a feature come from: inline `points`, or a `file`. The keys stand in the feature's own table.
     struct FeatureSource [const LEAST: usize] {
         /// Inline coordinates, each in ±10⁹. The last point of a ring may repeat its first.
-        points: Option<Stated<Vec<[f64; 2]>>> = key::points(LEAST), otherwise "by `file`", unless ["file"];
+        points: Option<Stated<Vec<Position>>> = key::points(LEAST), otherwise "by `file`", unless ["file"];
         /// A vector file, or its address: GeoJSON, shapefile, GeoPackage, FlatGeobuf, GPX, KML or OpenStreetMap.
         file: Option<Stated<String>> = key::file(), otherwise "by `points`", unless ["points"];
         /// With `file`: the layer of a file that holds several.

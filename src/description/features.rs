@@ -24,6 +24,7 @@ use crate::words::{
     RoadSurface, RoofShape, Water,
 };
 use sandtable_geom::crs::Crs;
+use sandtable_geom::position::Position;
 
 /// Widths of roads and rivers, and distances between things.
 const WIDTH: Bounds = Within(0.01, 10_000.0);
@@ -238,7 +239,7 @@ table! {
         /// The model file, its address, or the bare name of a built-in model: `conifer`, `broadleaf`, `walnut`, `beech`, `poplar`, `pine`, `shrub` or `rock`.
         file: Stated<String> = key::file(), required;
         /// Place of its origin.
-        at: Option<Stated<[f64; 2]>> = key::point(), otherwise "by `instances`", unless ["instances"];
+        at: Option<Stated<Position>> = key::point(), otherwise "by `instances`", unless ["instances"];
         /// With `at`: its coordinate system.
         crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`", unless ["instances"];
         /// Instead of `at`: one model at each point of a source; expressions see the point's properties.

@@ -10,6 +10,7 @@ use crate::table::Table;
 use crate::table_key;
 use crate::words::{GraphicSide, GraphicStatus, RangeExtent, ViewshedTint};
 use sandtable_geom::crs::Crs;
+use sandtable_geom::position::Position;
 
 /// Distances from a place.
 const REACH: Bounds = Above(0.0, 1e7);
@@ -70,7 +71,7 @@ table! {
         /// Name for the legend.
         name: Option<String> = key::text(), otherwise "none";
         /// Where the observers are; ground is in sight where one of them sees it.
-        observers: Stated<Vec<[f64; 2]>> = key::points(1), required;
+        observers: Stated<Vec<Position>> = key::points(1), required;
         /// Coordinate system of `observers`.
         crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`";
         /// Height of their eyes above the ground.
@@ -90,9 +91,9 @@ table! {
         /// Name for the legend.
         name: Option<String> = key::text(), otherwise "none";
         /// Where the observer is.
-        observer: Stated<[f64; 2]> = key::point(), required;
+        observer: Stated<Position> = key::point(), required;
         /// Where the lines lead.
-        targets: Stated<Vec<[f64; 2]>> = key::points(1), required;
+        targets: Stated<Vec<Position>> = key::points(1), required;
         /// Coordinate system of `observer` and `targets`.
         crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`";
         /// Height of the observer's eyes above the ground.
@@ -106,7 +107,7 @@ table! {
         /// Name on the picture and in the legend.
         name: Option<String> = key::text(), otherwise "none";
         /// Where it is.
-        at: Stated<[f64; 2]> = key::point(), required;
+        at: Stated<Position> = key::point(), required;
         /// Coordinate system of `at`.
         crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`";
         /// Rising distances, each with a ring.

@@ -16,6 +16,7 @@ use crate::value::KeyValue;
 use crate::words::declarations;
 use sandtable_base::message::choice::Choice;
 use sandtable_geom::crs::Crs;
+use sandtable_geom::position::Position;
 
 /// The type of a key: its declaration, and the function that reads a value of type `V`.
 pub(super) struct Key<V, A = ()> {
@@ -87,11 +88,11 @@ keys! {
     feature_word<W: FeatureWord>() -> FeatureValue<W> = KeyKind::FeatureWord(declarations::<W>);
     /// `#rgb`, `#rrggbb` or `#rrggbbaa`.
     color() -> Color = KeyKind::Color;
-    /// A coordinate pair.
-    point() -> [f64; 2] = KeyKind::Point;
-    /// At least `least` coordinate pairs; the last one of a ring, of `least` 3, is not counted where it repeats the
+    /// A coordinate pair, or a position in words.
+    point() -> Position = KeyKind::Point;
+    /// At least `least` positions; the last one of a ring, of `least` 3, is not counted where it repeats the
     /// first.
-    points(least: usize) -> Vec<[f64; 2]> = KeyKind::Points(least);
+    points(least: usize) -> Vec<Position> = KeyKind::Points(least);
     /// The name of a color ramp, or its stops from low to high.
     ramp() -> RampChoice = KeyKind::Ramp;
     /// Which features of a file are meant: a table of properties and their values, or an expression.

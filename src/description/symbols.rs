@@ -10,6 +10,7 @@ use crate::selection::Selection;
 use crate::stated::Stated;
 use crate::table::Table;
 use sandtable_geom::crs::Crs;
+use sandtable_geom::position::Position;
 
 table! {
     /// `[[symbol]]`.
@@ -18,7 +19,7 @@ table! {
         /// such as `sidc`. So are the texts below.
         sidc: Stated<String> = key::filled_text(), required;
         /// Where it is.
-        at: Option<Stated<[f64; 2]>> = key::point(), otherwise "by `file`";
+        at: Option<Stated<Position>> = key::point(), otherwise "by `file`";
         /// Instead of `at`: a vector file whose features are symbols: points where they are, lines at the middle of their
         /// longest piece, polygons at a point inside.
         file: Option<Stated<String>> = key::file(), otherwise "by `at`";

@@ -22,6 +22,7 @@ use sandtable_base::limits::SCENE_TEXT;
 use sandtable_base::message::choice::Choice;
 use sandtable_base::message::suggest::{quoted, remedy};
 use sandtable_geom::crs::Crs;
+use sandtable_geom::position::Position;
 
 /// The largest coordinate, in any unit: beyond it centimeters are lost to rounding.
 pub(super) const COORDINATES: Bounds = Bounds::Within(-1e9, 1e9);
@@ -412,14 +413,28 @@ impl<'t> KeyValue<'_, 't> {
         }
     }
 
-    pub fn point(mut self) -> Option<[f64; 2]> {
-        let help =
-            "write [easting, northing], or [longitude, latitude] in degrees; heights come from the ground";
+    pub fn point(mut self) -> Option<Position> {
+        let help = "write [easting, northing], or [longitude, latitude] in degrees, or a position in quotes, such as \
+                    \"16S GF 50000 18000\" or \"36.277N 84.215W\"; heights come from the ground";
         match self.value.get_ref() {
             DeValue::Array(pair) if pair.len() == 2 => {
                 let pair = self.each(pair, |number| number.number(COORDINATES))?;
-                Some([pair[0], pair[1]])
+                Some([pair[0], pair[1]].into())
             }
+            DeValue::String(text) => match Position::parse(text) {
+                Ok(position)
+                    if position
+                        .numbers()
+                        .is_some_and(|at| !at.to_array().iter().all(|&number| COORDINATES.hold(number))) =>
+                {
+                    self.wrong(format!("`{}` must have numbers {COORDINATES}", self.key), help)
+                }
+                Ok(position) => Some(position),
+                Err(error) => {
+                    let message = format!("`{}`: {error}", self.key);
+                    self.wrong(message, error.help().unwrap_or_default())
+                }
+            },
             DeValue::Array(other) => {
                 self.wrong(format!("a point has two numbers, but this has {}", other.len()), help)
             }
@@ -427,7 +442,7 @@ impl<'t> KeyValue<'_, 't> {
         }
     }
 
-    pub fn points(mut self, least: usize) -> Option<Vec<[f64; 2]>> {
+    pub fn points(mut self, least: usize) -> Option<Vec<Position>> {
         let help = format!("write at least {least} points as [[x1, y1], [x2, y2], ...]");
         let DeValue::Array(list) = self.value.get_ref() else {
             return self.wrong_type("a list of points", help);

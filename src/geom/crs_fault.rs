@@ -41,6 +41,12 @@ pub enum CrsFault {
     /// A transform's result is not finite.
     #[error("the result is not finite")]
     NotFinite,
+    /// The data state no system.
+    #[error("the data state no coordinate system, so that positions in them are two numbers")]
+    NoSystem,
+    /// A transform's result is no longitude and latitude.
+    #[error("there is no such place on Earth")]
+    NoPlaceOnEarth,
     /// The projection library refuses it.
     #[error(transparent)]
     Proj(#[from] ProjError),

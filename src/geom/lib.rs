@@ -20,6 +20,7 @@ pub mod offset;
 pub mod own_crossing;
 pub mod polygon;
 pub mod polyline;
+pub mod position;
 pub mod profile;
 pub(crate) mod proj_string;
 pub mod projection;

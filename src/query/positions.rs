@@ -1,8 +1,9 @@
-//! Positions and lines as users write them: two numbers, a CSV table, or the first line of a vector file.
+//! Positions and lines as users write them: one position in any of the forms of [`sandtable_geom::position`], a CSV table of
+//! them, or the first line of a vector file.
 
 use std::borrow::Cow;
+use std::fmt;
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 
 use glam::DVec2;
 
@@ -10,7 +11,11 @@ use sandtable_base::message::numbers::fixed;
 use sandtable_files::csv::{LineError, fields, is_header, numbered_lines};
 use sandtable_files::disk::{self, ReadFileError};
 use sandtable_files::error::FileError;
-use sandtable_geom::crs::Crs;
+use sandtable_geom::crs::{Crs, CrsError};
+use sandtable_geom::datum_shift::DatumShift;
+use sandtable_geom::position::degrees::DegreeAxis;
+use sandtable_geom::position::fault::PositionError;
+use sandtable_geom::position::{Position, parse_angle};
 use sandtable_vector::error::VectorError;
 use sandtable_vector::feature::Feature;
 use sandtable_vector::hints::VectorHints;
@@ -19,10 +24,22 @@ use sandtable_vector::read;
 /// A position and its text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WrittenPosition<'a> {
-    /// The position; finite.
+    /// The position in the system that is asked for; finite.
     pub at: DVec2,
-    /// Its x and y as they are written.
+    /// Its x and y: as they are written where they are two numbers.
     pub written: [Cow<'a, str>; 2],
+    /// The side in meters of the square that a grid reference names, whose middle the position is.
+    pub side_m: Option<f64>,
+    /// Whether it was brought from WGS 84 to the system that is asked for.
+    pub is_brought: bool,
+}
+
+/// A position of an argument, in no system as yet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PositionArgument {
+    /// The position.
+    pub position: Position,
+    text: String,
 }
 
 /// A line and the system of its coordinates.
@@ -36,23 +53,27 @@ pub struct InputLine {
     pub notes: Vec<String>,
 }
 
-/// A text that is not a position.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("write two numbers as in 530250,4021300")]
-pub struct PositionError;
-
 /// A CSV table that does not hold positions.
-pub type PositionsError = LineError<PositionFault>;
+pub type PositionsError = LineError<PositionLineFault>;
 
-/// Why a line, which is quoted, is not a position.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum PositionFault {
-    /// A header does not name the columns of x and y.
-    #[error("the header '{0}' must name columns x and y, or lon and lat")]
+/// Why a line is not a position.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PositionLineFault {
+    /// A header does not name the columns of positions.
+    #[error(
+        "the header '{0}' must name columns x and y, or lon and lat, or one such as mgrs, utm or position; without a header, \
+         each line begins with numbers x,y or is a position"
+    )]
     Header(String),
-    /// A line does not hold a position.
-    #[error("found '{0}', each line must hold numbers x,y")]
+    /// A line does not hold numbers.
+    #[error("found '{0}', each line must hold numbers x,y, or a position such as 16S GF 50000 18000")]
     Line(String),
+    /// A line holds a position that is wrong.
+    #[error("{}", .0.with_forms())]
+    Position(Box<PositionError>),
+    /// A position has no coordinates in the system.
+    #[error(transparent)]
+    System(Box<CrsError>),
 }
 
 /// A file that does not give a line.
@@ -71,72 +92,211 @@ pub enum ReadLineError {
     NoLine(PathBuf),
 }
 
-impl FromStr for WrittenPosition<'static> {
-    type Err = PositionError;
+impl PositionArgument {
+    /// The position of a text.
+    ///
+    /// # Errors
+    /// As [`Position::parse`].
+    pub fn parse(text: &str) -> Result<Self, PositionError> {
+        Ok(Self { position: Position::parse(text)?, text: text.to_owned() })
+    }
 
-    fn from_str(text: &str) -> Result<Self, PositionError> {
-        let (x, y) = text.split_once(',').ok_or(PositionError)?;
-        let position = WrittenPosition::parse(x.trim(), y.trim()).ok_or(PositionError)?;
-        Ok(Self { at: position.at, written: position.written.map(|number| number.into_owned().into()) })
+    /// The position in `crs`; two numbers are those of `crs`.
+    ///
+    /// # Errors
+    /// As [`Position::in_system`].
+    pub fn written(&self, crs: &Crs) -> Result<WrittenPosition<'static>, CrsError> {
+        match self.text.split_once(',').and_then(|(x, y)| WrittenPosition::numbers(x.trim(), y.trim())) {
+            Some(numbers) => {
+                let written = numbers.written.map(|number| number.into_owned().into());
+                Ok(WrittenPosition { written, ..numbers })
+            }
+            None => WrittenPosition::brought(&self.position, crs),
+        }
+    }
+}
+
+impl fmt::Display for PositionArgument {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(&self.text)
     }
 }
 
 impl<'a> WrittenPosition<'a> {
-    fn parse(x: &'a str, y: &'a str) -> Option<Self> {
+    fn numbers(x: &'a str, y: &'a str) -> Option<Self> {
         let at = DVec2::new(x.parse().ok()?, y.parse().ok()?);
-        at.is_finite().then_some(Self { at, written: [x.into(), y.into()] })
+        at.is_finite().then_some(Self { at, written: [x.into(), y.into()], side_m: None, is_brought: false })
+    }
+
+    /// A position, brought to `crs`.
+    fn brought(position: &Position, crs: &Crs) -> Result<Self, CrsError> {
+        let at = position.in_system(crs)?;
+        // Millimeters, and less than that in degrees.
+        let decimals = if crs.is_geographic() { 9 } else { 3 };
+        let written = at.to_array().map(|number| Cow::Owned(format!("{number:.decimals$}")));
+        Ok(Self { at, written, side_m: position.side_m(), is_brought: position.numbers().is_none() })
     }
 }
 
 /// The columns of a CSV table that hold positions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PositionColumns {
-    x: usize,
-    y: usize,
+    layout: PositionLayout,
     /// Whether the first line names them.
     pub has_header: bool,
 }
 
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum PositionLayout {
+    /// Columns of x and y that a header names.
+    Named { x: usize, y: usize, axes: NamedAxes },
+    /// One column of positions.
+    Column(usize),
+    /// The whole line.
+    Line,
+    /// No header: numbers x,y in the first two fields, a position in the first, or a line that is one.
+    Unnamed,
+}
+
+/// What columns of x and y are called.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum NamedAxes {
+    /// x and y, easting and northing.
+    Plain,
+    /// Longitude and latitude.
+    Degrees,
+}
+
+/// The names of columns, lower case.
+const PLAIN_NAMES: [&[&str]; 2] = [&["x", "easting", "east"], &["y", "northing", "north"]];
+const DEGREE_NAMES: [&[&str]; 2] = [&["lon", "long", "lng", "longitude"], &["lat", "latitude"]];
+const POSITION_NAMES: &[&str] = &[
+    "mgrs",
+    "usng",
+    "utm",
+    "grid",
+    "grid reference",
+    "grid_reference",
+    "gridref",
+    "grid ref",
+    "position",
+    "location",
+    "coordinates",
+    "coords",
+    "coord",
+];
+
 impl PositionColumns {
-    /// The columns that the first line of a table names, or the first two where it names none.
+    /// The columns that the first line of a table names, or the first fields where it names none.
     ///
     /// # Errors
-    /// [`PositionFault::Header`].
-    pub fn of_first_line(line: &str) -> Result<Self, PositionFault> {
-        if !is_header(line) {
-            return Ok(Self { x: 0, y: 1, has_header: false });
+    /// [`PositionLineFault::Header`].
+    pub fn of_first_line(line: &str) -> Result<Self, PositionLineFault> {
+        let is_position =
+            |text: &str| Position::parse(text).is_ok_and(|position| position.numbers().is_none());
+        if !is_header(line) || is_position(line) || fields(line).next().is_some_and(is_position) {
+            return Ok(Self { layout: PositionLayout::Unnamed, has_header: false });
         }
+        let with = |layout| Ok(Self { layout, has_header: true });
         let names: Vec<String> = fields(line).map(str::to_lowercase).collect();
         let find = |accepted: &[&str]| names.iter().position(|name| accepted.contains(&name.as_str()));
-        let x = find(&["x", "lon", "long", "longitude", "easting", "east"]);
-        let y = find(&["y", "lat", "latitude", "northing", "north"]);
-        let columns = x.zip(y).map(|(x, y)| Self { x, y, has_header: true });
-        columns.ok_or_else(|| PositionFault::Header(line.into()))
+        let axis = |axis: usize| find(&[PLAIN_NAMES[axis], DEGREE_NAMES[axis]].concat());
+        if let (Some(x), Some(y)) = (axis(0), axis(1)) {
+            let are_degrees =
+                [x, y].iter().zip(DEGREE_NAMES).all(|(&at, known)| known.contains(&names[at].as_str()));
+            let axes = if are_degrees { NamedAxes::Degrees } else { NamedAxes::Plain };
+            return with(PositionLayout::Named { x, y, axes });
+        }
+        if POSITION_NAMES.contains(&line.trim().trim_matches('"').to_lowercase().as_str()) {
+            return with(PositionLayout::Line);
+        }
+        let column = find(POSITION_NAMES).ok_or_else(|| PositionLineFault::Header(line.into()))?;
+        with(PositionLayout::Column(column))
     }
 
-    /// The position in a line.
+    /// The position in a line, in `crs`.
     ///
     /// # Errors
-    /// [`PositionFault::Line`].
-    pub fn position<'a>(&self, line: &'a str) -> Result<WrittenPosition<'a>, PositionFault> {
-        let [x, y] = [self.x, self.y].map(|column| fields(line).nth(column).unwrap_or_default());
-        WrittenPosition::parse(x, y).ok_or_else(|| PositionFault::Line(line.into()))
+    /// The line holds none, or it has no coordinates in `crs`.
+    pub fn position<'a>(&self, line: &'a str, crs: &Crs) -> Result<WrittenPosition<'a>, PositionLineFault> {
+        let field = |column: usize| fields(line).nth(column).unwrap_or_default();
+        let position = match self.layout {
+            PositionLayout::Named { x, y, axes } => {
+                let (x, y) = (field(x), field(y));
+                if let Some(numbers) = WrittenPosition::numbers(x, y) {
+                    return Ok(numbers);
+                }
+                named_angles(x, y, axes).unwrap_or_else(|| Err(PositionLineFault::Line(line.into())))?
+            }
+            PositionLayout::Column(column) => parsed(field(column))?,
+            PositionLayout::Line => parsed(line.trim().trim_matches('"'))?,
+            PositionLayout::Unnamed => {
+                if let Some(numbers) = WrittenPosition::numbers(field(0), field(1)) {
+                    return Ok(numbers);
+                }
+                unnamed(line, field(0))?
+            }
+        };
+        WrittenPosition::brought(&position, crs).map_err(|error| PositionLineFault::System(Box::new(error)))
     }
 }
 
-/// The positions of a CSV table. A header names columns `x` and `y` (or `lon` and `lat`); without one, x and y come
-/// first. `name` is the file's name in messages.
+impl PositionLineFault {
+    fn position(error: PositionError) -> Self {
+        Self::Position(Box::new(error))
+    }
+}
+
+fn parsed(text: &str) -> Result<Position, PositionLineFault> {
+    Position::parse(text).map_err(PositionLineFault::position)
+}
+
+/// The place of two angles in columns of their own; `None` where they are not angles.
+fn named_angles(x: &str, y: &str, axes: NamedAxes) -> Option<Result<Position, PositionLineFault>> {
+    let is_number = |text: &str| text.parse::<f64>().is_ok();
+    // Numbers in columns x and y are those of the system, of which none goes with an angle.
+    let is_mixed = axes == NamedAxes::Plain && (is_number(x) || is_number(y));
+    let has_digits = |text: &str| text.bytes().any(|byte| byte.is_ascii_digit());
+    if is_mixed || !has_digits(x) || !has_digits(y) {
+        return None;
+    }
+    let longitude = parse_angle(x, DegreeAxis::Longitude);
+    let place = longitude.and_then(|x| Ok(DVec2::new(x, parse_angle(y, DegreeAxis::Latitude)?)));
+    Some(place.map(Position::on_earth).map_err(PositionLineFault::position))
+}
+
+/// The position of a line without a header: all of it, or its first field.
+fn unnamed(line: &str, first: &str) -> Result<Position, PositionLineFault> {
+    let whole = match Position::parse(line) {
+        Ok(position) => return Ok(position),
+        Err(error) => error,
+    };
+    match Position::parse(first) {
+        Ok(position) => Ok(position),
+        // What is wrong is said of a line that looks like a position; others have no numbers.
+        Err(_) if !whole.is_unlike_any() => Err(PositionLineFault::position(whole)),
+        Err(error) if error.is_unlike_any() => Err(PositionLineFault::Line(line.into())),
+        Err(error) => Err(PositionLineFault::position(error)),
+    }
+}
+
+/// The positions of a CSV table in `crs`, of which its numbers are. A header names columns `x` and `y` (or `lon` and `lat`),
+/// or one of positions, such as `mgrs`; without one, numbers or a position come first. `name` is the file's name in messages.
 ///
 /// # Errors
-/// A line is not a position, or the header does not name the columns.
-pub fn parse_positions<'a>(name: &str, text: &'a str) -> Result<Vec<WrittenPosition<'a>>, PositionsError> {
+/// A line is not a position, or has no coordinates in `crs`, or the header does not name the columns.
+pub fn parse_positions<'a>(
+    name: &str,
+    text: &'a str,
+    crs: &Crs,
+) -> Result<Vec<WrittenPosition<'a>>, PositionsError> {
     let mut lines = numbered_lines(text).peekable();
     let at_line = |line| move |fault| LineError { name: name.to_owned(), line, fault };
     let Some(&(first, line)) = lines.peek() else { return Ok(Vec::new()) };
     let columns = PositionColumns::of_first_line(line).map_err(at_line(first))?;
     lines
         .skip(usize::from(columns.has_header))
-        .map(|(line, text)| columns.position(text).map_err(at_line(line)))
+        .map(|(line, text)| columns.position(text, crs).map_err(at_line(line)))
         .collect()
 }
 
@@ -155,10 +315,12 @@ pub fn read_line(path: &Path, stated: Option<Crs>, native: &Crs) -> Result<Input
         return first_line(path, stated);
     }
     let (name, text) = (disk::display_name(path), disk::read_text(path)?);
-    let vertices: Vec<DVec2> = parse_positions(&name, &text)?.iter().map(|position| position.at).collect();
+    let crs = stated.unwrap_or_else(|| native.clone());
+    let vertices: Vec<DVec2> =
+        parse_positions(&name, &text, &crs)?.iter().map(|position| position.at).collect();
     match vertices.len() {
         found @ 0..2 => Err(ReadLineError::TooShort { name, found }),
-        _ => Ok(InputLine { vertices, crs: stated.unwrap_or_else(|| native.clone()), notes: Vec::new() }),
+        _ => Ok(InputLine { vertices, crs, notes: Vec::new() }),
     }
 }
 
@@ -176,6 +338,16 @@ fn first_line(path: &Path, stated: Option<Crs>) -> Result<InputLine, ReadLineErr
     Ok(InputLine { vertices, crs: layer.crs, notes })
 }
 
+/// A sentence about the shift between the datums of two systems, where that is not exact.
+pub fn shift_note(from: &Crs, to: &Crs) -> Option<String> {
+    // A shift that is not known is an error of the query.
+    let Ok(shift @ DatumShift::ByWgs84 { .. }) = from.datum_shift_to(to) else { return None };
+    let (from, to, most_m) = (from.name(), to.name(), shift.accuracy_m().unwrap_or_default());
+    Some(format!(
+        "positions are brought from {from} to {to} by the datum shift {shift}, good to about {most_m} m"
+    ))
+}
+
 /// `x, y` for a reader: degrees with five decimals (about a meter), meters without.
 pub fn format_position(crs: &Crs, at: DVec2) -> String {
     let decimals = if crs.is_geographic() { 5 } else { 0 };
@@ -187,7 +359,14 @@ mod tests {
     use super::*;
 
     fn positions(text: &str) -> Vec<DVec2> {
-        parse_positions("p.csv", text).expect("sound").iter().map(|position| position.at).collect()
+        let positions = parse_positions("p.csv", text, &Crs::local()).expect("sound");
+        positions.iter().map(|position| position.at).collect()
+    }
+
+    fn in_zone(text: &str) -> Vec<DVec2> {
+        let zone = Crs::from_epsg(32616).expect("a zone");
+        let positions = parse_positions("p.csv", text, &zone).unwrap_or_else(|error| panic!("{error}"));
+        positions.iter().map(|position| position.at).collect()
     }
 
     #[test]
@@ -207,8 +386,60 @@ mod tests {
             ("1,2\n3\n", "p.csv:2:"),
             ("a,b\n1,2\n", "p.csv:1:"),
         ] {
-            let error = parse_positions("p.csv", text).expect_err(text).to_string();
+            let error = parse_positions("p.csv", text, &Crs::local()).expect_err(text).to_string();
             assert!(error.contains(place), "{error}");
         }
+    }
+
+    #[test]
+    fn a_table_may_hold_positions_in_a_column_or_a_line_each() {
+        let at = DVec2::new(750_050.0, 4_018_050.0);
+        for text in [
+            "16SGF500180",
+            "16S GF 500 180",
+            "16SGF500180,the hill",
+            "mgrs\n16S GF 500 180",
+            "grid reference\n16S GF 500 180\n",
+            "name,MGRS\nthe hill,16S GF 500 180",
+            "\"name\";\"position\"\n\"hill; and lake\";\"16N 750050, 4018050\"",
+            "x,y\n750050,4018050",
+            "name,utm\nhill,16N 750050 4018050",
+        ] {
+            assert_eq!(in_zone(text), [at], "{text}");
+        }
+        assert_eq!(in_zone("750050,4018050\n16SGF500180\n"), [at, at]);
+    }
+
+    #[test]
+    fn columns_of_longitude_and_latitude_may_hold_degrees_minutes_and_seconds() {
+        let [plain] = in_zone("36.2775N 84.215W")[..] else { panic!("one") };
+        for text in [
+            "lat,lon\n36°16'39\"N,84°12'54\"W",
+            "lat;lon\n\"36°16'39\"\"\";\"-84°12'54\"\"\"",
+            "lon,lat\n84 12.9 W,36 16.65 N",
+            "x,y\n84°12'54\"W,36°16'39\"N",
+            "position,x1\n\"36.2775N, 84.215W\",1",
+        ] {
+            assert!(in_zone(text)[0].distance(plain) < 0.01, "{text}: {:?}, {plain}", in_zone(text));
+        }
+        // Numbers are those of the system that is asked for.
+        assert_eq!(in_zone("lon,lat\n750050,4018050"), [DVec2::new(750_050.0, 4_018_050.0)]);
+    }
+
+    #[test]
+    fn a_wrong_position_of_a_table_has_its_line_and_what_is_wrong() {
+        let zone = Crs::from_epsg(32616).expect("a zone");
+        for (text, part) in [
+            ("mgrs\n16SGF500180\n16SGF50018\n", "p.csv:3: '16SGF50018' is not a grid reference: its digits"),
+            ("16SGF500180\n16S 755447 4024162\n", "p.csv:2: '16S 755447 4024162' can be read as"),
+            ("lat,lon\n84W,36N\n", "p.csv:2: '36N' is not a longitude"),
+            ("x,y\n84W,36\n", "p.csv:2: found '84W,36'"),
+            ("name,place\nhill,16SGF500180\n", "p.csv:1: the header 'name,place'"),
+        ] {
+            let error = parse_positions("p.csv", text, &zone).expect_err(text).to_string();
+            assert!(error.contains(part), "{error}");
+        }
+        let nowhere = parse_positions("p.csv", "16SGF500180", &Crs::local()).expect_err("no place");
+        assert!(nowhere.to_string().contains("p.csv:1:"), "{nowhere}");
     }
 }

@@ -30,6 +30,7 @@ use sandtable_description::elevation_file::ElevationFile;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::words::HeightEncodingWord;
 use sandtable_geom::crs::Crs;
+use sandtable_geom::position::Position;
 use sandtable_geom::rect::Rect;
 use sandtable_raster::crop::{crop_window, part};
 use sandtable_raster::error::{DemError, DemErrorKind};
@@ -196,8 +197,11 @@ fn stated_extent(
     let given = document.points_crs.as_ref().unwrap_or(&stated);
     let own = whole.crs.as_ref().unwrap_or(&stated);
     let misplaced = |error| document.error(extent, error);
-    let corners: Result<Vec<DVec2>, _> =
-        extent.iter().map(|&at| given.transform(&scene, DVec2::from(at))).collect();
+    let in_scene = |at: &Position| match at.numbers() {
+        Some(numbers) => given.transform(&scene, numbers),
+        None => at.in_system(&scene),
+    };
+    let corners: Result<Vec<DVec2>, _> = extent.iter().map(in_scene).collect();
     let ground = Rect::around(corners.map_err(misplaced)?);
     let in_source: Result<Vec<DVec2>, _> = ground.grid_points().map(|at| scene.transform(own, at)).collect();
     let source = Rect::around(in_source.map_err(misplaced)?);

@@ -6,6 +6,7 @@ use sandtable_base::limits::PICTURED_SAMPLES;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::stated::Stated;
+use sandtable_geom::position::Position;
 use sandtable_geom::rect::Rect;
 
 use crate::assets::Assets;
@@ -47,7 +48,7 @@ pub fn part_document(frame: &WorldFrame<'_>, rect: &Rect) -> Result<Document, Di
     let dem = &document.terrain.dem;
     let Rect { min, max } = *rect;
     let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
-    let stated: Result<Vec<[f64; 2]>, _> = corners
+    let stated: Result<Vec<Position>, _> = corners
         .iter()
         .map(|&corner| frame.crs.transform(&frame.points_crs, frame.origin + corner).map(Into::into))
         .collect();

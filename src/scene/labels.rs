@@ -12,6 +12,7 @@ use crate::sources::Sources;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::LabelTable;
 use sandtable_description::stated::Stated;
+use sandtable_geom::position::Position;
 
 /// The document's labels, `{height}` filled in; those of files with findings on the features without a label. `collected` keeps
 /// an error where a label with `at` lies off the ground, or a file cannot be read or holds no feature that matches.
@@ -36,7 +37,7 @@ pub(super) fn labels(
 
 fn label(
     table: &LabelTable,
-    at: &Stated<[f64; 2]>,
+    at: &Stated<Position>,
     exact: &ExactGround<'_>,
 ) -> Result<SceneLabel, Diagnostic> {
     let (frame, lattice) = (exact.frame, exact.lattice);

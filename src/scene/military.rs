@@ -16,6 +16,7 @@ use sandtable_description::finding_code::FindingCode;
 use sandtable_description::stated::Stated;
 use sandtable_description::symbols::SymbolTable;
 use sandtable_geom::crs::Crs;
+use sandtable_geom::position::Position;
 use sandtable_symbology::code::SymbolCode;
 use sandtable_symbology::symbol::MilitarySymbol;
 use sandtable_symbology::texts::{SymbolNote, SymbolText, TEXT_FIELDS, placed};
@@ -85,7 +86,7 @@ pub fn symbols(sources: &Sources<'_>, lattice: &Lattice, collected: &mut SceneBu
 
 fn symbol_at(
     table: &SymbolTable,
-    at: &Stated<[f64; 2]>,
+    at: &Stated<Position>,
     frame: &WorldFrame<'_>,
     lattice: &Lattice,
     findings: &mut SceneFindings,

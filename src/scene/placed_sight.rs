@@ -19,6 +19,7 @@ use sandtable_description::graphics::{RangeTable, SightTable, ViewshedTable};
 use sandtable_description::stated::Stated;
 use sandtable_description::words::{RangeExtent, ViewshedTint};
 use sandtable_geom::crs::Crs;
+use sandtable_geom::position::Position;
 use sandtable_geom::rect::Rect;
 use sandtable_symbology::graphic::check::MOST_RANGES;
 use sandtable_terrain::lattice::Lattice;
@@ -201,7 +202,7 @@ fn end(frame: &WorldFrame<'_>, world: DVec2, above_m: f64) -> SightEnd {
 fn place(
     frame: &WorldFrame<'_>,
     lattice: &Lattice,
-    at: &Stated<[f64; 2]>,
+    at: &Stated<Position>,
     crs: Option<&Crs>,
 ) -> Result<DVec2, Diagnostic> {
     let world = frame.point(at, crs)?;
@@ -213,7 +214,7 @@ fn place(
 fn places(
     frame: &WorldFrame<'_>,
     lattice: &Lattice,
-    stated: &Stated<Vec<[f64; 2]>>,
+    stated: &Stated<Vec<Position>>,
     crs: Option<&Crs>,
     most: usize,
 ) -> Result<Vec<DVec2>, Diagnostic> {

@@ -187,10 +187,11 @@ impl<'a> Sources<'a> {
         pick: impl Fn(&Geometry) -> Vec<T>,
     ) -> Result<(Crs, Vec<Sourced<T>>), Diagnostic> {
         if let Some(points) = &source.points {
-            let line = points.iter().map(|&point| DVec2::from(point)).collect();
+            let crs = source.crs.as_ref().unwrap_or(&self.frame.points_crs);
+            let line: Result<Vec<DVec2>, _> = points.iter().map(|point| point.in_system(crs)).collect();
+            let line = line.map_err(|error| self.frame.document.error(points, error))?;
             let shape = pick(&Geometry::Lines(vec![line]));
             let sourced = |shape| Sourced { attributes: Attributes::default(), shape, crossings: 0 };
-            let crs = source.crs.as_ref().unwrap_or(&self.frame.points_crs);
             return Ok((crs.clone(), shape.into_iter().map(sourced).collect()));
         }
         let Some(file) = &source.file else {

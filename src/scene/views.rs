@@ -15,6 +15,7 @@ use sandtable_description::document::{CameraTable, Document, PAPER_DPI, paper_mm
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::stated::Stated;
 use sandtable_description::words::CameraProjection;
+use sandtable_geom::position::Position;
 use sandtable_geom::rect::Rect;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::query::{Interpolation, ground_height};
@@ -53,7 +54,7 @@ fn plan(lattice: &Lattice) -> Rect {
 }
 
 /// Where a camera has its eye, and where it looks; `None` where its eye depends on what it shows, or where it has none.
-pub(super) fn eye_and_target(table: &CameraTable) -> Option<[&Stated<[f64; 2]>; 2]> {
+pub(super) fn eye_and_target(table: &CameraTable) -> Option<[&Stated<Position>; 2]> {
     let is_perspective = table.projection == CameraProjection::Perspective;
     let places = table.eye.as_ref().zip(table.look_at.as_ref());
     places.filter(|_| is_perspective).map(|(eye, look_at)| [eye, look_at])
@@ -82,8 +83,8 @@ pub(super) fn aim_without_eye(
 
 fn aimed(
     table: &CameraTable,
-    eye: &Stated<[f64; 2]>,
-    look_at: &Stated<[f64; 2]>,
+    eye: &Stated<Position>,
+    look_at: &Stated<Position>,
     frame: &WorldFrame<'_>,
     lattice: &Lattice,
 ) -> Result<ViewAim, Diagnostic> {
@@ -151,9 +152,8 @@ fn parallel(table: &CameraTable, frame: &WorldFrame<'_>, ground: &Rect) -> Resul
 /// The ground around the points that a camera shows; `None` where it names none.
 fn shown(table: &CameraTable, frame: &WorldFrame<'_>, ground: &Rect) -> Result<Option<Rect>, Diagnostic> {
     let shown = table.shows.as_ref().map(|shows| {
-        let crs = table.crs.as_ref().unwrap_or(&frame.points_crs);
         let corners: Result<Vec<DVec2>, _> =
-            shows.iter().map(|&corner| frame.world(crs, DVec2::from(corner))).collect();
+            shows.iter().map(|corner| frame.position(corner, table.crs.as_ref())).collect();
         let corners = corners.map_err(|error| frame.document.error(shows, error))?;
         let shown = Rect::around(corners).intersection(ground);
         if shown.is_empty() {

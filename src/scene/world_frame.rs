@@ -9,6 +9,7 @@ use sandtable_description::document::Document;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::stated::Stated;
 use sandtable_geom::crs::{Crs, CrsError};
+use sandtable_geom::position::Position;
 use sandtable_raster::answer::Answer;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::query::{Interpolation, ground_height};
@@ -48,9 +49,19 @@ impl<'a> WorldFrame<'a> {
     ///
     /// # Errors
     /// The point cannot be transformed to the scene's system.
-    pub fn point(&self, at: &Stated<[f64; 2]>, crs: Option<&Crs>) -> Result<DVec2, Diagnostic> {
-        let world = self.world(crs.unwrap_or(&self.points_crs), DVec2::from(**at));
-        world.map_err(|error| self.document.error(at, error))
+    pub fn point(&self, at: &Stated<Position>, crs: Option<&Crs>) -> Result<DVec2, Diagnostic> {
+        self.position(at, crs).map_err(|error| self.document.error(at, error))
+    }
+
+    /// As [`Self::point`], of a position by itself.
+    ///
+    /// # Errors
+    /// The position cannot be transformed to the scene's system.
+    pub fn position(&self, at: &Position, crs: Option<&Crs>) -> Result<DVec2, CrsError> {
+        match at.numbers() {
+            Some(numbers) => self.world(crs.unwrap_or(&self.points_crs), numbers),
+            None => Ok(at.in_system(self.crs)? - self.origin),
+        }
     }
 
     /// The ground at a world position, as it is drawn.
@@ -60,7 +71,7 @@ impl<'a> WorldFrame<'a> {
     pub fn on_ground(
         &self,
         lattice: &Lattice,
-        at: &Stated<[f64; 2]>,
+        at: &Stated<Position>,
         world: DVec2,
     ) -> Result<Vec3, Diagnostic> {
         match ground_height(lattice, Interpolation::Planar, world + self.origin) {
@@ -70,7 +81,7 @@ impl<'a> WorldFrame<'a> {
                 .error(at, "the elevation model holds no data at this point")
                 .with_code(FindingCode::NoDataUnder)
                 .with_help("move the point to where there is ground")),
-            Answer::Outside => Err(self.off_the_model(lattice, at)),
+            Answer::Outside => Err(self.off_the_model(lattice, at, world)),
         }
     }
 
@@ -80,8 +91,9 @@ impl<'a> WorldFrame<'a> {
         Some(world.as_vec2().extend(self.scale.world_z(height as f32)))
     }
 
-    fn off_the_model(&self, lattice: &Lattice, at: &Stated<[f64; 2]>) -> Diagnostic {
-        let [x, y] = **at;
+    fn off_the_model(&self, lattice: &Lattice, at: &Stated<Position>, world: DVec2) -> Diagnostic {
+        let map = world + self.origin;
+        let DVec2 { x, y } = at.numbers().unwrap_or_else(|| (map * 10.0).round() / 10.0);
         let (low, high) = (self.origin, self.origin + lattice.extent().max);
         let message = format!("the point ({x}, {y}) lies off the elevation model");
         let mut help = format!(
@@ -92,7 +104,7 @@ impl<'a> WorldFrame<'a> {
             fixed(high.y, 0),
             self.crs.name()
         );
-        if looks_like_degrees(x, y) && !self.points_crs.is_geographic() {
+        if at.numbers().is_some() && looks_like_degrees(x, y) && !self.points_crs.is_geographic() {
             help += "; if the point is longitude and latitude, say points_crs = \"EPSG:4326\"";
         }
         self.document.error(at, message).with_code(FindingCode::OffTerrain).with_help(help)

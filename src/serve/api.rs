@@ -99,7 +99,8 @@ const CRS: ApiParameter = parameter(
     "crs",
     Text("EPSG:N|native"),
     Optional("latitude,longitude of WGS 84"),
-    "positions are x,y of that system, or of the dataset's own",
+    "positions of two numbers are x,y of that system, or of the dataset's own; other positions, such as 16SGF500180, \
+     16N 750050 4018050 or 36.277N 84.215W, are on WGS 84 and may take the place of any two numbers",
 );
 
 const OBSERVER_HEIGHT: ApiParameter =

@@ -2,7 +2,8 @@
 //!
 //! Without `crs`, coordinates are WGS 84 latitude and longitude, latitude first, as in the Open Topo Data and Google
 //! APIs. With `crs=EPSG:n` they are x,y of that system: easting and northing, or longitude and latitude. With
-//! `crs=native` they are x,y of the dataset's own system, as in `sandtable height`.
+//! `crs=native` they are x,y of the dataset's own system, as in `sandtable height`. A position may also be a text that
+//! states its own system, WGS 84: a grid reference, UTM, or latitude and longitude with their letters.
 
 use glam::DVec2;
 use serde::Serialize;
@@ -11,6 +12,7 @@ use crate::parameters::Parameters;
 use crate::polyline;
 use crate::reply::{HttpError, quoted};
 use sandtable_geom::crs::Crs;
+use sandtable_geom::position::Position;
 use sandtable_query::dataset::check_datums;
 
 /// The coordinates of a request.
@@ -64,15 +66,17 @@ impl Coordinates {
         Ok(coordinates)
     }
 
-    /// Parses a position: two numbers with a comma between. `what` is the parameter.
+    /// Parses a position: two numbers with a comma between, or a text that states its system. `what` is the parameter.
     pub fn position(&self, what: &str, text: &str) -> Result<DVec2, HttpError> {
-        self.pair(text).ok_or_else(|| self.refusal(what, text))
+        match self.pair(text) {
+            Some(at) => Ok(at),
+            None => self.in_words(what, text),
+        }
     }
 
-    /// Parses positions: pairs with `|` between, or, for latitude and longitude, an encoded polyline, which has no
-    /// comma.
+    /// Parses positions with `|` between, or, for latitude and longitude, an encoded polyline, which has no comma.
     pub fn positions(&self, text: &str, most: usize) -> Result<Vec<DVec2>, HttpError> {
-        if self.axes == AxisOrder::LatLng && !text.contains(',') {
+        if self.axes == AxisOrder::LatLng && !text.contains(',') && !is_in_words(text) {
             let positions = polyline::decode(text, most)?;
             return match positions.iter().position(|&at| !self.is_valid(at)) {
                 None => Ok(positions),
@@ -91,8 +95,10 @@ impl Coordinates {
         }
         let mut positions = Vec::with_capacity(count);
         for pair in text.split('|') {
-            let refusal = || self.refusal(&format!("location {}", positions.len() + 1), pair);
-            let at = self.pair(pair).ok_or_else(refusal)?;
+            let at = match self.pair(pair) {
+                Some(at) => at,
+                None => self.in_words(&format!("location {}", positions.len() + 1), pair)?,
+            };
             positions.push(at);
         }
         Ok(positions)
@@ -116,6 +122,19 @@ impl Coordinates {
         self.is_valid(at).then_some(at)
     }
 
+    /// A position that states its system, in the system of the request.
+    fn in_words(&self, what: &str, text: &str) -> Result<DVec2, HttpError> {
+        let position = match Position::parse(text) {
+            Ok(position) if position.numbers().is_none() => position,
+            Err(error) if !error.is_unlike_any() => {
+                return Err(HttpError::wrong(format!("{what} {}", error.with_forms())));
+            }
+            Ok(_) | Err(_) => return Err(self.refusal(what, text)),
+        };
+        let at = position.in_system(&self.crs);
+        at.map_err(|error| HttpError::wrong(format!("{what}: {error}")))
+    }
+
     fn is_valid(&self, at: DVec2) -> bool {
         match self.axes {
             AxisOrder::LatLng => (-90.0..=90.0).contains(&at.y) && (-180.0..=180.0).contains(&at.x),
@@ -127,11 +146,26 @@ impl Coordinates {
         let found = quoted(text);
         HttpError::wrong(match self.axes {
             AxisOrder::LatLng => format!(
-                "{what} is {found}; write latitude,longitude in degrees, -90 to 90 and -180 to 180, as in 46.2,-122.19"
+                "{what} is {found}; write latitude,longitude in degrees, -90 to 90 and -180 to 180, as in 46.2,-122.19, or a \
+                 grid reference, UTM, or both angles with their letters"
             ),
-            AxisOrder::Xy => format!("{what} is {found}; write x,y, two numbers with a comma between"),
+            AxisOrder::Xy => format!(
+                "{what} is {found}; write x,y, two numbers with a comma between, or a grid reference, UTM, or latitude and \
+                 longitude with their letters"
+            ),
         })
     }
+}
+
+/// Whether the first of some positions is a text that states its system, or looks like one.
+fn is_in_words(text: &str) -> bool {
+    let first = text.trim_matches('|').split('|').next().unwrap_or_default();
+    // An encoded polyline has no digits.
+    first.bytes().any(|byte| byte.is_ascii_digit())
+        && match Position::parse(first) {
+            Ok(position) => position.numbers().is_none(),
+            Err(error) => !error.is_unlike_any(),
+        }
 }
 
 fn epsg(text: &str) -> Result<u32, HttpError> {
@@ -158,6 +192,30 @@ mod tests {
         let xy = Coordinates { axes: AxisOrder::Xy, ..lat_lng() };
         assert_eq!(xy.positions("172.5,-43.5|1.98,27.6", 2), expected);
         assert_eq!(lat_lng().positions("_p~iF~ps|U", 2), Ok(vec![DVec2::new(-120.2, 38.5)]));
+    }
+
+    #[test]
+    fn a_position_in_words_states_its_own_system() {
+        let zone = Coordinates { crs: Crs::from_epsg(32616).expect("a zone"), axes: AxisOrder::Xy };
+        let texts = "16SGF500180|16N 750050 4018050|750050,4018050";
+        assert_eq!(zone.positions(texts, 9), Ok(vec![DVec2::new(750_050.0, 4_018_050.0); 3]));
+        let expected = DVec2::new(-84.215, 36.277);
+        for text in ["36.277N 84.215W", "36°16'37.2\"N, 84°12'54\"W", "84.215W,36.277N"] {
+            let at = lat_lng().position("from", text).unwrap_or_else(|error| panic!("{error:?}"));
+            assert!(at.distance(expected) < 1e-9, "{text}: {at}");
+            assert_eq!(lat_lng().positions(text, 9), Ok(vec![at]));
+        }
+        for (wrong, part) in [
+            ("16S 755447 4024162", "location 1 '16S 755447 4024162' can be read as zone 16, band S"),
+            ("36N,84W|16SGF50018", "location 2 '16SGF50018' is not a grid reference"),
+            ("36.2°,84.1°", "can be read as 36.2N 84.1E, or as 84.1N 36.2E"),
+        ] {
+            let refusal = lat_lng().positions(wrong, 9).expect_err(wrong);
+            assert!(refusal.reason().contains(part), "{refusal:?}");
+        }
+        let native = Coordinates { crs: Crs::local(), axes: AxisOrder::Xy };
+        let refusal = native.position("to", "16SGF500180").expect_err("no system");
+        assert!(refusal.reason().contains("state no coordinate system"), "{refusal:?}");
     }
 
     #[test]

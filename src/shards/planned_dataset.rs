@@ -73,18 +73,14 @@ impl PlannedDataset {
     /// # Errors
     /// An argument is wrong, or the dataset cannot be opened.
     pub fn open(&self, folder: &Path) -> Result<QueriedDataset, ShardError> {
-        let plan = folder.join("plan.json");
-        let fault = |name: &str, found: &str, why: String| {
-            ShardError::from(PlanError::new(&plan, PlanFault::Value(format!("`{name}` is '{found}': {why}"))))
-        };
+        let fault = |name: &str, found: &str, why: String| wrong_value(folder, name, found, &why);
         let parse_raw = |raw: &String| raw.parse().map_err(|error| fault("raw", raw, format!("{error}")));
         let raw = self.raw.as_ref().map(parse_raw).transpose()?;
         let parse_encoding = |encoding: &String| {
             encoding.parse().map_err(|error| fault("height_encoding", encoding, format!("{error}")))
         };
         let height_encoding = self.height_encoding.as_ref().map(parse_encoding).transpose()?;
-        let parse_crs = |crs: &String| Crs::parse(crs).map_err(|error| fault("crs", crs, error.to_string()));
-        let crs = self.crs.as_ref().map(parse_crs).transpose()?;
+        let crs = self.stated_crs(folder)?;
         let dem = DemOptions {
             height_scale: self.height_scale,
             height_offset: self.height_offset,
@@ -102,6 +98,17 @@ impl PlannedDataset {
         Ok(QueriedDataset { path, dataset, crs })
     }
 
+    /// The system of positions that the plan states.
+    ///
+    /// # Errors
+    /// It is none.
+    pub fn stated_crs(&self, folder: &Path) -> Result<Option<Crs>, ShardError> {
+        let parse = |crs: &String| {
+            Crs::parse(crs).map_err(|error| wrong_value(folder, "crs", crs, &error.to_string()))
+        };
+        self.crs.as_ref().map(parse).transpose()
+    }
+
     /// The files that the opened dataset is read of, as inputs of a plan in `folder`.
     ///
     /// # Errors
@@ -112,6 +119,12 @@ impl PlannedDataset {
             None => inputs(&self.file, &elevation_files(&self.path(folder))?, folder),
         }
     }
+}
+
+/// The error about a value of the plan in `folder`.
+fn wrong_value(folder: &Path, name: &str, found: &str, why: &str) -> ShardError {
+    let fault = PlanFault::Value(format!("`{name}` is '{found}': {why}"));
+    PlanError::new(&folder.join("plan.json"), fault).into()
 }
 
 /// A scene file, which a plan in `folder` calls `stated`, and the files that it was made of.

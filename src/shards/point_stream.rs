@@ -17,7 +17,8 @@ use crate::error::{PlanError, PlanFault, ShardError};
 use sandtable_base::limits::INPUT_BYTES;
 use sandtable_files::csv::{LineError, numbered_lines};
 use sandtable_files::disk::{self, ReadFileCause, ReadFileError, SystemError};
-use sandtable_query::positions::{PositionColumns, PositionFault, PositionsError, WrittenPosition};
+use sandtable_geom::crs::Crs;
+use sandtable_query::positions::{PositionColumns, PositionLineFault, PositionsError, WrittenPosition};
 
 /// Bytes that are read at once: enough for all threads to have work.
 const BATCH: usize = 8 << 20;
@@ -30,6 +31,8 @@ const MOST_LINE: usize = 1 << 20;
 pub struct PointStream {
     path: PathBuf,
     file: File,
+    /// The system that positions are brought to.
+    crs: Crs,
     columns: Option<PositionColumns>,
     /// What is read and not yet handed out.
     bytes: Vec<u8>,
@@ -40,18 +43,18 @@ pub struct PointStream {
 }
 
 impl PointStream {
-    /// The table at `path`.
+    /// The table at `path`, for positions in `crs`.
     ///
     /// # Errors
     /// It cannot be read, or is too large.
-    pub fn open(path: &Path) -> Result<Self, ReadFileError> {
+    pub fn open(path: &Path, crs: &Crs) -> Result<Self, ReadFileError> {
         let file = disk::open(path)?;
         let metadata = file.metadata().map_err(|error| ReadFileError::new(path, SystemError::from(error)))?;
         if metadata.len() > INPUT_BYTES.get() {
             return Err(ReadFileError::new(path, ReadFileCause::TooLarge(metadata.len())));
         }
-        let (path, bytes) = (path.to_owned(), Vec::new());
-        Ok(Self { path, file, columns: None, bytes, lines: 0, passed: 0, is_at_end: false })
+        let (path, crs, bytes) = (path.to_owned(), crs.clone(), Vec::new());
+        Ok(Self { path, file, crs, columns: None, bytes, lines: 0, passed: 0, is_at_end: false })
     }
 
     /// Calls `take` with the positions of each batch, in order.
@@ -66,7 +69,7 @@ impl PointStream {
             let text = std::str::from_utf8(&self.bytes[..end]).map_err(|error| {
                 ReadFileError::new(&self.path, ReadFileCause::NotText(self.passed + error.valid_up_to()))
             })?;
-            let (columns, positions) = parse(text, self.columns).map_err(|(line, fault)| {
+            let (columns, positions) = parse(text, self.columns, &self.crs).map_err(|(line, fault)| {
                 let name = disk::display_name(&self.path);
                 PositionsError::from(LineError { name, line: self.lines + line, fault })
             })?;
@@ -107,7 +110,8 @@ type ParsedBatch<'a> = (Option<PositionColumns>, Vec<WrittenPosition<'a>>);
 fn parse<'a>(
     text: &'a str,
     columns: Option<PositionColumns>,
-) -> Result<ParsedBatch<'a>, (usize, PositionFault)> {
+    crs: &Crs,
+) -> Result<ParsedBatch<'a>, (usize, PositionLineFault)> {
     let (columns, start) = match columns {
         Some(columns) => (columns, 0),
         None => {
@@ -120,8 +124,8 @@ fn parse<'a>(
     let pieces = pieces(&text[start..]);
     let parse_piece = |piece: &'a str| {
         let lines = numbered_lines(piece);
-        let position = |(number, line)| columns.position(line).map_err(|fault| (number, fault));
-        lines.map(position).collect::<Result<Vec<_>, (usize, PositionFault)>>()
+        let position = |(number, line)| columns.position(line, crs).map_err(|fault| (number, fault));
+        lines.map(position).collect::<Result<Vec<_>, (usize, PositionLineFault)>>()
     };
     let parsed: Vec<Result<Vec<_>, _>> = pieces.par_iter().copied().map(parse_piece).collect();
     let mut positions = Vec::new();
@@ -173,17 +177,26 @@ mod tests {
 
     #[test]
     fn positions_are_those_of_the_table_read_at_once() {
-        for text in [long_table(), "1,2\n3,4".into(), String::new(), "# only this\n".into(), "x,y\n".into()] {
-            let (_, positions) = parse(&text, None).expect("sound");
-            assert_eq!(positions, parse_positions("p.csv", &text).expect("sound"));
+        let references = "mgrs\n".to_owned() + &"16S GF 500 180\n".repeat(20_000);
+        let zone = Crs::from_epsg(32616).expect("a zone");
+        for text in [
+            long_table(),
+            "1,2\n3,4".into(),
+            String::new(),
+            "# only this\n".into(),
+            "x,y\n".into(),
+            references,
+        ] {
+            let (_, positions) = parse(&text, None, &zone).expect("sound");
+            assert_eq!(positions, parse_positions("p.csv", &text, &zone).expect("sound"));
         }
     }
 
     #[test]
     fn a_wrong_line_has_the_number_that_it_has_in_the_file() {
         let wrong = long_table() + "here,there\n";
-        let (line, _) = parse(&wrong, None).expect_err("no numbers");
-        let whole = parse_positions("p.csv", &wrong).expect_err("no numbers");
+        let (line, _) = parse(&wrong, None, &Crs::local()).expect_err("no numbers");
+        let whole = parse_positions("p.csv", &wrong, &Crs::local()).expect_err("no numbers");
         assert_eq!(line, whole.line);
     }
 }

@@ -10,6 +10,7 @@ use sandtable_earthworks::earthwork::dig;
 use sandtable_editing::edit::{EarthworkDraft, EditPlace, EditValue, NewTable, SceneEdit};
 use sandtable_editing::editor::{EditError, OnConflict, SaveError, SceneEditor};
 use sandtable_editing::effect::EditEffect;
+use sandtable_geom::crs::Crs;
 use sandtable_scene::scene_file::open_scene;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::lattice::Lattice;
@@ -211,7 +212,8 @@ fn places_are_written_in_the_system_of_the_file() {
     let at = DVec2::new(750_123.0, 4_017_500.5);
     editor.apply(&SceneEdit::add_label("Here", at.to_array(), "point"), &scene).expect("sound");
     let stated = **editor.document().labels[0].at.as_ref().expect("stated");
-    assert!((-85.0..-83.0).contains(&stated[0]) && (36.0..37.0).contains(&stated[1]), "{stated:?}");
+    let degrees = stated.numbers().expect("two numbers");
+    assert!((-85.0..-83.0).contains(&degrees.x) && (36.0..37.0).contains(&degrees.y), "{stated:?}");
     let built = editor.source().build(&|_| ()).expect("sound");
     let label = built.labels[0].ground.truncate().as_dvec2() + built.lattice.origin();
     assert!(label.distance(at) < 0.1, "{label} for {at}");
@@ -344,4 +346,33 @@ proptest! {
         while editor.undo().is_some() {}
         prop_assert_eq!(editor.text(), text.as_str());
     }
+}
+
+#[test]
+fn points_in_words_are_the_places_of_points_in_numbers() {
+    let scene = |at: &str, line: &str| {
+        let text = format!(
+            "points_crs = \"EPSG:4326\"\n\n[terrain]\ndem = \"dem.tif\"\n\n[[label]]\ntext = \"Here\"\nat = {at}\n\n[[road]]\nwidth = 9\npoints = {line}\n\n\
+             [[camera]]\nname = \"one\"\neye = {at}\neye_height = 300\nlook_at = [-84.2, 36.25]\n"
+        );
+        let scratch = Scratch::new();
+        fs::copy(Path::new(ROOT).join("assets/jacksboro/dem.tif"), scratch.at("dem.tif")).expect("copied");
+        scratch.write("scene.toml", text);
+        open_scene(&scratch.at("scene.toml"), &[], &|_| ()).unwrap_or_else(|error| panic!("{error:?}"))
+    };
+    let words = scene(
+        "\"16S GF 500 180\"",
+        "[\"36.27N 84.22W\", \"16N 751000 4019000\", \"84°12'W 36°18'N\", [-84.19, 36.31]]",
+    );
+    let geographic = |x: f64, y: f64| {
+        let zone = Crs::from_epsg(32616).expect("a zone");
+        zone.transform(&Crs::wgs84(), DVec2::new(x, y)).expect("in it").to_array()
+    };
+    let at = format!("{:?}", geographic(750_050.0, 4_018_050.0));
+    let second = geographic(751_000.0, 4_019_000.0);
+    let line = format!("{:?}", [[-84.22, 36.27], second, [-84.2, 36.3], [-84.19, 36.31]]);
+    let numbers = scene(&at, &line);
+    let off_m = words.labels[0].ground.distance(numbers.labels[0].ground);
+    assert!(off_m < 0.01, "{off_m}");
+    assert_eq!(words.cameras.len(), 1);
 }

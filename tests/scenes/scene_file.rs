@@ -16,6 +16,7 @@ use sandtable_description::scalar::Scalar;
 use sandtable_description::selection::Selection;
 use sandtable_description::words::{Clamp, LabelKind, RampName, RoadSurface};
 use sandtable_geom::crs::Crs;
+use sandtable_geom::position::Position;
 
 /// Every key that there is.
 const COMPLETE: &str = r##"title = "Tal 山谷"
@@ -257,7 +258,7 @@ fn features_are_read_with_their_sources() {
     let [first, second] = &document.roads[..] else { panic!("two roads") };
     assert_eq!(first.name.as_deref(), Some("B 17"));
     let points = first.source.points.as_ref().expect("points");
-    assert_eq!(**points, [[-87.0, 42.0], [-87.1, 42.1], [-87.2, 42.0]]);
+    assert_eq!(**points, [[-87.0, 42.0], [-87.1, 42.1], [-87.2, 42.0]].map(Position::from));
     assert_eq!(Some(first.source.span()), points.span());
     assert_eq!(first.surface.stated(), Some(&FeatureValue::Fixed(RoadSurface::Gravel)));
     assert_eq!(second.source.file.as_ref().map(|file| file.as_str()), Some("roads.geojson"));
@@ -267,7 +268,7 @@ fn features_are_read_with_their_sources() {
     assert_eq!(wanted["highway"], ["primary", "secondary"].map(|kind| Scalar::Text(kind.into())));
     assert_eq!(document.lakes[0].level, Some(FeatureValue::Fixed(412.5)));
     let model = &document.models[0];
-    assert_eq!((model.file.as_str(), model.at.as_deref()), ("models/barn.3ds", Some(&[1.0, 2.0])));
+    assert_eq!((model.file.as_str(), model.at.as_deref()), ("models/barn.3ds", Some(&[1.0, 2.0].into())));
     assert_eq!((model.clamp, document.labels[0].kind), (Clamp::Relative, LabelKind::Summit));
     assert_eq!(document.cameras[1].eye_elevation, Some(3000.0));
 }

@@ -147,7 +147,11 @@ fn shared_definitions() -> [(String, Value); 5] {
             "color",
             json!({ "type": "string", "pattern": "^#([0-9a-fA-F]{3}|[0-9a-fA-F]{6}|[0-9a-fA-F]{8})$" }),
         ),
-        ("point", json!({ "type": "array", "items": number(COORDINATES), "minItems": 2, "maxItems": 2 })),
+        (
+            "point",
+            json!({ "anyOf": [{ "type": "array", "items": number(COORDINATES), "minItems": 2, "maxItems": 2 }, text()],
+                    "description": "Two numbers of the system, or a position in words: a grid reference, UTM, or latitude and longitude." }),
+        ),
         ("scalar", json!({ "type": ["string", "number", "boolean"] })),
     ];
     definitions.map(|(name, value)| (name.to_owned(), value))

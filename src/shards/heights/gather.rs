@@ -17,6 +17,7 @@ use crate::point_stream::PointStream;
 use crate::record::result_path;
 use sandtable_files::disk::{self, ReadFileError, SystemError, WriteFileError};
 use sandtable_files::output_files::OutputFiles;
+use sandtable_geom::crs::Crs;
 use sandtable_query::positions::WrittenPosition;
 use sandtable_raster::answer::Answer;
 
@@ -45,7 +46,9 @@ pub fn gather(plan: &ShardPlan, arguments: &HeightsArguments, path: &Path) -> Re
         order.read_exact(&mut id).map_err(|_| wrong_order())?;
         shards.get_mut(u32::from_le_bytes(id) as usize).ok_or_else(wrong_order)?.next()
     };
-    let table = PointStream::open(&plan.folder.join(&arguments.points))?;
+    // Without a system, the table has no positions but numbers, which are written as they stand there.
+    let crs = arguments.dataset.stated_crs(&plan.folder)?.unwrap_or_else(Crs::local);
+    let table = PointStream::open(&plan.folder.join(&arguments.points), &crs)?;
     let mut files = OutputFiles::default();
     let mut failure = None;
     let written = files.write_with(path, |out| {

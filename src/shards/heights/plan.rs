@@ -17,6 +17,7 @@ use crate::shard::{PointRange, Shard, ShardWindow};
 use sandtable_base::limits::{PLAN_POINTS, PLAN_SHARDS};
 use sandtable_files::disk::{SystemError, WriteFileError};
 use sandtable_files::part_file::{self, PartFile};
+use sandtable_geom::crs::Crs;
 use sandtable_query::positions::WrittenPosition;
 use sandtable_raster::raster::Raster;
 use sandtable_raster::windows::RasterWindow;
@@ -48,10 +49,11 @@ pub fn plan(
     arguments.answers(queried, &[])?;
     let table = folder.join(&arguments.points);
     let header = queried.dataset.header();
-    let grid = PointGrid { header: &header, transform: SourceTransform::new(&header, &queried.crs) };
+    let transform = SourceTransform::new(&header, &queried.crs);
+    let grid = PointGrid { header: &header, crs: &queried.crs, transform };
     let mut squares = PointSquares::new((header.width, header.height));
     let mut count = 0;
-    PointStream::open(&table)?.each_batch(|positions| {
+    PointStream::open(&table, &queried.crs)?.each_batch(|positions| {
         count += positions.len() as u64;
         if count > PLAN_POINTS.get() {
             return Err(PlanError::new(&table, PlanFault::TooManyPoints).into());
@@ -97,6 +99,8 @@ fn shard(id: usize, part: &PointShard, size: (u32, u32), points: PointRange) -> 
 /// Where positions lie in the grid of a raster.
 struct PointGrid<'a> {
     header: &'a Raster,
+    /// The system of positions.
+    crs: &'a Crs,
     transform: SourceTransform<'a>,
 }
 
@@ -122,7 +126,7 @@ fn write_points(
     let order_part = PartFile::create(folder).map_err(failed)?;
     let mut order = BufWriter::new(order_part.file());
     let mut points = ScatteredPoints::new(points_part.file(), parts);
-    PointStream::open(table)?.each_batch(|positions| {
+    PointStream::open(table, grid.crs)?.each_batch(|positions| {
         for (position, at) in positions.iter().zip(grid.of(positions)) {
             let shard = routes.shard(at);
             order.write_all(&shard.to_le_bytes()).map_err(failed)?;

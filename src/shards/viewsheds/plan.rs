@@ -11,6 +11,7 @@ use crate::point_stream::PointStream;
 use crate::shard::{Shard, ShardWindow};
 use crate::viewsheds::arguments::ViewshedsArguments;
 use sandtable_base::limits::{PLAN_OBSERVERS, RASTER_SAMPLES};
+use sandtable_geom::crs::Crs;
 use sandtable_geom::morton;
 use sandtable_geom::rect::Rect;
 use sandtable_query::dataset::{QueryError, transform};
@@ -46,7 +47,7 @@ pub fn plan(
     folder: &Path,
 ) -> Result<usize, ShardError> {
     let table = folder.join(&arguments.points);
-    let at = observers(&table)?;
+    let at = observers(&table, &queried.crs)?;
     check_ground(queried, &at)?;
     let ground = frame(queried, at[0])?;
     let observer = |&at: &DVec2| -> Result<PlannedObserver, ShardError> {
@@ -64,10 +65,10 @@ pub fn plan(
     Ok(lines.len())
 }
 
-/// The positions of a table, at least one.
-fn observers(table: &Path) -> Result<Vec<DVec2>, ShardError> {
+/// The positions of a table in `crs`, at least one.
+fn observers(table: &Path, crs: &Crs) -> Result<Vec<DVec2>, ShardError> {
     let mut observers = Vec::new();
-    PointStream::open(table)?.each_batch(|positions| {
+    PointStream::open(table, crs)?.each_batch(|positions| {
         observers.extend(positions.iter().map(|position| position.at));
         if observers.len() as u64 > PLAN_OBSERVERS.get() {
             return Err(PlanError::new(table, PlanFault::TooManyObservers).into());

@@ -380,3 +380,37 @@ fn cubic_heights_run_smoothly_through_the_samples() {
     assert!(heights("cubic").ends_with("20,15,2.25,Ok\n"), "{}", heights("cubic"));
     assert!(heights("bilinear").ends_with("20,15,2.5,Ok\n"), "{}", heights("bilinear"));
 }
+
+#[test]
+fn positions_in_words_are_answered_as_numbers_and_printed_in_the_same_forms() {
+    let dem = "assets/jacksboro/dem.tif";
+    let numbers = run(&["height", dem, "--at", "750050,4018050", "--crs", "EPSG:32616"]).ok();
+    let height =
+        |out: &str| out.lines().nth(1).and_then(|line| line.split(',').nth_back(1).map(str::to_owned));
+    let expected: f64 = height(&numbers).expect("a row").parse().expect("a height");
+    let degrees =
+        run(&["height", dem, "--at", "750050,4018050", "--crs", "EPSG:32616", "--positions", "dms"]).ok();
+    let degrees = degrees.lines().nth(1).and_then(|row| row.split(',').next()).expect("a position");
+    assert!(degrees.starts_with("36°16′") && degrees.ends_with("″W"), "{degrees}");
+    for text in ["16S GF 500 180", "16N 750050 4018050", degrees] {
+        for form in ["mgrs", "usng", "utm", "dd", "dm", "dms"] {
+            let out = run(&["height", dem, "--at", text, "--positions", form]).out;
+            assert!(out.starts_with("position,height,status\n"), "{out}");
+            let row = out.lines().nth(1).expect("a row");
+            let printed = row.split(',').next().expect("a position");
+            let again = run(&["height", dem, "--at", printed, "--positions", form]).out;
+            for out in [&out, &again] {
+                let found: f64 = height(out).expect("a row").parse().expect("a height");
+                assert!((found - expected).abs() < 3.0, "{text} {form}: {out}, {numbers}");
+            }
+        }
+    }
+    let reference = run(&["height", dem, "--at", "16S GF 500 180", "--positions", "mgrs"]);
+    assert!(reference.err.contains("squares of 100 m"), "{}", reference.err);
+    assert!(reference.out.contains("\n16SGF5005018050,"));
+    let refused = run(&["height", dem, "--at", "16S 755447 4024162"]);
+    assert!(refused.err.contains("band S") && refused.err.contains("southern hemisphere"), "{}", refused.err);
+    let scratch = grid();
+    let nowhere = run_in(scratch.folder(), &["height", "grid.asc", "--at", "16S GF 500 180"]);
+    assert!(nowhere.err.contains("state no coordinate system"), "{}", nowhere.err);
+}

@@ -17,7 +17,9 @@ scene file, and [FINDINGS.md](FINDINGS.md) lists what it finds.
 
 A scene file is TOML in UTF-8. Lengths and heights are meters, angles degrees, compass directions clockwise from north,
 points `[easting, northing]` or `[longitude, latitude]`, and file names relative to the file that they stand in, unless a
-key says otherwise. A key of a value without a default is needed. An expression gives a value for each feature from its
+key says otherwise. A point may also be a text with a system of its own, WGS 84, whatever `crs` is: a grid reference, whose
+square's middle is taken (`\"16S GF 500 180\"`), UTM (`\"16N 750050 4018050\"`), or latitude and longitude with their letters
+(`\"36.277N 84.215W\"`). What can be read in two ways is an error that names both. A key of a value without a default is needed. An expression gives a value for each feature from its
 properties, such as `\"lanes * 3.5 ?? 8\"`.
 ";
 
