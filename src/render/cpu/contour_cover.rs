@@ -27,7 +27,7 @@ pub fn contour_cover(list: &DrawList, camera: &Camera, picture: &Rendering) -> V
     };
     let grounds: Vec<LinedGround<'_>> = insets.chain([whole]).collect();
     let (width, height) = (picture.pixels.width() as usize, picture.pixels.height() as usize);
-    let seen = SeenGround { camera, picture, width, height };
+    let seen = ContourView { camera, picture, width, height };
     let cover = |index: usize| {
         let Some(hit) = seen.hit(index % width, index / width) else { return 0.0 };
         let ground = grounds.iter().find(|ground| ground.holds(hit.world.truncate()));
@@ -57,14 +57,14 @@ impl LinedGround<'_> {
 }
 
 /// The ground that a picture shows.
-struct SeenGround<'a> {
+struct ContourView<'a> {
     camera: &'a Camera,
     picture: &'a Rendering,
     width: usize,
     height: usize,
 }
 
-impl SeenGround<'_> {
+impl ContourView<'_> {
     /// The bare ground at a pixel, in world space; `None` where the picture shows something else.
     fn world(&self, column: usize, row: usize) -> Option<Vec3> {
         if column >= self.width || row >= self.height {
