@@ -29,7 +29,7 @@ use glam::Vec3;
 use sandtable_draw::list::{DrawItem, DrawList, DrawMesh, FeatureId};
 use sandtable_draw::material::Material;
 use sandtable_mesh::sink::VertexId;
-use sandtable_mesh::write::Remarks;
+use sandtable_mesh::write::remarks::Remarks;
 
 /// A prepared draw list ([`prepare::prepare`]) with names and remarks for its file.
 #[derive(Clone, Copy)]

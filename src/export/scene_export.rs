@@ -6,7 +6,7 @@ use crate::{SceneExport, glb, obj, prepare};
 use sandtable_draw::list::DrawList;
 use sandtable_files::disk::{self, WriteFileError};
 use sandtable_files::output_files::OutputFiles;
-use sandtable_mesh::write::Remarks;
+use sandtable_mesh::write::remarks::Remarks;
 use sandtable_picture as picture;
 use sandtable_scene::scene_model::SceneModel;
 

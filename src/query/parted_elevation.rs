@@ -138,7 +138,8 @@ mod tests {
     use crate::bounded_mesh::BoundedMesh;
     use crate::ground::MetricGround;
     use glam::DVec2;
-    use sandtable_mesh::write::{self, MeshFormat, Remarks};
+    use sandtable_mesh::write::remarks::Remarks;
+    use sandtable_mesh::write::{self, MeshFormat};
     use sandtable_raster::raster::{Samples, north_up_nodes};
 
     /// Ground of 700 × 40 posts, in patches of 128, with holes or without.

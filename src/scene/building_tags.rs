@@ -17,8 +17,8 @@ use sandtable_description::features::BuildingTable;
 use sandtable_description::scalar::Scalar;
 use sandtable_description::words::RoofShape;
 use sandtable_structure::building::STORY_M;
-use sandtable_structure::roof::UnitRoof;
 use sandtable_structure::roof_rectangle::RoofTurn;
+use sandtable_structure::unit_roof::UnitRoof;
 
 /// The tallest that a property may say, meters; as `height` in a scene file.
 const TALLEST_M: f64 = 1000.0;

@@ -18,7 +18,7 @@ use crate::building_footprint::BuildingFootprint;
 use crate::deck_check::{OpenSurfaceError, open_edges};
 use crate::faces::Faces;
 use crate::fence_band::{noise, shaded};
-use crate::roof::{UnitRoof, centroid};
+use crate::unit_roof::{UnitRoof, centroid};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::DrawMesh;
 use sandtable_geom::polygon;

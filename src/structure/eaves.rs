@@ -16,7 +16,7 @@ use glam::{DVec2, DVec3, Vec3};
 use crate::building::{BuildingLevels, Paint};
 use crate::faces::Faces;
 use crate::fence_band::shaded;
-use crate::roof::UnitRoof;
+use crate::unit_roof::UnitRoof;
 use sandtable_draw::list::DrawMesh;
 use sandtable_geom::polygon;
 

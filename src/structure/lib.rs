@@ -30,3 +30,4 @@ mod roof_ridged;
 mod roof_skillion;
 pub mod straight_skeleton;
 pub mod tunnel;
+pub mod unit_roof;

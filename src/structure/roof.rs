@@ -22,21 +22,9 @@ use crate::roof_rectangle::{RoofRectangle, RoofTurn};
 use crate::roof_ridged::{gambrel, half_hipped, round, saltbox};
 use crate::roof_skillion::skillion;
 use crate::straight_skeleton;
+use crate::unit_roof::{LEAST_ASIDE_M, UnitRoof, level_edge};
 use sandtable_description::words;
 use sandtable_geom::polygon;
-
-/// A roof with a rise of one.
-#[derive(Clone, Debug, PartialEq)]
-pub struct UnitRoof {
-    /// Its shape; not always the stated one.
-    pub shape: words::RoofShape,
-    /// The footprint's rings with the rise at each vertex, 0..=1; all 0 but at gables.
-    pub edge: Vec<Vec<DVec3>>,
-    /// Flat polygons, counter-clockwise seen from above, X, Y and rise.
-    pub faces: Vec<Vec<DVec3>>,
-    /// How far it is in plan from the eaves to the ridge, meters; 0 for a flat one. Rise over run is its pitch.
-    pub run_m: f64,
-}
 
 /// The roof of the stated shape over a footprint, or the nearest that can be made, with its ridge along the longer sides.
 pub fn roof(footprint: &BuildingFootprint, wanted: words::RoofShape) -> UnitRoof {
@@ -63,11 +51,6 @@ pub fn turned_roof(footprint: &BuildingFootprint, wanted: words::RoofShape, turn
         words::RoofShape::Dome => dome(footprint).or_else(|| pyramidal(footprint)),
     };
     made.unwrap_or_else(|| flat(footprint))
-}
-
-/// The footprint's rings at the eaves.
-pub(crate) fn level_edge(footprint: &BuildingFootprint) -> Vec<Vec<DVec3>> {
-    footprint.rings().iter().map(|ring| ring.iter().map(|at| at.extend(0.0)).collect()).collect()
 }
 
 fn flat(footprint: &BuildingFootprint) -> UnitRoof {
@@ -103,9 +86,6 @@ fn gabled(footprint: &BuildingFootprint, turn: RoofTurn) -> Option<UnitRoof> {
     Some(UnitRoof { shape: words::RoofShape::Gabled, edge: vec![edge], faces: vec![side, other], run_m })
 }
 
-/// No vertex of a footprint may lie nearer to a ridge or a bend of its roof, meters.
-pub(crate) const LEAST_ASIDE_M: f64 = 0.02;
-
 /// The ring with a vertex at both crossings of the line where `aside` is 0, and their indices; `None` otherwise.
 fn crossed(ring: &[DVec2], aside: impl Fn(DVec2) -> f64) -> Option<(Vec<DVec2>, [usize; 2])> {
     let (mut with, mut crossings) = (Vec::with_capacity(ring.len() + 2), Vec::new());
@@ -136,50 +116,10 @@ fn bent(footprint: &BuildingFootprint) -> Option<UnitRoof> {
 /// A hipped roof over inward corners rises at least so far inward, meters.
 const LEAST_VIEW_M: f64 = 0.05;
 
-/// The center of a ring's area.
-pub fn centroid(ring: &[DVec2]) -> DVec2 {
-    let first = ring.first().copied().unwrap_or_default();
-    let (mut sum, mut area) = (DVec2::ZERO, 0.0);
-    for (from, to) in polygon::edges(ring) {
-        let (a, b) = (from - first, to - first);
-        sum += (a + b) * a.perp_dot(b);
-        area += a.perp_dot(b);
-    }
-    if area == 0.0 { first } else { first + sum / (3.0 * area) }
-}
-
-/// A face of a roof that does not face up.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("face {face} of a {shape:?} roof covers {area_m2} m²")]
-pub struct UnitRoofError {
-    /// Its place among the roof's faces.
-    pub face: usize,
-    /// The roof's shape.
-    pub shape: words::RoofShape,
-    /// What it covers in plan, not above 0.
-    pub area_m2: f64,
-}
-
-/// The area in plan that a roof's faces cover, in square meters; each must face up.
-///
-/// # Errors
-/// The first face that does not.
-pub fn check(roof: &UnitRoof) -> Result<f64, UnitRoofError> {
-    let mut sum = 0.0;
-    for (face, corners) in roof.faces.iter().enumerate() {
-        let ring: Vec<DVec2> = corners.iter().map(|at| at.truncate()).collect();
-        let area_m2 = polygon::doubled_area(&ring) / 2.0;
-        if area_m2 <= 0.0 {
-            return Err(UnitRoofError { face, shape: roof.shape, area_m2 });
-        }
-        sum += area_m2;
-    }
-    Ok(sum)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::unit_roof::check;
 
     fn footprint(points: &[(f64, f64)], turn_deg: f64) -> BuildingFootprint {
         let turn = DVec2::from_angle(turn_deg.to_radians());

@@ -5,7 +5,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::building_footprint::BuildingFootprint;
-use crate::roof::{UnitRoof, centroid, level_edge};
+use crate::unit_roof::{UnitRoof, centroid, level_edge};
 use sandtable_description::words;
 use sandtable_geom::polygon;
 
@@ -60,7 +60,7 @@ fn middle(footprint: &BuildingFootprint) -> Option<(DVec2, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::roof::check;
+    use crate::unit_roof::check;
 
     #[test]
     fn a_dome_covers_a_round_tower_ring_by_ring() {

@@ -17,7 +17,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::building_footprint::BuildingFootprint;
-use crate::roof::{UnitRoof, level_edge};
+use crate::unit_roof::{UnitRoof, level_edge};
 use sandtable_description::words;
 use sandtable_geom::polygon;
 
@@ -104,7 +104,7 @@ fn welded(face: &[DVec2], wall: Wall, corners: &mut Vec<DVec3>) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::roof;
+    use crate::unit_roof::check;
 
     fn turned(points: &[(f64, f64)], turn_deg: f64) -> BuildingFootprint {
         let turn = DVec2::from_angle(turn_deg.to_radians());
@@ -121,7 +121,7 @@ mod tests {
             counts.sort_unstable();
             assert_eq!(counts, [3, 3, 4, 4]);
             assert!((roof.run_m - 4.0).abs() < 1e-6);
-            assert!((roof::check(&roof).expect("upward") - 96.0).abs() < 1e-2);
+            assert!((check(&roof).expect("upward") - 96.0).abs() < 1e-2);
             let ridge: Vec<&DVec3> = roof.faces.iter().flatten().filter(|at| at.z > 0.999).collect();
             assert_eq!(ridge.len(), 6, "two ends, each in three faces");
         }

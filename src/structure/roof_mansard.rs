@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use crate::roof::UnitRoof;
+use crate::unit_roof::UnitRoof;
 use sandtable_description::words;
 use sandtable_geom::polygon;
 
@@ -61,8 +61,8 @@ fn bent(at: DVec3) -> DVec3 {
 mod tests {
     use super::*;
     use crate::building_footprint::BuildingFootprint;
-    use crate::roof::check;
     use crate::roof_hipped::hipped;
+    use crate::unit_roof::check;
     use glam::DVec2;
 
     #[test]

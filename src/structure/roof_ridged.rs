@@ -14,8 +14,8 @@
 use glam::{DVec2, DVec3};
 
 use crate::building_footprint::BuildingFootprint;
-use crate::roof::{LEAST_ASIDE_M, UnitRoof};
 use crate::roof_rectangle::{RoofRectangle, RoofTurn};
+use crate::unit_roof::{LEAST_ASIDE_M, UnitRoof};
 use sandtable_description::words;
 use sandtable_geom::polygon;
 
@@ -178,7 +178,7 @@ pub(crate) fn half_hipped(footprint: &BuildingFootprint, turn: RoofTurn) -> Opti
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::roof::check;
+    use crate::unit_roof::check;
 
     fn house(turn_deg: f64) -> BuildingFootprint {
         let turn = DVec2::from_angle(turn_deg.to_radians());

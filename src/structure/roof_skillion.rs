@@ -10,8 +10,8 @@
 use glam::{DVec2, DVec3};
 
 use crate::building_footprint::BuildingFootprint;
-use crate::roof::UnitRoof;
 use crate::roof_rectangle::{RoofRectangle, RoofTurn};
+use crate::unit_roof::UnitRoof;
 use sandtable_description::words;
 use sandtable_geom::polygon;
 
@@ -67,7 +67,7 @@ fn southward(way: DVec2) -> DVec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::roof::check;
+    use crate::unit_roof::check;
 
     fn footprint(points: &[(f64, f64)]) -> BuildingFootprint {
         let ring: Vec<DVec2> = points.iter().map(|&at| DVec2::from(at)).collect();

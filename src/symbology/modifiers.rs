@@ -1,6 +1,6 @@
 //! Sector 1 and sector 2 modifiers of land units: MIL-STD-2525D, tables D-V and D-VI.
 
-use crate::entities::SymbolEntity;
+use crate::entities::entity::SymbolEntity;
 use crate::fields::SymbolSet;
 
 /// Above the icon.

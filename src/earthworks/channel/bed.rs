@@ -2,7 +2,7 @@
 
 use crate::channel::carve::CenterlinePiece;
 use crate::channel::course::{ChannelCourse, CourseStation};
-use crate::channel::{ChannelError, Cut};
+use crate::channel::river_cut::{ChannelError, Cut};
 use glam::DVec2;
 use sandtable_base::limits::RIVER_POSTS;
 use sandtable_geom::segment;

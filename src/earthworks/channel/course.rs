@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 use glam::DVec2;
 
 use crate::alignment::Alignment;
-use crate::channel::Channel;
+use crate::channel::river_cut::Channel;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::query::{Interpolation, ground_height};
 use sandtable_terrain::sight::crossings::crossings;

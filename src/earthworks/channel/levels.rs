@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::channel::course::{ChannelCourse, CourseStation};
 use crate::channel::reaches::{Sill, reaches};
-use crate::channel::{Climb, Cut};
+use crate::channel::river_cut::{Climb, Cut};
 use crate::falling_levels::{WeightedLevel, fit_falling};
 use sandtable_geom::polyline::{VertexKey, vertex_key};
 

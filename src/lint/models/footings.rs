@@ -1,7 +1,7 @@
 //! Models that float, and models that are buried: the gap between each corner of the foot and the ground under it.
 
 use crate::context::LintContext;
-use crate::models::StandingModel;
+use crate::models::standing::StandingModel;
 use crate::sink::FindingSink;
 use crate::worst::WorstOfTables;
 use sandtable_description::finding_code::FindingCode;

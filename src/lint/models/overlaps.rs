@@ -5,7 +5,7 @@
 use glam::{DVec2, Vec3};
 
 use crate::context::LintContext;
-use crate::models::StandingModel;
+use crate::models::standing::StandingModel;
 use crate::sink::FindingSink;
 use crate::worst::WorstOfTables;
 use sandtable_description::finding_code::FindingCode;

@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 use glam::{Vec2, Vec3};
 
 use crate::context::LintContext;
-use crate::models::StandingModel;
+use crate::models::standing::StandingModel;
 use crate::sink::FindingSink;
 use crate::worst::WorstOfTables;
 use sandtable_description::finding_code::FindingCode;

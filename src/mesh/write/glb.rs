@@ -19,7 +19,8 @@ use glam::{Mat4, Vec2, Vec3};
 use serde_json::{Map, Value, json};
 
 use crate::sink::VertexId;
-use crate::write::{Remarks, count_u32, little_endian};
+use crate::write::remarks::Remarks;
+use crate::write::words::{count_u32, little_endian};
 use sandtable_geom::aabb::Aabb;
 
 /// From X east, Y north, Z up to glTF's axes, column by column.

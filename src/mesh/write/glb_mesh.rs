@@ -8,7 +8,8 @@ use crate::source::{MeshSize, MeshSource};
 use crate::write::glb::{
     ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, FLOAT, GLTF_FROM_WORLD, UNSIGNED_INT, write_chunks,
 };
-use crate::write::{MeshWriteError, Remarks, little_endian};
+use crate::write::remarks::Remarks;
+use crate::write::words::{MeshWriteError, little_endian};
 
 /// Bytes of a vertex and of a triangle: three numbers of 32 bits.
 const BYTES: usize = 12;

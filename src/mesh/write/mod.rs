@@ -7,13 +7,15 @@ pub mod glb;
 pub mod glb_mesh;
 pub mod obj;
 pub mod ply;
+pub mod remarks;
 pub mod stl;
 pub mod three_mf;
+pub mod words;
 
-use std::borrow::Cow;
 use std::io::{self, Write};
 
 use crate::source::MeshSource;
+use crate::write::remarks::Remarks;
 
 /// A format of mesh files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,42 +43,10 @@ impl MeshFormat {
     }
 }
 
-/// Why a mesh does not fit a format; the inner error of an [`io::ErrorKind::InvalidInput`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[allow(missing_docs, reason = "the messages explain the variants")]
-pub enum MeshWriteError {
-    #[error("{count} {what} exceed the {} that the format can hold; raise the maximum error", u32::MAX)]
-    TooLarge { count: usize, what: &'static str },
-    #[error("a glTF mesh needs at least one triangle")]
-    Empty,
-}
-
-impl From<MeshWriteError> for io::Error {
-    fn from(error: MeshWriteError) -> Self {
-        Self::new(io::ErrorKind::InvalidInput, error)
-    }
-}
-
-/// Remarks about the content of a file.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Remarks {
-    lines: Vec<String>,
-    short: String,
-}
-
-impl Remarks {
-    /// Full sentences, and a short form for the 80 bytes of an STL header. Control characters become `?`, so that no
-    /// line can end a comment.
-    pub fn new(lines: &[String], short: &str) -> Self {
-        let printable = |line: &str| line.replace(char::is_control, "?");
-        Self { lines: lines.iter().map(|line| printable(line)).collect(), short: printable(short) }
-    }
-}
-
 /// Writes `mesh` in a format.
 ///
 /// # Errors
-/// `out` cannot be written, the mesh cannot be made, or does not fit the format ([`MeshWriteError`]).
+/// `out` cannot be written, the mesh cannot be made, or does not fit the format ([`MeshWriteError`](words::MeshWriteError)).
 pub fn write(
     format: MeshFormat,
     mesh: &mut impl MeshSource,
@@ -91,25 +61,11 @@ pub fn write(
     }
 }
 
-/// `count` as the 32 bits that a format has for it.
-fn count_u32(count: usize, what: &'static str) -> Result<u32, MeshWriteError> {
-    u32::try_from(count).map_err(|_| MeshWriteError::TooLarge { count, what })
-}
-
-/// `values` as little-endian bytes; copied only on big-endian processors. All words of `T` must have its alignment.
-fn little_endian<T: bytemuck::Pod>(values: &[T]) -> Cow<'_, [u8]> {
-    let bytes: &[u8] = bytemuck::cast_slice(values);
-    if cfg!(target_endian = "little") {
-        return bytes.into();
-    }
-    bytes.chunks_exact(align_of::<T>()).flat_map(|word| word.iter().rev()).copied().collect()
-}
-
 #[cfg(test)]
 pub(in crate::write) mod samples {
-    use super::Remarks;
     use crate::sink::{MeshSink, VertexId};
     use crate::trimesh::TriMesh;
+    use crate::write::remarks::Remarks;
     use glam::Vec3;
 
     /// A square of two triangles, one corner raised.
@@ -137,11 +93,6 @@ mod tests {
     fn formats_are_known_by_their_extensions_in_any_case() {
         assert_eq!(MeshFormat::from_extension("GLB"), Some(MeshFormat::Glb));
         assert_eq!(MeshFormat::from_extension("gltf"), None);
-    }
-
-    #[test]
-    fn remarks_are_single_lines() {
-        assert_eq!(samples::remarks().lines, ["a?v 9 9 9", "zwölf"]);
     }
 
     #[test]

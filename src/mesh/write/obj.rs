@@ -8,7 +8,7 @@ use glam::{Vec2, Vec3};
 
 use crate::sink::VertexId;
 use crate::source::MeshSource;
-use crate::write::Remarks;
+use crate::write::remarks::Remarks;
 
 /// Writes `mesh` as one object, each coordinate in the fewest digits that keep its value.
 ///

@@ -3,7 +3,8 @@
 use std::io::{self, Write};
 
 use crate::source::{MeshSize, MeshSource};
-use crate::write::{Remarks, little_endian};
+use crate::write::remarks::Remarks;
+use crate::write::words::little_endian;
 
 /// Writes `mesh`.
 ///

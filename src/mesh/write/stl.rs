@@ -5,7 +5,8 @@ use std::io::{self, Write};
 use glam::{DVec3, Vec3};
 
 use crate::source::MeshSource;
-use crate::write::{Remarks, count_u32, little_endian};
+use crate::write::remarks::Remarks;
+use crate::write::words::{count_u32, little_endian};
 use sandtable_geom::triangle::normal;
 
 /// Bytes of the header. It must not begin with `solid`, as text STL files do.

@@ -6,7 +6,7 @@ use std::io;
 use glam::Vec3;
 
 use crate::trimesh::TriMesh;
-use crate::write::Remarks;
+use crate::write::remarks::Remarks;
 use sandtable_base::archive;
 use sandtable_base::message::xml::escaped;
 

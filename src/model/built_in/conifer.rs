@@ -7,8 +7,8 @@ use std::f32::consts::PI;
 
 use glam::Vec3;
 
-use crate::built_in::colored_vertex;
 use crate::built_in::trunk::Trunk;
+use crate::built_in::vertex::colored_vertex;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::DrawMesh;
 use sandtable_mesh::sink::{MeshSink, VertexId};

@@ -13,9 +13,9 @@
 
 use glam::Vec3;
 
-use crate::built_in::colored_vertex;
 use crate::built_in::lump::{Lump, UnitSphere, mix, waves};
 use crate::built_in::trunk::Trunk;
+use crate::built_in::vertex::colored_vertex;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::DrawMesh;
 

@@ -21,12 +21,11 @@ mod conifer;
 mod lump;
 mod lumpy;
 mod trunk;
-
-use glam::Vec3;
+mod vertex;
 
 use crate::{Census, Model, ModelPart};
 use sandtable_draw::color::Srgba;
-use sandtable_draw::list::{DrawMesh, DrawVertex, MaterialId};
+use sandtable_draw::list::{DrawMesh, MaterialId};
 use sandtable_draw::material::Material;
 
 /// The names of all built-in models.
@@ -70,11 +69,6 @@ pub fn forms(name: &str) -> Vec<&str> {
     }
 }
 
-/// A vertex without texture coordinates.
-fn colored_vertex(position: Vec3, normal: Vec3, color: Srgba) -> DrawVertex {
-    DrawVertex { position: position.to_array(), normal: normal.to_array(), uv: [0.0; 2], color }
-}
-
 fn model(name: &str, mesh: DrawMesh) -> Model {
     let census =
         Census { meshes: 1, vertices: mesh.vertices.len(), faces: mesh.triangles.len(), materials: 1 };
@@ -89,6 +83,7 @@ fn model(name: &str, mesh: DrawMesh) -> Model {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Vec3;
     use sandtable_geom::aabb::Aabb;
 
     fn models() -> impl Iterator<Item = (&'static str, Model)> {

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::built_in::colored_vertex;
+use crate::built_in::vertex::colored_vertex;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::DrawMesh;
 use sandtable_mesh::sink::{MeshSink, VertexId};

@@ -1,6 +1,6 @@
 //! Boundaries and the floors of trenches.
 
-use crate::texture::shade;
+use crate::texture::shade::shade;
 use sandtable_draw::color::Srgba;
 
 /// A dash of a boundary: the violet that maps keep for what cannot be seen on the ground.

@@ -5,7 +5,7 @@
 
 use glam::FloatExt;
 
-use crate::texture::{grain, shade};
+use crate::texture::shade::{grain, shade};
 use sandtable_description::words::Cover;
 use sandtable_draw::color::Srgba;
 

@@ -1,6 +1,6 @@
 //! Roads.
 
-use crate::texture::shade;
+use crate::texture::shade::shade;
 use sandtable_draw::color::Srgba;
 
 /// A carriageway.

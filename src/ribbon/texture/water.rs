@@ -1,6 +1,6 @@
 //! Running water.
 
-use crate::texture::shade;
+use crate::texture::shade::shade;
 use sandtable_draw::color::Srgba;
 
 pub(super) fn river(u: f32, grain: f32) -> Srgba {

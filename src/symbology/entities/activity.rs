@@ -1,6 +1,6 @@
 //! Activities: MIL-STD-2525D, table A-XLVI and appendix G.
 
-use crate::entities::{SymbolEntity, entity};
+use crate::entities::entity::{SymbolEntity, entity};
 
 pub(super) const ACTIVITIES: &[SymbolEntity] = &[
     entity(110300, "improvised explosive device event", "text 39 IED"),

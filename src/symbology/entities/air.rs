@@ -1,6 +1,6 @@
 //! Aircraft: MIL-STD-2525D, table A-III and appendix B.
 
-use crate::entities::{SymbolEntity, entity};
+use crate::entities::entity::{SymbolEntity, entity};
 
 pub(super) const AIRCRAFT: &[SymbolEntity] = &[
     entity(110000, "military", "text 39 MIL"),

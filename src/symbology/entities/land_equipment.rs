@@ -1,6 +1,6 @@
 //! Land equipment: MIL-STD-2525D, table A-XXIII and appendix D.
 
-use crate::entities::{SymbolEntity, entity};
+use crate::entities::entity::{SymbolEntity, entity};
 
 pub(super) const LAND_EQUIPMENT: &[SymbolEntity] = &[
     entity(110200, "machine gun", "@arrow; M100,60 L100,140 M80,140 L120,140"),

@@ -1,6 +1,6 @@
 //! Land installations: MIL-STD-2525D, table A-XXVI and appendix D.
 
-use crate::entities::{SymbolEntity, entity};
+use crate::entities::entity::{SymbolEntity, entity};
 
 pub(super) const LAND_INSTALLATIONS: &[SymbolEntity] = &[
     entity(

@@ -1,6 +1,6 @@
 //! Land units: MIL-STD-2525D, table A-XII and appendix D.
 
-use crate::entities::{SymbolEntity, entity};
+use crate::entities::entity::{SymbolEntity, entity};
 
 pub(super) const LAND_UNITS: &[SymbolEntity] = &[
     entity(110200, "civil affairs", "text 45 CA"),

@@ -4,27 +4,14 @@
 
 mod activity;
 mod air;
+pub mod entity;
 mod land_equipment;
 mod land_installation;
 mod land_unit;
 mod sea_surface;
 
+use crate::entities::entity::SymbolEntity;
 use crate::fields::SymbolSet;
-
-/// An entity with its drawing.
-#[derive(Clone, Copy, Debug)]
-pub struct SymbolEntity {
-    /// Entity, type and subtype: six digits.
-    pub code: u32,
-    /// The standard's name, in lower case.
-    pub name: &'static str,
-    /// The drawing in the frame.
-    pub drawing: &'static str,
-}
-
-const fn entity(code: u32, name: &'static str, drawing: &'static str) -> SymbolEntity {
-    SymbolEntity { code, name, drawing }
-}
 
 /// The sets that have entities.
 pub const SETS: [SymbolSet; 6] = [

@@ -1,6 +1,6 @@
 //! Ships: MIL-STD-2525D, table A-XXX and appendix E.
 
-use crate::entities::{SymbolEntity, entity};
+use crate::entities::entity::{SymbolEntity, entity};
 
 pub(super) const SHIPS: &[SymbolEntity] = &[
     entity(110000, "military", "text 39 MIL"),

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
-use sandtable_symbology::entities::{SETS, SymbolEntity, entities};
+use sandtable_symbology::entities::entity::SymbolEntity;
+use sandtable_symbology::entities::{SETS, entities};
 use sandtable_symbology::fields::{
     CodedField, SymbolAmplifier, SymbolContext, SymbolIdentity, SymbolRole, SymbolSet, SymbolStatus,
     SymbolVersion,

@@ -20,8 +20,9 @@ use sandtable_raster::limits::SizeClaim;
 use sandtable_raster::raster::Samples;
 use sandtable_raster::sample_type::SampleType;
 
+use crate::formats::hfa::fault::{broken, unsupported};
+use crate::formats::hfa::layer::HfaLayer;
 use crate::formats::hfa::tree::{HfaNode, HfaTree};
-use crate::formats::hfa::{FORMAT, HfaLayer, TO_TIFF};
 use crate::formats::sample_layout::{NoData, SampleLayout};
 
 /// Bytes of a packed block before the lengths of its runs.
@@ -63,18 +64,18 @@ impl HfaBlocks {
         let claim = SizeClaim { most_samples: most, ..claim };
         SizeClaim { bytes_per_sample: 0, ..claim }.check(usize::MAX)?;
         if listed < wanted {
-            return Err(FORMAT.broken(format!("its table lists {listed} of {wanted} blocks")));
+            return Err(broken(format!("its table lists {listed} of {wanted} blocks")));
         }
         if layer.block_bytes() > LARGEST_BLOCK {
             let what = format!("blocks of {} x {} samples", layer.block_columns, layer.block_rows);
-            return Err(FORMAT.unsupported(what, TO_TIFF));
+            return Err(unsupported(what));
         }
         let mut blocks = Vec::new();
         for _ in 0..wanted {
             let (file, start, bytes) = (fields.u16()?, fields.u32()?, fields.u32()?);
             let (is_valid, is_packed) = (fields.u16()? != 0, fields.u16()? != 0);
             if file != 0 {
-                return Err(FORMAT.unsupported("blocks in another file", TO_TIFF));
+                return Err(unsupported("blocks in another file"));
             }
             blocks.push(HfaBlock { start, bytes, is_valid, is_packed });
         }
@@ -112,7 +113,7 @@ impl HfaBlocks {
             }
             return Ok(samples);
         };
-        let broken = || FORMAT.broken(format!("block {index} breaks off, or lies beyond its end"));
+        let broken = || broken(format!("block {index} breaks off, or lies beyond its end"));
         let mut bytes = tree.bytes(stored.start, stored.end - stored.start)?.ok_or_else(broken)?;
         if self.0[index].is_packed {
             let mut unpacked = Vec::new();

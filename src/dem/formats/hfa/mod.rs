@@ -16,17 +16,21 @@
 //! are refused.
 
 mod blocks;
+mod fault;
+mod layer;
 mod projection;
 mod tree;
 mod turned;
 
 use std::io::Cursor;
 
-use glam::{DAffine2, DVec2, U64Vec2};
+use glam::{DAffine2, DVec2};
 
 use crate::dem_file::DemFile;
 use crate::dem_format::{DemFormat, Recognition, any_size};
 use crate::formats::hfa::blocks::HfaBlocks;
+use crate::formats::hfa::fault::{NAME, broken, unsupported};
+use crate::formats::hfa::layer::{HfaLayer, sample_type};
 use crate::formats::hfa::projection::HfaPlace;
 use crate::formats::hfa::tree::{HfaFields, HfaNode, HfaTree};
 use sandtable_base::limits::work_limit::WorkLimit;
@@ -35,11 +39,10 @@ use sandtable_raster::cache::LruCache;
 use sandtable_raster::content::FileContent;
 use sandtable_raster::error::DemErrorKind;
 use sandtable_raster::raster::{Raster, Samples, north_up};
-use sandtable_raster::sample_type::SampleType;
 use sandtable_raster::windows::{RasterWindow, Windows};
 
 pub(super) static FORMAT: DemFormat = DemFormat {
-    name: "Erdas Imagine file",
+    name: NAME,
     extensions: &["img"],
     shared_extensions: &[],
     recognition: Recognition::Content {
@@ -54,34 +57,6 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     writer: None,
     windows_writer: None,
 };
-
-const TO_TIFF: &str = "convert it, for example with: gdal_translate FILE out.tif";
-
-/// The types of samples by their numbers, from that of bytes on; below are bits, above complex numbers.
-const TYPES: [SampleType; 8] = [
-    SampleType::U8,
-    SampleType::I8,
-    SampleType::U16,
-    SampleType::I16,
-    SampleType::U32,
-    SampleType::I32,
-    SampleType::F32,
-    SampleType::F64,
-];
-
-/// The number of the first of [`TYPES`].
-const BYTES: u16 = 3;
-
-/// The header of a layer.
-#[derive(Clone, Copy, Debug)]
-struct HfaLayer {
-    columns: u32,
-    rows: u32,
-    sample: SampleType,
-    /// Columns of a block; those of the last one reach beyond the layer.
-    block_columns: u32,
-    block_rows: u32,
-}
 
 fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
     let mut windows = HfaWindows::open(file, Cursor::new(file.bytes), 0, &RASTER_SAMPLES)?;
@@ -112,7 +87,7 @@ impl<R: FileContent> HfaWindows<R> {
             Ok(node) if node.kind != "Eimg_Layer" => None,
             other => Some(other),
         });
-        let node = node.ok_or_else(|| FORMAT.broken("it has no layer of samples"))??;
+        let node = node.ok_or_else(|| broken("it has no layer of samples"))??;
         let layer = HfaLayer::read(&tree, &node)?;
         let child = |kind: &str| tree.child(&node, |node| node.kind == kind);
         let nodata = match child("Eimg_NonInitializedValue")? {
@@ -195,8 +170,8 @@ impl<R: FileContent> Windows for HfaWindows<R> {
 fn elsewhere(tree: &HfaTree<impl FileContent>, layer: &HfaNode) -> Result<DemErrorKind, DemErrorKind> {
     let external = tree.child(layer, |node| node.kind == "ImgExternalRaster")?;
     Ok(match external {
-        Some(_) => FORMAT.unsupported("samples in another file, of the extension .ige", TO_TIFF),
-        None => FORMAT.broken("its layer has no table of blocks"),
+        Some(_) => unsupported("samples in another file, of the extension .ige"),
+        None => broken("its layer has no table of blocks"),
     })
 }
 
@@ -206,47 +181,9 @@ fn value(fields: &mut HfaFields) -> Result<f64, DemErrorKind> {
     let (rows, columns, kind, _object) = (fields.u32()?, fields.u32()?, fields.u16()?, fields.u16()?);
     let sample = sample_type(kind)?;
     if count == 0 || rows == 0 || columns == 0 {
-        return Err(FORMAT.broken("its value for no data is none"));
+        return Err(broken("its value for no data is none"));
     }
     fields.sample(sample)
-}
-
-fn sample_type(number: u16) -> Result<SampleType, DemErrorKind> {
-    let known = number.checked_sub(BYTES).and_then(|index| TYPES.get(usize::from(index)));
-    known.copied().ok_or_else(|| {
-        let what =
-            if number < BYTES { "samples of less than 8 bits" } else { "samples that are no real numbers" };
-        FORMAT.unsupported(what, TO_TIFF)
-    })
-}
-
-impl HfaLayer {
-    fn read(tree: &HfaTree<impl FileContent>, layer: &HfaNode) -> Result<Self, DemErrorKind> {
-        let mut fields = tree.fields(layer)?;
-        let (columns, rows, _use, kind) = (fields.u32()?, fields.u32()?, fields.u16()?, fields.u16()?);
-        let (block_columns, block_rows) = (fields.u32()?, fields.u32()?);
-        if block_columns == 0 || block_rows == 0 {
-            return Err(FORMAT.broken(format!("its blocks have {block_columns} x {block_rows} samples")));
-        }
-        let reach = [(columns, block_columns), (rows, block_rows)];
-        if reach.iter().any(|(count, block)| count.checked_next_multiple_of(*block).is_none()) {
-            return Err(DemErrorKind::TooLarge {
-                size: U64Vec2::new(columns.into(), rows.into()),
-                most: &WINDOWED_SAMPLES,
-            });
-        }
-        Ok(Self { columns, rows, sample: sample_type(kind)?, block_columns, block_rows })
-    }
-
-    /// Bytes of an unpacked block.
-    fn block_bytes(&self) -> u64 {
-        u64::from(self.block_columns) * u64::from(self.block_rows) * self.sample.bytes() as u64
-    }
-
-    /// Blocks side by side, and above each other.
-    fn blocks_across_and_down(&self) -> (u64, u64) {
-        (self.columns.div_ceil(self.block_columns).into(), self.rows.div_ceil(self.block_rows).into())
-    }
 }
 
 impl HfaPlace {

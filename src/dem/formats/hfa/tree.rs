@@ -16,7 +16,7 @@ use sandtable_raster::content::FileContent;
 use sandtable_raster::error::DemErrorKind;
 use sandtable_raster::sample_type::SampleType;
 
-use crate::formats::hfa::FORMAT;
+use crate::formats::hfa::fault::{NAME, broken};
 
 /// The first bytes of a file.
 pub(super) const MAGIC: &[u8] = b"EHFA_HEADER_TAG";
@@ -54,7 +54,7 @@ impl<R: FileContent> HfaTree<R> {
         let length = content.seek(SeekFrom::End(0)).map_err(unread)?;
         let tree = Self { content: RefCell::new(content), length };
         if tree.bytes(0, MAGIC.len() as u64)?.as_deref() != Some(MAGIC) {
-            return Err(FORMAT.broken("it does not start with EHFA_HEADER_TAG"));
+            return Err(broken("it does not start with EHFA_HEADER_TAG"));
         }
         Ok(tree)
     }
@@ -79,7 +79,7 @@ impl<R: FileContent> HfaTree<R> {
         let place = |at: u64| {
             let word = self.bytes(at, 4)?.and_then(|bytes| bytes_at(&bytes, 0));
             let word = word.map(u32::from_le_bytes);
-            word.ok_or_else(|| FORMAT.broken("it ends before its header"))
+            word.ok_or_else(|| broken("it ends before its header"))
         };
         let header = place(16)?;
         self.node(place(u64::from(header) + 8)?)
@@ -87,7 +87,7 @@ impl<R: FileContent> HfaTree<R> {
 
     fn node(&self, at: u32) -> Result<HfaNode, DemErrorKind> {
         let node = self.bytes(at.into(), NODE_BYTES as u64)?;
-        let node = node.ok_or_else(|| FORMAT.broken(format!("its node at byte {at} lies beyond its end")))?;
+        let node = node.ok_or_else(|| broken(format!("its node at byte {at} lies beyond its end")))?;
         let fields = ByteFields::little_endian(&node);
         let place = |at: usize| fields.u32(at).unwrap_or_default();
         Ok(HfaNode {
@@ -133,17 +133,17 @@ impl<R: FileContent> HfaTree<R> {
     pub fn fields(&self, of: &HfaNode) -> Result<HfaFields, DemErrorKind> {
         let data = self.bytes(of.data.into(), of.data_bytes.into())?;
         data.map(|bytes| HfaFields { bytes, taken: 0 })
-            .ok_or_else(|| FORMAT.broken(format!("the data of its node '{}' reach beyond its end", of.name)))
+            .ok_or_else(|| broken(format!("the data of its node '{}' reach beyond its end", of.name)))
     }
 }
 
 fn unread(fault: io::Error) -> DemErrorKind {
-    DemErrorKind::unread(FORMAT.name, fault)
+    DemErrorKind::unread(NAME, fault)
 }
 
 impl HfaFields {
     fn taken<T>(field: Option<T>) -> Result<T, DemErrorKind> {
-        field.ok_or_else(|| FORMAT.broken("a node's data end before its last field"))
+        field.ok_or_else(|| broken("a node's data end before its last field"))
     }
 
     /// The bytes that are left.

@@ -9,8 +9,8 @@
 
 use glam::{DAffine2, DMat2, DVec2};
 
+use crate::formats::hfa::fault::{broken, unsupported};
 use crate::formats::hfa::tree::{HfaFields, HfaNode, HfaTree};
-use crate::formats::hfa::{FORMAT, TO_TIFF};
 use sandtable_raster::content::FileContent;
 use sandtable_raster::error::DemErrorKind;
 use sandtable_raster::georef::checked;
@@ -25,7 +25,7 @@ pub(super) fn map_from_grid(
 ) -> Result<Option<DAffine2>, DemErrorKind> {
     let Some(header) = tree.child(layer, |node| node.name == "MapToPixelXForm")? else { return Ok(None) };
     let steps = tree.children(header.clone()).collect::<Result<Vec<_>, _>>()?;
-    let bent = || FORMAT.unsupported("a place that is bent (MapToPixelXForm)", TO_TIFF);
+    let bent = || unsupported("a place that is bent (MapToPixelXForm)");
     let [step] = &steps[..] else { return Err(bent()) };
     let mut fields = tree.fields(step)?;
     let [order, _, _, terms] = [fields.u32()?, fields.u32()?, fields.u32()?, fields.u32()?];
@@ -49,7 +49,7 @@ fn matrix<const N: usize>(fields: &mut HfaFields) -> Result<[f64; N], DemErrorKi
     fields.pointer()?;
     let (rows, columns, kind, _object) = (fields.u32()?, fields.u32()?, fields.u16()?, fields.u16()?);
     if u64::from(rows) * u64::from(columns) != N as u64 || kind != F64 {
-        return Err(FORMAT.broken(format!("a matrix of its place has {rows} x {columns} numbers")));
+        return Err(broken(format!("a matrix of its place has {rows} x {columns} numbers")));
     }
     let mut numbers = [0.0; N];
     for number in &mut numbers {
