@@ -68,6 +68,7 @@ pub use sandtable_base::limits::work_limit::LimitError;
 pub use sandtable_dem::hints::DemOptions;
 pub use sandtable_description::finding::{Finding, Severity};
 pub use sandtable_geom::crs::Crs;
+pub use sandtable_geom::position::Position;
 pub use sandtable_mesh::trimesh::TriMesh;
 pub use sandtable_query::profile::GroundProfile;
 pub use sandtable_query::sight::{SightQuery, SightReport};

@@ -5,30 +5,68 @@ use std::borrow::Cow;
 use numpy::{AllowTypeChange, PyArrayLike2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::IntoPyDict;
-use sandtable::{Crs, Curvature, DVec2, SightEnd};
+use sandtable::{Crs, Curvature, DVec2, Position, SightEnd};
 
 use crate::error::wrong_value;
 
 /// The highest end of a line of sight above the ground, meters: as the command line has it.
 const HIGHEST_M: f64 = 1e5;
 
-/// Positions as Python gives them: an array of shape (N, 2), or what NumPy makes one of.
-pub type PositionArray<'py> = PyArrayLike2<'py, f64, AllowTypeChange>;
+/// Positions as Python gives them.
+pub enum PositionsArgument<'py> {
+    /// An array of shape (N, 2), or what NumPy makes one of.
+    Numbers(PyArrayLike2<'py, f64, AllowTypeChange>),
+    /// Texts, in the system that is asked in.
+    Places(Vec<DVec2>),
+}
 
-/// The positions in an array of shape (N, 2); borrowed where its rows follow each other in memory.
-pub fn positions<'a>(name: &str, array: &'a PositionArray<'_>) -> PyResult<Cow<'a, [DVec2]>> {
-    let shape = array.shape();
-    if shape[1] != 2 {
-        let (rows, columns) = (shape[0], shape[1]);
-        return Err(wrong_value(format!(
-            "{name} has shape ({rows}, {columns}); give (N, 2), x and y of each position"
-        )));
+/// The positions of a text, of a sequence or an array of texts, or of an array of numbers, in `crs`.
+pub fn positions<'py>(name: &str, value: &Bound<'py, PyAny>, crs: &Crs) -> PyResult<PositionsArgument<'py>> {
+    if let Ok(text) = value.extract::<String>() {
+        return Ok(PositionsArgument::Places(vec![place(name, &text, crs)?]));
     }
-    let view = array.as_array();
-    Ok(match view.to_slice() {
-        Some(numbers) => Cow::Borrowed(bytemuck::cast_slice(numbers)),
-        None => Cow::Owned(view.rows().into_iter().map(|row| DVec2::new(row[0], row[1])).collect()),
-    })
+    // Arrays of NumPy and columns of pandas that hold texts.
+    let kind = value.getattr("dtype").and_then(|dtype| dtype.getattr("kind")?.extract::<String>());
+    let listed = match kind.as_deref() {
+        Ok("O" | "U" | "T") => &value.call_method0("tolist")?,
+        _ => value,
+    };
+    match listed.extract::<Vec<String>>() {
+        Ok(texts) if !texts.is_empty() => {
+            let places: PyResult<Vec<DVec2>> = texts.iter().map(|text| place(name, text, crs)).collect();
+            Ok(PositionsArgument::Places(places?))
+        }
+        _ => Ok(PositionsArgument::Numbers(value.extract()?)),
+    }
+}
+
+impl PositionsArgument<'_> {
+    /// The positions; borrowed where rows of numbers follow each other in memory. `name` is that of the argument.
+    pub fn positions(&self, name: &str) -> PyResult<Cow<'_, [DVec2]>> {
+        let array = match self {
+            Self::Numbers(array) => array,
+            Self::Places(places) => return Ok(Cow::Borrowed(places)),
+        };
+        let shape = array.shape();
+        if shape[1] != 2 {
+            let (rows, columns) = (shape[0], shape[1]);
+            return Err(wrong_value(format!(
+                "{name} has shape ({rows}, {columns}); give (N, 2), x and y of each position"
+            )));
+        }
+        let view = array.as_array();
+        Ok(match view.to_slice() {
+            Some(numbers) => Cow::Borrowed(bytemuck::cast_slice(numbers)),
+            None => Cow::Owned(view.rows().into_iter().map(|row| DVec2::new(row[0], row[1])).collect()),
+        })
+    }
+}
+
+/// The place that a text states, in `crs`.
+fn place(name: &str, text: &str, crs: &Crs) -> PyResult<DVec2> {
+    let position =
+        Position::parse(text).map_err(|error| wrong_value(format!("{name}: {}", error.with_forms())))?;
+    position.in_system(crs).map_err(|error| wrong_value(format!("{name}: {error}")))
 }
 
 /// The coordinate system that a text, an EPSG code, a `pyproj.CRS` or a `rasterio.crs.CRS` names.
@@ -81,15 +119,24 @@ pub fn geotransform(transform: &[f64]) -> PyResult<[f64; 6]> {
     }
 }
 
-/// An end of a line of sight or of a viewshed.
-pub fn end(name: &str, at: [f64; 2], above_m: f64) -> PyResult<SightEnd> {
-    if !at[0].is_finite() || !at[1].is_finite() {
-        return Err(wrong_value(format!("{name} is at {}, {}; give two finite numbers", at[0], at[1])));
+/// An end of a line of sight or of a viewshed: (x, y) in `crs`, or a text.
+pub fn end(name: &str, at: &Bound<'_, PyAny>, above_m: f64, crs: &Crs) -> PyResult<SightEnd> {
+    let at = match at.extract::<String>() {
+        Ok(text) => place(name, &text, crs)?,
+        Err(_) => DVec2::from(at.extract::<[f64; 2]>()?),
+    };
+    if !at.is_finite() {
+        return Err(wrong_value(format!("{name} is at {}, {}; give two finite numbers", at.x, at.y)));
     }
+    Ok(SightEnd { at, above_m: height(name, above_m)? })
+}
+
+/// Meters above the ground at an end.
+pub fn height(name: &str, above_m: f64) -> PyResult<f64> {
     if above_m.is_nan() || above_m.abs() > HIGHEST_M {
         return Err(wrong_value(format!("{name}_height is {above_m} m; give meters from -100000 to 100000")));
     }
-    Ok(SightEnd { at: DVec2::from(at), above_m })
+    Ok(above_m)
 }
 
 /// The curvature that a refraction coefficient and a flat Earth state.

@@ -13,7 +13,7 @@ use sandtable::{
 };
 
 use crate::arguments::{
-    PositionArray, Transform, crs_name, crs_or, curvature, end, geotransform, positions, transform,
+    Transform, crs_name, crs_or, curvature, end, geotransform, height, positions, transform,
 };
 use crate::error::{failed, wrong_value};
 use crate::rasters::{PyMesh, PyRaster, shaped};
@@ -179,21 +179,22 @@ impl PyDem {
     /// The heights at positions: float64 of shape (N,), meters, NaN where there is no data or the position lies outside.
     ///
     /// `xy` is float64 of shape (N, 2) in `crs`, by default the file's; it is read in place where its rows follow each other in
-    /// memory. `interpolation` is "bilinear", "planar", "nearest", "cubic" or "distance-weighted"; `surface` is "source", the
+    /// memory. Or it is a text or texts that state their places: grid references, UTM, degrees with letters. `interpolation` is "bilinear", "planar", "nearest", "cubic" or "distance-weighted"; `surface` is "source", the
     /// raster as read, or "ground", the ground in meters, by default the source of a file and the ground of a scene.
     #[pyo3(signature = (xy, interpolation = "bilinear", *, surface = None, crs = None))]
     fn heights<'py>(
         &self,
         py: Python<'py>,
-        xy: PositionArray<'py>,
+        xy: &Bound<'py, PyAny>,
         interpolation: &str,
         surface: Option<&str>,
         crs: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let at = positions("xy", &xy)?;
         let interpolation: Interpolation = interpolation.parse().map_err(wrong_value)?;
         let surface = surface.map_or(Ok(self.elevation.default_surface()), str::parse::<Surface>);
         let (surface, crs) = (surface.map_err(wrong_value)?, crs_or(crs, || self.elevation.crs())?);
+        let given = positions("xy", xy, &crs)?;
+        let at = given.positions("xy")?;
         let heights = PyArray1::<f64>::zeros(py, at.len(), false);
         let mut written = heights.readwrite();
         let heights_m = written.as_slice_mut()?;
@@ -209,29 +210,30 @@ impl PyDem {
 
     /// The ground along a line: a station wherever it bends, and every `step` meters.
     ///
-    /// `line` is float64 of shape (N, 2), at least two positions in `crs`, by default the file's. The line is straight in the
+    /// `line` is float64 of shape (N, 2), at least two positions in `crs`, by default the file's, or texts as in `heights`. The line is straight in the
     /// ground's coordinate system.
     #[pyo3(signature = (line, *, interpolation = "planar", step = None, crs = None))]
     fn profile(
         &self,
         py: Python<'_>,
-        line: PositionArray<'_>,
+        line: &Bound<'_, PyAny>,
         interpolation: &str,
         step: Option<f64>,
         crs: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyProfile> {
-        let vertices = positions("line", &line)?;
+        let crs = crs_or(crs, || self.elevation.crs())?;
+        let given = positions("line", line, &crs)?;
+        let vertices = given.positions("line")?;
         if vertices.len() < 2 {
             return Err(wrong_value(format!("line has {} positions; give at least two", vertices.len())));
         }
         let interpolation: Interpolation = interpolation.parse().map_err(wrong_value)?;
-        let crs = crs_or(crs, || self.elevation.crs())?;
         let sampling = Sampling { interpolation, step_m: step };
         let profile = py.detach(|| self.elevation.profile((&crs, &vertices), sampling)).map_err(failed)?;
         PyProfile::new(py, &profile)
     }
 
-    /// Whether `target` is seen from `observer`, both (x, y) in `crs`, by default the file's.
+    /// Whether `target` is seen from `observer`, both (x, y) in `crs`, by default the file's, or texts as in `heights`.
     ///
     /// `observer_height` and `target_height` are meters above the ground; `refraction` is the share of the Earth's curvature
     /// that bent light makes up for, 1/7 by default; `flat` assumes a flat Earth without air.
@@ -240,22 +242,23 @@ impl PyDem {
     fn line_of_sight(
         &self,
         py: Python<'_>,
-        observer: [f64; 2],
-        target: [f64; 2],
+        observer: &Bound<'_, PyAny>,
+        target: &Bound<'_, PyAny>,
         observer_height: f64,
         target_height: f64,
         refraction: Option<f64>,
         flat: bool,
         crs: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyLineOfSight> {
-        let ends = [end("observer", observer, observer_height)?, end("target", target, target_height)?];
         let crs = crs_or(crs, || self.elevation.crs())?;
+        let ends =
+            [end("observer", observer, observer_height, &crs)?, end("target", target, target_height, &crs)?];
         let query = SightQuery { ends, crs, curvature: curvature(refraction, flat)? };
         let report = py.detach(|| self.elevation.line_of_sight(query)).map_err(failed)?;
         Ok(PyLineOfSight::new(&report))
     }
 
-    /// What is seen from `observer`, (x, y) in `crs`: a Raster of 1 in sight, 0 hidden, 255 not looked at or without data.
+    /// What is seen from `observer`, (x, y) in `crs` or a text as in `heights`: a Raster of 1 in sight, 0 hidden, 255 not looked at or without data.
     ///
     /// `range` is in meters, without limit by default; `sector` is two azimuths in degrees clockwise from north; the others are
     /// those of `line_of_sight`. The raster lies on the ground in meters: in the UTM zone of a model in degrees.
@@ -264,7 +267,7 @@ impl PyDem {
     fn viewshed(
         &self,
         py: Python<'_>,
-        observer: [f64; 2],
+        observer: &Bound<'_, PyAny>,
         observer_height: f64,
         target_height: f64,
         range: Option<f64>,
@@ -273,7 +276,8 @@ impl PyDem {
         flat: bool,
         crs: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyRaster> {
-        let observer = end("observer", observer, observer_height)?;
+        let crs = crs_or(crs, || self.elevation.crs())?;
+        let observer = end("observer", observer, observer_height, &crs)?;
         let range_m = range.unwrap_or(f64::INFINITY);
         if range_m.is_nan() || range_m <= 0.0 {
             return Err(wrong_value(format!("range is {range_m} m; give meters above 0")));
@@ -285,10 +289,9 @@ impl PyDem {
             Some((from, to)) => Sector::between(from, to),
             None => Sector::ALL,
         };
-        let target_above_m = end("target", [0.0; 2], target_height)?.above_m;
+        let target_above_m = height("target", target_height)?;
         let curvature = curvature(refraction, flat)?;
         let options = ViewshedOptions { observer, target_above_m, range_m, sector, curvature };
-        let crs = crs_or(crs, || self.elevation.crs())?;
         let seen = py.detach(|| self.elevation.viewshed(&crs, &options)).map_err(failed)?;
         PyRaster::new(py, &seen)
     }

@@ -138,7 +138,7 @@ class Dem:
     def to_numpy(self) -> NDArray[np.float32] | NDArray[np.float64]: ...
     def heights(
         self,
-        xy: ArrayLike,
+        xy: ArrayLike | str | Sequence[str],
         interpolation: _Interpolation = "bilinear",
         *,
         surface: _Surface | None = None,
@@ -146,7 +146,7 @@ class Dem:
     ) -> NDArray[np.float64]: ...
     def profile(
         self,
-        line: ArrayLike,
+        line: ArrayLike | Sequence[str],
         *,
         interpolation: _Interpolation = "planar",
         step: float | None = None,
@@ -154,8 +154,8 @@ class Dem:
     ) -> Profile: ...
     def line_of_sight(
         self,
-        observer: Sequence[float],
-        target: Sequence[float],
+        observer: Sequence[float] | str,
+        target: Sequence[float] | str,
         *,
         observer_height: float = 2.0,
         target_height: float = 0.0,
@@ -165,7 +165,7 @@ class Dem:
     ) -> LineOfSight: ...
     def viewshed(
         self,
-        observer: Sequence[float],
+        observer: Sequence[float] | str,
         *,
         observer_height: float = 2.0,
         target_height: float = 0.0,
