@@ -34,6 +34,7 @@ fn picture(scene: &SceneModel, symbol: &SceneSymbol) -> Option<PageSymbol> {
     let anchor_px = PLACE_PX - Vec2::new(low.0 as f32, low.1 as f32);
     Some(PageSymbol {
         name: symbol.name.clone(),
+        reference: None,
         ground: symbol.ground,
         pixels,
         anchor_px,

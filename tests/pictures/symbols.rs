@@ -57,6 +57,7 @@ fn darkness(symbol: &MilitarySymbol) -> Vec<f64> {
         symbol: symbol.clone(),
         texts: Vec::new(),
         name: String::new(),
+        reference: None,
         anchor_px: (symbol.anchor - CORNER) * PIXELS_PER_UNIT,
         direction_px: None,
         depth_m: 1.0,

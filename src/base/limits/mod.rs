@@ -218,7 +218,7 @@ limits! {
         SCENE_GRAPHICS = 4096 => COUNT, "graphics",
             "of a scene; more hide the ground that they lie on",
             "draw fewer";
-        SCENE_SYMBOLS = 4096 => COUNT, "symbols",
+        SCENE_SYMBOLS = 65_536 => COUNT, "symbols",
             "of a scene; later ones are left out, with a note",
             "draw fewer";
     }
