@@ -73,17 +73,25 @@ impl SymbolField {
     }
 
     /// The free position nearest to the place, anywhere on the picture.
-    pub fn anywhere(&mut self, standing: &Standing, leader: LeaderRule) -> Option<StackPosition> {
+    ///
+    /// `reach` is how far from its place it may stand, in pixels.
+    pub fn anywhere(
+        &mut self,
+        standing: &Standing,
+        leader: LeaderRule,
+        reach: f32,
+    ) -> Option<StackPosition> {
         let size = standing.bounds().size();
         if self.is_too_large(size, leader) {
             return None;
         }
         let step = (size.min_element() * 0.5).max(LEAST_STEP_PX);
-        let reach = (self.bounds.size().max_element() / step).ceil() as i32 + 1;
+        let longest = self.bounds.size().max_element();
+        let rings = (longest.min(reach) / step).ceil() as i32 + 1;
         let around = standing.bounds();
         let feet = PixelBox { min: self.bounds.min - around.min, max: self.bounds.max - around.max };
         let mut has_room = false;
-        for ring in 0..=reach {
+        for ring in 0..=rings {
             let foot_of = |offset: IVec2| (standing.anchor + offset.as_vec2() * step).round();
             let feet = ring_offsets(ring).map(foot_of).filter(|foot| feet.contains(*foot));
             for foot in feet {
@@ -99,7 +107,7 @@ impl SymbolField {
                 }
             }
         }
-        if !has_room {
+        if !has_room && reach >= longest {
             self.too_large[leader as usize].push(size);
         }
         None
@@ -233,11 +241,11 @@ mod tests {
             ends_at_foot: false,
             may_cover_anchor: false,
         };
-        assert!(field.anywhere(&standing, LeaderRule::Free).is_none(), "the leader would pass under the wall");
-        let found = field.anywhere(&standing, LeaderRule::Under).expect("a quarter is free");
+        assert!(field.anywhere(&standing, LeaderRule::Free, f32::INFINITY).is_none(), "the leader would pass under the wall");
+        let found = field.anywhere(&standing, LeaderRule::Under, f32::INFINITY).expect("a quarter is free");
         assert!((312.0..330.0).contains(&found.foot.x), "{found:?}");
         field.take(&[PixelBox::at(Vec2::new(300.0, 0.0), Vec2::new(100.0, 300.0))], []);
-        assert!(field.anywhere(&standing, LeaderRule::Under).is_none());
+        assert!(field.anywhere(&standing, LeaderRule::Under, f32::INFINITY).is_none());
         let is_too_large = |side: f32| field.is_too_large(Vec2::splat(side), LeaderRule::Under);
         assert!(is_too_large(20.0) && !is_too_large(19.0));
     }

@@ -5,7 +5,7 @@
 //!   ┌──┐                ┌───────────────────────────────────┐
 //!   │12│                │ 11  2-77 IN    16S GF 55447 24162 │
 //!   └─┬┘ numbered       │ 12  B/1-9      16S GF 55502 24090 │
-//!     •                 │ ×n  units near this place         │
+//!     •                 │ ×n  n units near it               │
 //!   ┌───┐               └───────────────────────────────────┘
 //!   │×37│ counted
 //!   └───┘
@@ -51,7 +51,7 @@ pub(crate) struct SymbolList {
 }
 
 impl SymbolList {
-    /// The largest list for `wanted` symbols, with room to spare, that has a place on the picture; `None` where not one row has.
+    /// The largest list for up to `wanted` symbols that has a place on the picture; `None` where not one row has.
     pub fn reserve(
         wanted: usize,
         bounds: PixelBox,
@@ -61,8 +61,6 @@ impl SymbolList {
         let sheet = composer.sheet;
         let (row, column, padding) = (row_px(&sheet), column_px(&sheet), sheet.px(PADDING));
         let most = bounds.size() * LARGEST_SHARE;
-        // The list takes room from symbols, so more of them come to stand on it.
-        let wanted = wanted.saturating_mul(2).saturating_add(4);
         let mut rows_in_column = ((most.y - 2.0 * padding) / row).floor().max(0.0) as usize;
         let most_columns = ((most.x - 2.0 * padding) / column).floor().max(0.0) as usize;
         while rows_in_column > 1 && most_columns > 0 {
@@ -98,7 +96,7 @@ impl SymbolList {
             })
             .collect();
         if left.len() > listed {
-            texts.push(["×n".to_owned(), "n units near this place".to_owned(), String::new()]);
+            texts.push(["×n".to_owned(), "n units near it".to_owned(), String::new()]);
         }
         let columns = texts.len().div_ceil(self.rows_in_column).max(1);
         let rows = texts.len().div_ceil(columns);

@@ -59,14 +59,14 @@ impl Standing {
         self.boxes.iter().copied().fold(PixelBox::EMPTY, PixelBox::union)
     }
 
-    /// The position with the foot at `foot`, its leader to the nearest point of its face; `None` where it would cover its
-    /// own place and may not.
+    /// The position with the foot at `foot`, its leader to the middle of its face, which covers the leader's end; `None` where
+    /// it would cover its own place and may not.
     pub fn at(&self, foot: Vec2) -> Option<StackPosition> {
         let face = self.face.moved(foot);
-        let to = if self.ends_at_foot { foot } else { self.anchor.clamp(face.min, face.max) };
-        if to == self.anchor {
+        if face.contains(self.anchor) {
             return self.may_cover_anchor.then_some(StackPosition { foot, staff: None });
         }
+        let to = if self.ends_at_foot { foot } else { face.center() };
         Some(StackPosition { foot, staff: Some(PixelSegment { from: self.anchor, to }) })
     }
 }

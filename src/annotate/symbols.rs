@@ -14,7 +14,9 @@
 //! become smaller, to half of their size. What still has no room is numbered at its place and listed with its grid reference;
 //! what the list has no room for is counted by place. Labels are placed after symbols and leave them free.
 
-use glam::Vec2;
+use std::collections::HashSet;
+
+use glam::{IVec2, Vec2};
 
 use crate::annotation::PictureSymbol;
 use crate::composer::Composer;
@@ -33,18 +35,16 @@ const MOST_IN_STACK: usize = 6;
 /// The forms of a symbol without room near its place: its share of its size, and whether it keeps its texts.
 const FORMS: [(f32, bool); 5] = [(1.0, true), (1.0, false), (0.8, false), (0.64, false), (0.5, false)];
 
-/// How much symbols may take of a picture.
-#[derive(Clone, Copy)]
-struct SymbolRoom {
-    /// The part of the picture that they cover at most.
-    most_covered: f32,
-    has_texts: bool,
-}
-
-/// A picture on which all symbols have room.
-const WIDE: SymbolRoom = SymbolRoom { most_covered: 1.0, has_texts: true };
-/// A picture with a list of symbols: what is numbered and counted needs room too, and names stand in the list.
-const CROWDED: SymbolRoom = SymbolRoom { most_covered: 0.4, has_texts: false };
+/// Symbols that would cover more than this share of a picture at their smallest do not all have room.
+const MOST_FILLED: f32 = 0.5;
+/// The form of a symbol beside a list.
+const LISTED_FORMS: [(f32, bool); 1] = [(0.64, false)];
+/// Beside a list symbols cover this share of the picture at most: what is numbered and counted needs room too.
+const MOST_COVERED: f32 = 0.4;
+/// Beside a list the longest leader has this share of the picture's height.
+const LONGEST_LEADER: f32 = 0.25;
+/// Places in one square of so many design pixels have room, or have none, together.
+const HOPELESS_SIDE: f32 = 12.0;
 
 /// The drawing of all symbols, and the boxes that labels must avoid.
 #[derive(Default)]
@@ -64,14 +64,15 @@ pub fn draw_symbols(
     let mut outside = SymbolReport::default();
     let stacks = stacks(symbols, &composer.sheet, &mut outside);
     let mut layout = SymbolLayout::new(furniture, composer);
-    let mut left = layout.place(&stacks, WIDE, composer);
     let mut list = None;
-    if !left.is_empty() {
+    let mut left = Vec::new();
+    if !layout.place_all(&stacks, composer) {
         // Symbols start anew beside the list.
-        list = SymbolList::reserve(left.len(), layout.bounds, furniture, composer);
+        let most = stacks.iter().map(Vec::len).sum();
+        list = SymbolList::reserve(most, layout.bounds, furniture, composer);
         let reserved: Vec<PixelBox> = furniture.iter().copied().chain(list.as_ref().map(|list| list.area)).collect();
         layout = SymbolLayout::new(&reserved, composer);
-        left = layout.place(&stacks, CROWDED, composer);
+        left = layout.place_some(&stacks, composer);
         let rows = list.as_ref().map_or(0, |list| list.rows);
         for badge in badges(&left, rows, composer) {
             layout.place_badge(badge);
@@ -118,52 +119,83 @@ impl SymbolLayout {
         }
     }
 
-    /// Places the stacks until symbols have taken their room; returns what has no room.
-    fn place<'a>(
+    /// Places all symbols; whether each has room.
+    fn place_all(&mut self, stacks: &[Vec<&PictureSymbol>], composer: &mut Composer) -> bool {
+        let smallest = FORMS.iter().map(|(scale, _)| *scale).fold(1.0, f32::min);
+        let area = |symbol: &&PictureSymbol| least_size(symbol, smallest, &self.sheet).element_product();
+        let (all, picture) = (stacks.iter().flatten().map(area).sum::<f32>(), self.bounds.size());
+        if all > picture.element_product() * MOST_FILLED {
+            return false;
+        }
+        let far: Vec<&Vec<&PictureSymbol>> = stacks
+            .iter()
+            .filter(|stack| ![true, false].iter().any(|&has_texts| self.place_near(stack, has_texts, composer)))
+            .collect();
+        far.into_iter().flatten().all(|symbol| {
+            let by = [LeaderRule::Free, LeaderRule::Under];
+            by.iter().any(|&leader| self.place_anywhere(symbol, &FORMS, (leader, f32::INFINITY), composer))
+        })
+    }
+
+    /// Places symbols without their texts, as long as there is room; returns the others.
+    fn place_some<'a>(
         &mut self,
         stacks: &[Vec<&'a PictureSymbol>],
-        room: SymbolRoom,
         composer: &mut Composer,
     ) -> Vec<&'a PictureSymbol> {
-        let far: Vec<&Vec<&PictureSymbol>> =
-            stacks.iter().filter(|stack| !self.place_near(stack, room, composer)).collect();
-        let singles = far.into_iter().flatten().copied();
-        singles.filter(|symbol| !self.place_anywhere(symbol, room, composer)).collect()
-    }
-
-    /// Places a stack near its place, without its texts where they have no room: a unit without its name is better than none.
-    fn place_near(&mut self, symbols: &[&PictureSymbol], room: SymbolRoom, composer: &mut Composer) -> bool {
-        if self.field.covered_share() >= room.most_covered {
-            return false;
-        }
-        for has_texts in [true, false].into_iter().filter(|has_texts| room.has_texts || !has_texts) {
-            let stack = PreparedStack::new(symbols, (1.0, has_texts), composer);
-            if let Some(position) = self.field.near(&stack) {
-                self.keep(&stack, position, has_texts);
-                return true;
+        let side = self.sheet.px(HOPELESS_SIDE).max(1.0);
+        let cell = |symbol: &PictureSymbol| (symbol.anchor_px / side).floor().as_ivec2();
+        let mut hopeless: HashSet<IVec2> = HashSet::new();
+        let mut far = Vec::new();
+        for stack in stacks {
+            let has_room = self.field.covered_share() < MOST_COVERED && !hopeless.contains(&cell(stack[0]));
+            if !has_room || !self.place_near(stack, false, composer) {
+                hopeless.insert(cell(stack[0]));
+                far.extend(stack);
             }
         }
-        false
+        hopeless.clear();
+        let rule = (LeaderRule::Free, self.bounds.size().y * LONGEST_LEADER);
+        let mut left = Vec::new();
+        for symbol in far {
+            let has_room = self.field.covered_share() < MOST_COVERED && !hopeless.contains(&cell(symbol));
+            if !has_room || !self.place_anywhere(symbol, &LISTED_FORMS, rule, composer) {
+                hopeless.insert(cell(symbol));
+                left.push(symbol);
+            }
+        }
+        left
     }
 
-    /// Places a symbol anywhere on the picture, with a leader, in the largest form that has room.
-    fn place_anywhere(&mut self, symbol: &PictureSymbol, room: SymbolRoom, composer: &mut Composer) -> bool {
-        if self.field.covered_share() >= room.most_covered {
-            return false;
+    /// Places a stack near its place, with or without its texts: a unit without its name is better than none.
+    fn place_near(&mut self, stack: &[&PictureSymbol], has_texts: bool, composer: &mut Composer) -> bool {
+        let stack = PreparedStack::new(stack, (1.0, has_texts), composer);
+        let found = self.field.near(&stack);
+        if let Some(position) = found {
+            self.keep(&stack, position, has_texts);
         }
-        for leader in [LeaderRule::Free, LeaderRule::Under] {
-            for (scale, has_texts) in FORMS {
-                let least = least_size(symbol, scale, &self.sheet);
-                let is_form = !has_texts || (room.has_texts && !symbol.texts.is_empty());
-                if !is_form || self.field.is_too_large(least, leader) {
-                    continue;
-                }
-                let stack = PreparedStack::new(&[symbol], (scale, has_texts), composer);
-                if let Some(position) = self.field.anywhere(&stack.standing(), leader) {
-                    self.keep(&stack, position, has_texts);
-                    self.report.reduced.extend((scale < 1.0).then(|| symbol.name.clone()));
-                    return true;
-                }
+        found.is_some()
+    }
+
+    /// Places a symbol anywhere within reach, with a leader, in the first form that has room.
+    fn place_anywhere(
+        &mut self,
+        symbol: &PictureSymbol,
+        forms: &[(f32, bool)],
+        (leader, reach): (LeaderRule, f32),
+        composer: &mut Composer,
+    ) -> bool {
+        for &(scale, has_texts) in forms {
+            let least = least_size(symbol, scale, &self.sheet);
+            let is_form = !has_texts || !symbol.texts.is_empty();
+            if !is_form || self.field.is_too_large(least, leader) {
+                continue;
+            }
+            let stack = PreparedStack::new(&[symbol], (scale, has_texts), composer);
+            if let Some(position) = self.field.anywhere(&stack.standing(), leader, reach) {
+                self.keep(&stack, position, has_texts);
+                self.report.reduced.extend((scale < 1.0).then(|| symbol.name.clone()));
+                return true;
             }
         }
         false
@@ -188,8 +220,9 @@ impl SymbolLayout {
     /// Places the number or the count of symbols that have no room themselves.
     fn place_badge(&mut self, badge: SymbolBadge) {
         let standing = badge.standing();
-        let found = self.field.anywhere(&standing, LeaderRule::Free);
-        let Some(position) = found.or_else(|| self.field.anywhere(&standing, LeaderRule::Under)) else {
+        let by = [LeaderRule::Free, LeaderRule::Under];
+        let found = by.into_iter().find_map(|leader| self.field.anywhere(&standing, leader, f32::INFINITY));
+        let Some(position) = found else {
             self.report.crowded_out.extend(badge.names);
             return;
         };

@@ -34,7 +34,6 @@ fn picture(scene: &SceneModel, symbol: &SceneSymbol) -> Option<PageSymbol> {
     let anchor_px = PLACE_PX - Vec2::new(low.0 as f32, low.1 as f32);
     Some(PageSymbol {
         name: symbol.name.clone(),
-        reference: None,
         ground: symbol.ground,
         pixels,
         anchor_px,
@@ -51,6 +50,7 @@ fn painted(scene: &SceneModel, symbol: &SceneSymbol, paper: Srgba) -> Pixels {
         symbol: symbol.symbol.clone(),
         texts: symbol.texts.clone(),
         name: symbol.name.clone(),
+        reference: None,
         anchor_px: PLACE_PX,
         direction_px: None,
         depth_m: 1.0,

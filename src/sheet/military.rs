@@ -5,7 +5,7 @@ use glam::Vec3;
 use crate::line_labels::is_seen;
 use sandtable_annotate::annotation::{PictureSymbol, SymbolHeight};
 use sandtable_description::words::StylePreset;
-use sandtable_geom::position::PositionForm;
+use sandtable_geom::position::notation::PositionForm;
 use sandtable_picture::nested_ground::NestedHeights;
 use sandtable_render::picture::Rendering;
 use sandtable_scene::military::{SceneSymbol, SymbolSize};
