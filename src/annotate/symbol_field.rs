@@ -75,12 +75,7 @@ impl SymbolField {
     /// The free position nearest to the place, anywhere on the picture.
     ///
     /// `reach` is how far from its place it may stand, in pixels.
-    pub fn anywhere(
-        &mut self,
-        standing: &Standing,
-        leader: LeaderRule,
-        reach: f32,
-    ) -> Option<StackPosition> {
+    pub fn anywhere(&mut self, standing: &Standing, leader: LeaderRule, reach: f32) -> Option<StackPosition> {
         let size = standing.bounds().size();
         if self.is_too_large(size, leader) {
             return None;
@@ -241,7 +236,10 @@ mod tests {
             ends_at_foot: false,
             may_cover_anchor: false,
         };
-        assert!(field.anywhere(&standing, LeaderRule::Free, f32::INFINITY).is_none(), "the leader would pass under the wall");
+        assert!(
+            field.anywhere(&standing, LeaderRule::Free, f32::INFINITY).is_none(),
+            "the leader would pass under the wall"
+        );
         let found = field.anywhere(&standing, LeaderRule::Under, f32::INFINITY).expect("a quarter is free");
         assert!((312.0..330.0).contains(&found.foot.x), "{found:?}");
         field.take(&[PixelBox::at(Vec2::new(300.0, 0.0), Vec2::new(100.0, 300.0))], []);

@@ -39,6 +39,8 @@ const LARGEST_SHARE: Vec2 = Vec2::new(0.45, 0.85);
 const BADGE_PADDING: f32 = 3.0;
 /// The side of the squares in which symbols are counted, in design pixels.
 const COUNTED_IN: f32 = 96.0;
+/// Their least side, in sizes of the type: on small pictures type is large.
+const LEAST_COUNTED_IN: f32 = 6.0;
 const BLACK: Srgba = Srgba::opaque(0, 0, 0);
 
 /// The list of symbols without room, before its rows are known.
@@ -68,10 +70,8 @@ impl SymbolList {
             let columns = wanted.div_ceil(rows_in_column - 1).min(most_columns);
             for columns in (1..=columns).rev() {
                 let height = rows_in_column.min(wanted.div_ceil(columns) + 1);
-                let size = Vec2::new(
-                    column * columns as f32 + 2.0 * padding,
-                    row * height as f32 + 2.0 * padding,
-                );
+                let size =
+                    Vec2::new(column * columns as f32 + 2.0 * padding, row * height as f32 + 2.0 * padding);
                 if let Some(area) = free_place(size.ceil(), bounds, furniture) {
                     return Some(Self { area, rows: height * columns - 1, rows_in_column: height });
                 }
@@ -136,7 +136,8 @@ fn free_place(size: Vec2, bounds: PixelBox, furniture: &[PixelBox]) -> Option<Pi
     let steps = (room.y / 8.0).floor() as u32;
     let across = [bounds.max.x - size.x, bounds.min.x];
     let places = across.into_iter().flat_map(|x| {
-        (0..=steps).map(move |step| PixelBox::at(Vec2::new(x, bounds.min.y + step as f32 * 8.0).floor(), size))
+        (0..=steps)
+            .map(move |step| PixelBox::at(Vec2::new(x, bounds.min.y + step as f32 * 8.0).floor(), size))
     });
     places.filter(|area| bounds.holds(area)).find(|area| !furniture.iter().any(|other| other.overlaps(area)))
 }
@@ -158,7 +159,7 @@ pub(crate) struct SymbolBadge {
 /// Numbers for the first `rows` of the symbols and counts for the others, by place and color.
 pub(crate) fn badges(left: &[&PictureSymbol], rows: usize, composer: &mut Composer) -> Vec<SymbolBadge> {
     let (listed, others) = left.split_at(left.len().min(rows));
-    let side = composer.sheet.px(COUNTED_IN).max(1.0);
+    let side = composer.sheet.px(COUNTED_IN).max(composer.sheet.type_px(TYPE) * LEAST_COUNTED_IN).max(1.0);
     let mut counted: BTreeMap<(i64, i64, [u8; 4]), Vec<&PictureSymbol>> = BTreeMap::new();
     for symbol in others {
         let cell = (symbol.anchor_px / side).floor();
@@ -212,7 +213,12 @@ impl SymbolBadge {
     }
 
     /// Draws its leader among the staffs, and itself among the faces.
-    pub fn draw(&self, position: &StackPosition, sheet: &Sheet, (staffs, faces): (&mut Drawing, &mut Drawing)) {
+    pub fn draw(
+        &self,
+        position: &StackPosition,
+        sheet: &Sheet,
+        (staffs, faces): (&mut Drawing, &mut Drawing),
+    ) {
         let width = sheet.px(1.2).max(1.0);
         if let Some(PixelSegment { from, to }) = position.staff {
             staffs.line(PixelSegment { from, to }, width + sheet.px(2.0).max(1.4), HALO);

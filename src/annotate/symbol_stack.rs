@@ -221,5 +221,3 @@ fn draw_dashes(line: PixelSegment, width: f32, sheet: &Sheet, drawing: &mut Draw
         drawing.fill(outline, BLACK);
     }
 }
-
-
