@@ -11,9 +11,13 @@ mod geojson;
 #[cfg(feature = "vector-db")]
 mod geopackage;
 mod gpx;
+mod ground_shape;
 pub mod hints;
 mod kml;
+pub mod moment;
+mod orbat;
 mod osm;
+pub mod overlay_schema;
 pub mod read;
 mod rings;
 mod shapefile;

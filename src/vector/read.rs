@@ -8,6 +8,7 @@
 //! | FlatGeobuf | one | its own |
 //! | GPX | waypoints, routes, tracks; route_points, track_points | EPSG:4326 |
 //! | KML, KMZ | the names of its folders; all where none is requested | EPSG:4326 |
+//! | scenarios of ORBAT Mapper | units, and the names of its layers; all where none is requested | EPSG:4326 |
 //! | OpenStreetMap XML and PBF | points, lines, multipolygons; roads, railways, waterways, water, buildings | EPSG:4326 |
 //!
 //! Any of them may be packed by gzip.
@@ -19,7 +20,7 @@ use crate::feature::VectorLayer;
 #[cfg(feature = "vector-db")]
 use crate::geopackage;
 use crate::hints::VectorHints;
-use crate::{flatgeobuf, geojson, gpx, kml, osm, shapefile};
+use crate::{flatgeobuf, geojson, gpx, kml, orbat, osm, shapefile};
 use sandtable_base::archive::{self, ArchiveError, ZipReader};
 use sandtable_base::limits::UNPACKED_VECTOR_BYTES;
 
@@ -69,6 +70,7 @@ fn of_unpacking(error: ArchiveError) -> VectorError {
 fn read_unpacked(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
     match format_of(name, bytes) {
         VectorFormat::GeoJson => single(name, hints, geojson::read(bytes, hints)),
+        VectorFormat::Orbat => orbat::read(bytes, hints),
         VectorFormat::GeoJsonSequence => single(name, hints, geojson::read_sequence(bytes, hints)),
         VectorFormat::Shapefile => {
             let companion = |extension: &str| companion(name, extension, hints);
@@ -166,6 +168,7 @@ enum VectorFormat {
     FlatGeobuf,
     Gpx,
     Kml,
+    Orbat,
     OsmXml,
     OsmPbf,
     /// Known, but not read.
@@ -187,6 +190,7 @@ fn format_of(name: &str, bytes: &[u8]) -> VectorFormat {
         () if osm::is_pbf(bytes) => VectorFormat::OsmPbf,
         () if bytes.starts_with(b"PAR1") => VectorFormat::Other("GeoParquet"),
         () => xml_format(bytes).or_else(|| format_by_name(name)).unwrap_or_else(|| match text.first() {
+            Some(_) if orbat::is_orbat(text) => VectorFormat::Orbat,
             Some(_) if geojson::is_sequence(text) => VectorFormat::GeoJsonSequence,
             Some(b'{') => VectorFormat::GeoJson,
             _ => VectorFormat::Unknown,
