@@ -55,6 +55,76 @@ pub(crate) fn ellipse(center: DVec2, axes_m: [f64; 2], rotation_deg: f64) -> Vec
     (0..SIDES as u32).map(at).collect()
 }
 
+/// The outline of a strip of a width along a line; `None` for a line without length.
+pub(crate) fn corridor(line: &[DVec2], width_m: f64) -> Option<Vec<DVec2>> {
+    let plane = LocalPlane::at(*line.first()?);
+    let points = plane.points(line);
+    let (mut left, mut right) = (Vec::new(), Vec::new());
+    for (at, normal) in points.iter().zip(normals(&points)?) {
+        left.push(*at + normal * width_m * 0.5);
+        right.push(*at - normal * width_m * 0.5);
+    }
+    left.extend(right.into_iter().rev());
+    Some(left.into_iter().map(|at| plane.place(at)).collect())
+}
+
+/// The outline of an arrow along a line, its head as wide as is stated and as long, its shaft half as wide; `None` for a line
+/// without length.
+pub(crate) fn arrow(line: &[DVec2], width_m: f64) -> Option<Vec<DVec2>> {
+    let plane = LocalPlane::at(*line.first()?);
+    let mut points = plane.points(line);
+    let tip = points.pop()?;
+    let before = *points.last()?;
+    let along = (tip - before).try_normalize()?;
+    let neck = tip - along * width_m.min((tip - before).length() * 0.8);
+    points.push(neck);
+    let normals = normals(&points)?;
+    let side =
+        |share: f64| points.iter().zip(&normals).map(move |(at, normal)| *at + *normal * width_m * share);
+    let wing = along.perp() * width_m * 0.5;
+    let outline = side(0.25).chain([neck + wing, tip, neck - wing]);
+    let right: Vec<DVec2> = side(-0.25).collect();
+    Some(outline.chain(right.into_iter().rev()).map(|at| plane.place(at)).collect())
+}
+
+/// The normal to the left of each point of a line, longer where it bends, up to twice; `None` where two points are one.
+fn normals(points: &[DVec2]) -> Option<Vec<DVec2>> {
+    let legs: Vec<DVec2> =
+        points.windows(2).map(|pair| (pair[1] - pair[0]).try_normalize()).collect::<Option<_>>()?;
+    let (first, last) = (*legs.first()?, *legs.last()?);
+    let bends = legs.windows(2).map(|pair| {
+        let middle = (pair[0].perp() + pair[1].perp()).try_normalize().unwrap_or(pair[0].perp());
+        middle / middle.dot(pair[0].perp()).max(0.5)
+    });
+    Some([first.perp()].into_iter().chain(bends).chain([last.perp()]).collect())
+}
+
+/// A plane in meters round a place.
+struct LocalPlane {
+    origin: DVec2,
+    /// Meters of a degree east and north.
+    degree_m: DVec2,
+}
+
+impl LocalPlane {
+    fn at(origin: DVec2) -> Self {
+        /// A sphere as large as WGS 84 is on average: widths of strips are right to a third of a per cent.
+        const RADIUS_M: f64 = 6_371_008.8;
+        let north = RADIUS_M.to_radians();
+        Self { origin, degree_m: DVec2::new(north * libm::cos(origin.y.to_radians()).max(1e-6), north) }
+    }
+
+    fn points(&self, places: &[DVec2]) -> Vec<DVec2> {
+        let mut points: Vec<DVec2> = places.iter().map(|at| (*at - self.origin) * self.degree_m).collect();
+        points.dedup();
+        points
+    }
+
+    fn place(&self, at: DVec2) -> DVec2 {
+        self.origin + at / self.degree_m
+    }
+}
+
 /// The degrees from a direction clockwise to another, above 0 and up to 360.
 fn clockwise(start_deg: f64, end_deg: f64) -> f64 {
     let span = (end_deg - start_deg).rem_euclid(360.0);
@@ -91,6 +161,18 @@ mod tests {
         assert!(band[0].iter().all(|at| (499.9..1000.1).contains(&distance_m(center, *at))));
         assert_eq!(arc_band(center, [500.0, 1000.0], [0.0, 360.0]).len(), 2);
         assert_eq!(arc_band(center, [0.0, 1000.0], [0.0, 90.0])[0].last(), Some(&center));
+    }
+
+    #[test]
+    fn corridors_and_arrows_are_as_wide_as_stated() {
+        let line = [DVec2::new(15.0, 60.0), DVec2::new(15.2, 60.0), DVec2::new(15.2, 60.1)];
+        let strip = corridor(&line, 1000.0).expect("a line");
+        assert_eq!(strip.len(), 6);
+        assert!((distance_m(strip[0], strip[5]) - 1000.0).abs() < 5.0);
+        let arrow = arrow(&line, 1000.0).expect("a line");
+        assert_eq!(arrow.len(), 9);
+        assert!(arrow.iter().any(|at| distance_m(*at, line[2]) < 0.01), "the tip is the last point");
+        assert!(corridor(&line[..1], 10.0).is_none() && corridor(&[line[0], line[0]], 10.0).is_none());
     }
 
     #[test]

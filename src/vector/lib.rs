@@ -2,6 +2,7 @@
 
 mod broken_records;
 mod builder;
+mod cot;
 mod encoding;
 pub mod error;
 pub mod feature;
@@ -14,12 +15,16 @@ mod gpx;
 mod ground_shape;
 pub mod hints;
 mod kml;
+mod milx;
 pub mod moment;
+mod msdl;
+mod nvg;
 mod orbat;
 mod osm;
 pub mod overlay_schema;
 pub mod read;
 mod rings;
 mod shapefile;
+mod svg_style;
 mod tally;
 mod xml;

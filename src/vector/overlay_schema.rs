@@ -12,6 +12,10 @@
 //!
 //! Values are texts, but those of widths and opacities, which are numbers.
 
+use serde_json::Value;
+
+use crate::feature::Properties;
+
 /// A symbol code: 15 letters, or 20 or 30 digits.
 pub const SIDC: &str = "sidc";
 /// The word of a tactical graphic, where there is no code.
@@ -102,6 +106,16 @@ pub const FILL: &str = "fill";
 pub const FILL_OPACITY: &str = "fill-opacity";
 /// The color of a point: `#rrggbb`.
 pub const MARKER_COLOR: &str = "marker-color";
+
+/// Sets a property to a text; an empty one sets nothing.
+pub(crate) fn set(properties: &mut Properties, name: &str, text: impl Into<String>) {
+    let text: String = text.into();
+    let trimmed = text.trim();
+    if !trimmed.is_empty() {
+        let value = if trimmed.len() == text.len() { text } else { trimmed.to_owned() };
+        properties.insert(name.to_owned(), Value::String(value));
+    }
+}
 
 /// The fields of MIL-STD-2525D: letters, the names of their options in milsymbol, properties.
 const FIELDS: [(&str, &str, &str); 26] = [

@@ -8,6 +8,8 @@
 //! | FlatGeobuf | one | its own |
 //! | GPX | waypoints, routes, tracks; route_points, track_points | EPSG:4326 |
 //! | KML, KMZ | the names of its folders; all where none is requested | EPSG:4326 |
+//! | Cursor-on-Target events, also of a data package | one | EPSG:4326 |
+//! | MilX, MSDL, NVG | the names of its layers or groups, of MSDL units, equipment, installations, graphics; all where none is requested | EPSG:4326 |
 //! | scenarios of ORBAT Mapper | units, and the names of its layers; all where none is requested | EPSG:4326 |
 //! | OpenStreetMap XML and PBF | points, lines, multipolygons; roads, railways, waterways, water, buildings | EPSG:4326 |
 //!
@@ -20,7 +22,7 @@ use crate::feature::VectorLayer;
 #[cfg(feature = "vector-db")]
 use crate::geopackage;
 use crate::hints::VectorHints;
-use crate::{flatgeobuf, geojson, gpx, kml, orbat, osm, shapefile};
+use crate::{cot, flatgeobuf, geojson, gpx, kml, milx, msdl, nvg, orbat, osm, shapefile};
 use sandtable_base::archive::{self, ArchiveError, ZipReader};
 use sandtable_base::limits::UNPACKED_VECTOR_BYTES;
 
@@ -70,6 +72,10 @@ fn of_unpacking(error: ArchiveError) -> VectorError {
 fn read_unpacked(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
     match format_of(name, bytes) {
         VectorFormat::GeoJson => single(name, hints, geojson::read(bytes, hints)),
+        VectorFormat::Cot => single(name, hints, cot::read(bytes, hints)),
+        VectorFormat::MilX => milx::read(bytes, hints),
+        VectorFormat::Msdl => msdl::read(bytes, hints),
+        VectorFormat::Nvg => nvg::read(bytes, hints),
         VectorFormat::Orbat => orbat::read(bytes, hints),
         VectorFormat::GeoJsonSequence => single(name, hints, geojson::read_sequence(bytes, hints)),
         VectorFormat::Shapefile => {
@@ -125,7 +131,7 @@ fn companion(name: &str, extension: &str, hints: &VectorHints) -> Option<Vec<u8>
 
 /// Reads an archive: a KMZ, zipped shapefiles, or one file of another format.
 fn read_zip(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
-    const OTHERS: [&str; 6] = [".geojson", ".json", ".gpkg", ".fgb", ".gpx", ".osm"];
+    const OTHERS: [&str; 8] = [".geojson", ".json", ".gpkg", ".fgb", ".gpx", ".osm", ".milxly", ".nvg"];
     let zip = ZipReader::open(bytes)?;
     let limit = most_unpacked(bytes);
     let members = |extensions: &[&str]| {
@@ -143,6 +149,15 @@ fn read_zip(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer
         let companions = |name: &str| zip.read(name, limit).ok();
         let hints = VectorHints { layer: None, companions: &companions, ..*hints };
         return read_unpacked(member, &zip.read(member, limit).map_err(of_unpacking)?, &hints);
+    }
+    // A data package has a folder for each event.
+    let events = members(&[".cot"]);
+    if !events.is_empty() {
+        let mut all = Vec::new();
+        for member in events {
+            all.extend(zip.read(member, limit.saturating_sub(all.len() as u64)).map_err(of_unpacking)?);
+        }
+        return read_unpacked(name, &all, hints);
     }
     match members(&OTHERS)[..] {
         [only] => read_unpacked(only, &zip.read(only, limit).map_err(of_unpacking)?, hints),
@@ -168,6 +183,10 @@ enum VectorFormat {
     FlatGeobuf,
     Gpx,
     Kml,
+    Cot,
+    MilX,
+    Msdl,
+    Nvg,
     Orbat,
     OsmXml,
     OsmPbf,
@@ -216,6 +235,10 @@ fn xml_format(bytes: &[u8]) -> Option<VectorFormat> {
     Some(match () {
         () if holds(b"<kml") || holds(b":kml") || holds(b"<Placemark") => VectorFormat::Kml,
         () if holds(b"<gpx") => VectorFormat::Gpx,
+        () if holds(b"<MilitaryScenario") || holds(b":MilitaryScenario") => VectorFormat::Msdl,
+        () if holds(b"<MilXDocument") || holds(b"<MilXLayer") => VectorFormat::MilX,
+        () if holds(b"<nvg") => VectorFormat::Nvg,
+        () if holds(b"<event") && holds(b"uid=") => VectorFormat::Cot,
         () if holds(b"<osm") => VectorFormat::OsmXml,
         () if holds(b"gml") => VectorFormat::Other("GML"),
         () => VectorFormat::Other("XML of an unknown kind"),

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use serde_json::{Map, Value};
 
-use super::units::{amplifier, set};
+use super::units::amplifier;
 use super::{FORMAT, list, moment_of, place_of, states, text_of};
 use crate::builder::{FeatureParts, LayerBuilder, Vertices};
 use crate::error::VectorError;
@@ -13,7 +13,7 @@ use crate::ground_shape::{self, FARTHEST_M};
 use crate::moment::Moment;
 use crate::overlay_schema::{
     BEGIN, DESCRIPTION, END, FILL, FILL_OPACITY, ID, IDENTITY, KIND, LABEL, LAYER, MARKER_COLOR, NAME, SIDC,
-    STATUS, STROKE, STROKE_DASHES, STROKE_OPACITY, STROKE_WIDTH, field_property,
+    STATUS, STROKE, STROKE_DASHES, STROKE_OPACITY, STROKE_WIDTH, field_property, set,
 };
 use crate::tally::RecordTally;
 

@@ -113,7 +113,7 @@ fn a_layer_that_is_not_there_and_broken_json_are_errors() {
     let error = read::read("a.json", &SCENARIO.as_bytes()[..200], &VectorHints::default())
         .expect_err("cut")
         .to_string();
-    assert!(error.contains("line 2"), "{error}");
+    assert!(error.contains("line 4, column 70"), "{error}");
 }
 
 #[test]

@@ -9,6 +9,7 @@ use crate::feature::Properties;
 use crate::moment::Moment;
 use crate::overlay_schema::{
     BEGIN, DESCRIPTION, END, ID, NAME, PARENT, REINFORCED, SIDC, SIDE, UNIQUE_DESIGNATION, field_property,
+    set,
 };
 use crate::tally::RecordTally;
 
@@ -149,10 +150,6 @@ pub(super) fn amplifier(value: &Value) -> Option<String> {
         Value::Number(number) => Some(number.to_string()),
         _ => None,
     }
-}
-
-pub(super) fn set(properties: &mut Properties, name: &str, text: impl Into<String>) {
-    properties.insert(name.to_owned(), Value::String(text.into()));
 }
 
 fn reinforced_mark(status: &str) -> Option<&'static str> {
