@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use crate::graphic::area::{hatch, inner_text, is_hatched};
 use crate::graphic::drawing::{GraphicDrawing, GraphicInput};
 use crate::graphic::kind::GraphicKind;
 use crate::graphic::plane::{arc, arrowhead, circle, direction};
@@ -32,12 +33,20 @@ pub fn linear_target(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut
 /// A circle of a stated radius with a name inside (CIRCULAR1).
 pub fn circular(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     let Some(&radius_m) = input.fields.distances_m.first() else { return };
-    drawing.ring(circle(input.points[0], radius_m));
-    let mut text = input.fields.labeled(kind.label);
-    if !input.fields.target.is_empty() {
-        text = input.fields.target.clone();
+    let center = input.points[0];
+    let ring = circle(center, radius_m);
+    if is_hatched(kind) {
+        hatch(&ring, input, drawing);
     }
-    drawing.text(text, input.points[0]);
+    drawing.ring(ring);
+    if kind.code == "240502" {
+        // The letters stand on four sides, the name inside.
+        let up = input.up.normalize_or(DVec2::Y) * radius_m;
+        [up, up.perp(), -up, -up.perp()].into_iter().for_each(|side| drawing.text("PAA", center + side));
+        drawing.text(input.fields.labeled("{}"), center);
+    } else {
+        drawing.text(inner_text(kind, input), center);
+    }
 }
 
 /// Rings of range about a weapon or sensor (CIRCULAR2), each with its distance and height.
@@ -79,7 +88,7 @@ pub fn range_sector(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Gra
     {
         let middle = heading(pair[0] + (pair[1] - pair[0]).rem_euclid(360.0) / 2.0);
         let tip = center + middle * farthest_m * ARROW;
-        drawing.line([center + middle * farthest_m, tip]);
+        drawing.line([center, tip]);
         drawing.line(arrowhead(tip, middle, input.em_m, 0.6 * input.em_m));
     }
 }
