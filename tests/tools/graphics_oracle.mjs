@@ -112,6 +112,11 @@ const mirrored = ([x, y]) => [Math.round(5000 - (x - 4200) * 0.9), Math.round(30
 
 const rules = new Map(Object.entries(DrawRules).filter(([, value]) => typeof value === "number").map(([k, v]) => [v, k]));
 const POINTS = /^(DONOTDRAW|POINT(?!12|17|18))/;
+/** What 2525E draws by other points than 2525D. */
+const OTHER_POINTS = {
+  25240701: [[2000, 2000], [4500, 3400], [6000, 3500]],
+  25342201: [[2000, 2000], [3500, 3000], [4500, 3000], [7000, 2000]],
+};
 const lookup = MSLookup.getInstance();
 const kinds = new Map();
 for (const version of VERSIONS) {
@@ -132,9 +137,13 @@ const isLine = (line) => line.some(([x, y]) => x !== line[0][0] || y !== line[0]
 const list = (points) => points.map((point) => point.join(" ")).join(",");
 const meters = (points) => list(points.map((point) => point.map((degrees) => (degrees * METERS).toFixed(0))));
 const box = `0,0,${10000 / METERS},${6000 / METERS}`;
-for (const [id, { version, rule, least, most }] of [...kinds].sort(([a], [b]) => (a < b ? -1 : 1))) {
+const drawn = [...kinds].sort(([a], [b]) => (a < b ? -1 : 1));
+for (const [id, shape] of Object.entries(OTHER_POINTS)) {
+  drawn.push([id, { version: 13, rule: rules.get(lookup.getMSLInfo(id, 13).getDrawRule()), shape }]);
+}
+for (const [id, { version, rule, least, most, shape }] of drawn) {
   const isMetoc = !id.startsWith("25");
-  const base = isMetoc ? pointsOf(/^AREA/.test(rule) ? "area" : "line", 2, 99) : pointsOf(rule, least, most);
+  const base = shape ? shape : isMetoc ? pointsOf(/^AREA/.test(rule) ? "area" : "line", 2, 99) : pointsOf(rule, least, most);
   for (const points of [base, base.map(turned), base.map(mirrored)]) {
     const fields = { ...(FIELDS[rule] || {}), T_UNIQUE_DESIGNATION_1: "RED" };
     const modifiers = new Map(Object.entries(fields).map(([name, value]) => [Modifiers[name], value]));

@@ -13,15 +13,19 @@ const BAR_EM: f64 = 1.04;
 /// How much longer than the greatest range the arrow of a sector is.
 const ARROW: f64 = 1.2;
 
-/// A linear target (LINE5): a line between bars, its number over it.
+/// A linear target (LINE5): a line with bars at its ends, its number over it.
 pub fn linear_target(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
-    let [from, to] = [input.points[0], input.points[1]];
-    let aside = direction(from, to).perp();
-    drawing.line([from, to]);
-    for end in [from, to] {
-        let bar = aside * (BAR_EM * input.em_m);
-        drawing.line([end - bar, end + bar]);
+    let points = input.points;
+    drawing.line(points);
+    let last = points.len() - 1;
+    for leg in [[0, 1], [last, last - 1]] {
+        let bar = direction(points[leg[0]], points[leg[1]]).perp() * (BAR_EM * input.em_m);
+        drawing.line([points[leg[0]] - bar, points[leg[0]] + bar]);
     }
+    // The texts stand in the middle of its middle leg.
+    let middle_leg = last.div_ceil(2);
+    let [from, to] = [points[middle_leg - 1], points[middle_leg]];
+    let aside = direction(from, to).perp();
     let above = if aside.dot(input.up) < 0.0 { -aside } else { aside };
     let middle = from.midpoint(to);
     let beside = above * (0.3 * input.em_m);

@@ -145,7 +145,10 @@ pub fn turn(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicD
 
 /// Delay, withdraw and retire (LINE24): an arrow with its tip at point 1 and a half circle from point 2 to point 3.
 pub fn delay(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
-    let [tip, turn, end] = [input.points[0], input.points[1], input.points[2]];
+    let [tip, turn] = [input.points[0], input.points[1]];
+    /// The half circle's width in lengths of the arrow where no point 3 says it (2525E), on the arrow's left.
+    const BOW: f64 = 0.3;
+    let end = input.points.get(2).copied().unwrap_or(turn + (tip - turn).perp() * BOW);
     lettered(&[turn, tip], 0.5, kind, input, drawing);
     let toward = direction(turn, tip);
     drawing.line(arrowhead(tip, toward, 1.5 * input.em_m, 1.2 * input.em_m));
@@ -200,18 +203,25 @@ pub fn circle_task(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut G
     lettered(&curve, 0.5, kind, input, drawing);
 }
 
-/// Cover, guard and screen (LINE26): two lightning arrows from point 1 to points 2 and 3.
+/// Cover, guard and screen (LINE26): two lightning arrows from point 1 to points 2 and 3, or from points 2 and 3 to 1 and 4.
 pub fn screen(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
-    let center = input.points[0];
-    let tips = [input.points[1], input.points[2]];
+    // Two arrows from one place, or (2525E) each from a place of its own.
+    let arrows = match *input.points {
+        [first, from, other, last] => [[from, first], [other, last]],
+        [center, first, last, ..] => [[center, first], [center, last]],
+        _ => return,
+    };
+    let is_split = input.points.len() > 3;
+    let tips = arrows.map(|[_, tip]| tip);
+    let middle = arrows[0][0].midpoint(arrows[1][0]);
     /// The gap at the center in text heights, and half of the jag as a share of the first arrow.
     const GAP_EM: f64 = 2.5;
     const JAG: f64 = 0.0472;
-    let away = center - tips[0].midpoint(tips[1]);
-    for tip in tips {
+    let away = middle - tips[0].midpoint(tips[1]);
+    let jag_m = JAG * arrows[0][0].distance(tips[0]);
+    for [center, tip] in arrows {
         let (along, length_m) = (direction(center, tip), center.distance(tip));
-        let gap_m = (GAP_EM * input.em_m).min(length_m / 4.0);
-        let jag_m = JAG * center.distance(tips[0]);
+        let gap_m = if is_split { 0.0 } else { (GAP_EM * input.em_m).min(length_m / 4.0) };
         let side = if along.perp().dot(away) < 0.0 { -along.perp() } else { along.perp() };
         let middle = center + along * (length_m + gap_m) / 2.0;
         let jag = |way: f64| middle + (along * way + side * way) * jag_m;
