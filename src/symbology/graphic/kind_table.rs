@@ -152,7 +152,7 @@ const LINE_KINDS: &[GraphicKind] = &[
     row("launch_area", "200101", "Launch area, ellipse", "ELLIPSE1", GraphicShape::Ellipse, [1, 1], "T AM AN", "LA - {}", GraphicTint::Own, zone::ellipse),
     row("defended_area", "200201", "Defended area, ellipse", "ELLIPSE1", GraphicShape::Ellipse, [1, 1], "T AM AN", "DA - {}", GraphicTint::Own, zone::ellipse),
     row("defended_area_rectangle", "200202", "Defended area, rectangle", "RECTANGULAR1", GraphicShape::Corridor, [2, 2], "T AM", "DA - {}", GraphicTint::Own, zone::rectangle),
-    row("no_attack_zone", "200300", "No attack zone", "CIRCULAR1", GraphicShape::Circle, [1, 1], "T AM W W1", "NOTACK {}", GraphicTint::Own, fires::circular),
+    row("no_attack_zone", "200300", "No attack zone", "CIRCULAR1", GraphicShape::Circle, [1, 1], "T AM W W1", "N {}", GraphicTint::Own, fires::circular),
     row("ship_area_of_interest_ellipse", "200401", "Ship area of interest, ellipse", "ELLIPSE1", GraphicShape::Ellipse, [1, 1], "T AM AN", "AOI {}", GraphicTint::Own, zone::ellipse),
     row("ship_area_of_interest_rectangle", "200402", "Ship area of interest, rectangle", "RECTANGULAR1", GraphicShape::Corridor, [2, 2], "T AM", "AOI {}", GraphicTint::Own, zone::rectangle),
     row("cued_acquisition_doctrine", "200600", "Cued acquisition doctrine", "POINT17", GraphicShape::Ellipse, [1, 1], "T AM AN", "{}", GraphicTint::Own, zone::box_about),
@@ -296,7 +296,7 @@ const LINE_KINDS: &[GraphicKind] = &[
     row("fighting_position", "291000", "Fighting position", "LINE19", GraphicShape::Figure, [2, 2], "", "", GraphicTint::Own, crossing::fighting_position),
     // Intelligence and sustainment.
     row("intelligence_coordination_line", "300100", "Intelligence coordination line", "LINE2", GraphicShape::Line, [2, MOST_POINTS], "T W W1", "ICL {}", GraphicTint::Own, lines::end_labeled),
-    row("detainee_holding_area", "310100", "Detainee holding area", "AREA1", GraphicShape::Area, [3, MOST_POINTS], "T", "DHA\n{}", GraphicTint::Own, area::area),
+    row("detainee_holding_area", "310100", "Detainee holding area", "AREA1", GraphicShape::Area, [3, MOST_POINTS], "T", "DETAINEE\nHOLDING\nAREA\n{}", GraphicTint::Own, area::area),
     row("prisoner_holding_area", "310200", "Enemy prisoner of war holding area", "AREA1", GraphicShape::Area, [3, MOST_POINTS], "T", "EPW\nHOLDING\nAREA\n{}", GraphicTint::Own, area::area),
     row("forward_arming_and_refueling_area", "310300", "Forward arming and refueling point", "AREA1", GraphicShape::Area, [3, MOST_POINTS], "T", "FARP\n{}", GraphicTint::Own, area::area),
     row("refugee_holding_area", "310400", "Refugee holding area", "AREA1", GraphicShape::Area, [3, MOST_POINTS], "T", "REFUGEE\nHOLDING\nAREA\n{}", GraphicTint::Own, area::area),

@@ -243,3 +243,32 @@ fn lines_with_teeth_have_as_many_as_those_of_another_renderer_but_one() {
     assert!(wrong.is_empty(), "{wrong:#?}");
     assert!(compared >= 75, "{compared}");
 }
+
+#[test]
+fn graphics_show_the_letters_that_those_of_another_renderer_show() {
+    let (mut wrong, mut compared) = (Vec::new(), 0);
+    for recorded in recorded() {
+        let drawing = drawn(&recorded);
+        let ours: Vec<&str> =
+            drawing.texts.iter().flat_map(|text| text.text.split([' ', '-', '\n'])).collect();
+        for (_, text) in &recorded.texts {
+            // Titles of numbers are a matter of wording; 2525E writes BL for the B of a bridgehead line.
+            const TITLES: [&str; 5] = [":", "RG", "ALT", "GRID", "EFF"];
+            let is_azimuth = recorded.kind.rule == "ARC1";
+            let is_titled = is_azimuth || TITLES.iter().any(|title| text.contains(title));
+            let words = text.split([' ', '-']).filter(|word| !word.is_empty() && !is_titled && *word != "B");
+            for word in words {
+                compared += 1;
+                if !ours.contains(&word) {
+                    wrong.push(format!(
+                        "{} {}: {word} of {text}; ours {ours:?}",
+                        recorded.kind.code, recorded.kind.word
+                    ));
+                }
+            }
+        }
+    }
+    wrong.dedup();
+    assert!(wrong.is_empty(), "{compared}: {wrong:#?}");
+    assert!(compared > 500, "{compared}");
+}

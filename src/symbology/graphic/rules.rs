@@ -25,7 +25,10 @@ pub const POINT_MEANINGS: [(&str, &str); 60] = [
     ("LINE21", "the route, in the direction of traffic"),
     ("LINE22", "1 and 2 the ends of the opening, 3 the middle of the back"),
     ("LINE23", "1 and 2 the ends of the line, 3 the rear of the middle arrow"),
-    ("LINE24", "1 the tip, 2 the end of the straight part, 3 the end of the half circle (which withdraw may lack)"),
+    (
+        "LINE24",
+        "1 the tip, 2 the end of the straight part, 3 the end of the half circle (which withdraw may lack)",
+    ),
     ("LINE25", "1 the tip, 2 the rear"),
     ("LINE26", "1 the middle, 2 and 3 the tips; of four points 1 and 4 are the tips, 2 and 3 the rears"),
     ("LINE27", "1 the middle of the circle, 2 a place on it, 3 the side of the bow, the last the tip"),

@@ -329,5 +329,7 @@ pub fn contain(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graph
         drawing.line([center + radius, center + radius / 2.0]);
     }
     lettered(&[rear, center], 0.5, kind, input, drawing);
+    // What is contained is the enemy, whoever contains it.
+    drawing.text("ENY", center + direction(rear, center) * (0.3 * a.distance(center)));
     head(center, direction(rear, center), input, drawing);
 }
