@@ -273,6 +273,12 @@ words! {
         Planned = "planned": "planned, anticipated or suspected, in dashes",
     }
 
+    /// In which order the points of an axis or arrow are.
+    enum GraphicOrder {
+        Standard = "standard": "by the draw rule of the standard, from its tip",
+        Drawn = "drawn": "as a person draws it, from start to tip",
+    }
+
     /// Which ground a viewshed tints.
     enum ViewshedTint {
         Both = "both": "seen ground green, hidden ground dark",
