@@ -17,7 +17,7 @@ use crate::drawing::{BLACK, PathStep, SymbolMark, SymbolPen, parse, path};
 use crate::entities;
 use crate::fields::{SymbolContext, SymbolIdentity, SymbolSet, SymbolStatus};
 use crate::frame::{FRAME_LINE, FrameOpening, FrameShape, SymbolBox, fill};
-use crate::modifiers::modifiers;
+use crate::modifiers;
 
 /// The light dashes over the frame of what is only assumed, and of what is planned: lengths of dash and gap.
 const ASSUMED_DASH: [f32; 2] = [4.0, 4.0];
@@ -119,8 +119,7 @@ fn icon(code: &SymbolCode, shape: FrameShape, notes: &mut Vec<String>) -> Vec<Sy
         }
     }
     for (sector, number) in [(1, code.modifiers[0]), (2, code.modifiers[1])] {
-        let found = modifiers(code.set, sector).iter().find(|row| row.code == u32::from(number));
-        match found {
+        match modifiers::find(code, sector) {
             Some(modifier) => drawings.push(modifier.drawing),
             None if number == 0 => {}
             None => notes.push(format!(
@@ -249,7 +248,10 @@ mod tests {
     fn every_drawing_is_one_in_every_frame() {
         let shapes = [FrameShape::Rectangle, FrameShape::Diamond, FrameShape::Square, FrameShape::Quatrefoil];
         for set in entities::SETS {
-            let rows = entities::entities(set).iter().chain(modifiers(set, 1)).chain(modifiers(set, 2));
+            let rows = entities::entities(set)
+                .iter()
+                .chain(modifiers::modifiers(set, 1))
+                .chain(modifiers::modifiers(set, 2));
             for (row, shape) in rows.flat_map(|row| shapes.map(|shape| (row, shape))) {
                 assert!(parse(row.drawing, shape).is_some_and(|marks| !marks.is_empty()), "{}", row.name);
             }
