@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! drawing   := statement { ";" statement }
-//! statement := { "fill" | "solid" | "pale" | "thin" | "bold" | "broad" } ( path | circle | text | piece )
+//! statement := { "fill" | "solid" | "pale" | "light" | "thin" | "bold" | "broad" } ( path | circle | text | piece )
 //! path      := "M" x,y { "M" x,y | "L" x,y | "Q" x,y x,y | "C" x,y x,y x,y | "A" center radii from to | "Z" }
 //! circle    := "circle" x,y radius
 //! text      := "text" size [ x,y ] WORD        centered; size of the em
@@ -11,7 +11,7 @@
 //!
 //! `A` is an arc of an axis-parallel ellipse, from one angle to another in degrees, clockwise from the right; a straight
 //! line leads to its start. A path is stroked in black; `fill` fills it in black instead, `solid` fills it in black under its
-//! stroke and `pale` in near white, and the others change the stroke's width. A piece may hold other pieces.
+//! stroke, `pale` in near white under its stroke and `light` in near white alone, and the others change the stroke's width. A piece may hold other pieces.
 
 use std::f32::consts::FRAC_PI_4;
 
@@ -182,6 +182,7 @@ impl DrawingStyle {
             "fill" => Self { fill: Some(BLACK), has_stroke: false, ..self },
             "solid" => Self { fill: Some(BLACK), has_stroke: true, ..self },
             "pale" => Self { fill: Some(PALE), ..self },
+            "light" => Self { fill: Some(PALE), has_stroke: false, ..self },
             "thin" => Self { width: THIN, ..self },
             "bold" => Self { width: BOLD, ..self },
             "broad" => Self { width: BROAD, ..self },

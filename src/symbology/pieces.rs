@@ -1,6 +1,8 @@
 //! Drawings that several entities share, by name, and those whose shape the frame decides: an icon that fills its frame
 //! touches the frame's edge, wherever that is.
 
+mod land;
+
 use crate::frame::FrameShape;
 
 /// The drawing of a piece in a frame of a shape; `None` for a name that is none.
@@ -11,8 +13,8 @@ pub(super) fn piece(name: &str, shape: FrameShape) -> Option<&'static str> {
 }
 
 /// The tables of pieces that are the same in every frame, and of those that the frame decides.
-const SHARED: [&[SharedPiece]; 1] = [&COMMON];
-const FRAMED: [&[FramedPiece]; 1] = [&FRAME_FILLING];
+const SHARED: &[&[SharedPiece]] = &[&COMMON, land::SHARED];
+const FRAMED: &[&[FramedPiece]] = &[&FRAME_FILLING, land::FRAMED];
 
 /// Name and drawing.
 type SharedPiece = (&'static str, &'static str);
@@ -103,5 +105,22 @@ fn column(shape: FrameShape) -> usize {
         FrameShape::Square | FrameShape::OpenBox(_) => 2,
         FrameShape::Quatrefoil | FrameShape::Trefoil(_) => 3,
         FrameShape::Rectangle | FrameShape::Circle | FrameShape::Hexagon | FrameShape::Arch(_) => 0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn every_piece_has_a_name_of_its_own() {
+        let shared = SHARED.iter().flat_map(|table| *table).map(|row| row.0);
+        let framed = FRAMED.iter().flat_map(|table| *table).map(|row| row.0);
+        let mut names = BTreeSet::new();
+        for name in shared.chain(framed) {
+            assert!(names.insert(name), "{name} is there twice");
+        }
     }
 }

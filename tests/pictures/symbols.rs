@@ -16,8 +16,8 @@ use sandtable_symbology::symbol::MilitarySymbol;
 
 /// What the table draws, as its head says: pixels per unit, the corner and the size of the picture in units.
 const PIXELS_PER_UNIT: f32 = 0.64;
-const CORNER: Vec2 = Vec2::new(-50.0, -60.0);
-const SIZE: (u32, u32) = (192, 218);
+const CORNER: Vec2 = Vec2::new(-50.0, -62.5);
+const SIZE: (u32, u32) = (192, 220);
 /// The standard deviation of the blur in pixels, and the darkness above which a pixel is dark.
 const BLUR: f64 = 2.0;
 const DARK: f64 = 0.25;

@@ -43,8 +43,9 @@ const SETS = [
 ];
 // Friend, hostile, neutral, unknown.
 const IDENTITIES = [3, 6, 4, 1];
+// The middle of the symbol's box is a whole pixel, where the program sets it.
 const PIXELS_PER_UNIT = 128 / 200;
-const [LEFT, TOP, WIDTH, HEIGHT] = [-50, -60, 300, 340];
+const [LEFT, TOP, WIDTH, HEIGHT] = [-50, -62.5, 300, 343.75];
 const BLUR = 2;
 const DARK = 0.25;
 const DIGITS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

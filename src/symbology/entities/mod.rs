@@ -4,7 +4,9 @@
 
 mod activity;
 mod air;
+mod dismounted;
 pub mod entity;
+mod land_civilian;
 mod land_equipment;
 mod land_installation;
 mod land_unit;
@@ -14,10 +16,12 @@ use crate::entities::entity::SymbolEntity;
 use crate::fields::SymbolSet;
 
 /// The sets that have entities.
-pub const SETS: [SymbolSet; 6] = [
+pub const SETS: [SymbolSet; 8] = [
     SymbolSet::LandUnit,
+    SymbolSet::LandCivilian,
     SymbolSet::LandEquipment,
     SymbolSet::LandInstallation,
+    SymbolSet::Dismounted,
     SymbolSet::Activity,
     SymbolSet::Air,
     SymbolSet::SeaSurface,
@@ -28,6 +32,8 @@ pub fn entities(set: SymbolSet) -> &'static [SymbolEntity] {
     match set {
         SymbolSet::LandUnit => land_unit::LAND_UNITS,
         SymbolSet::LandEquipment => land_equipment::LAND_EQUIPMENT,
+        SymbolSet::LandCivilian => land_civilian::LAND_CIVILIANS,
+        SymbolSet::Dismounted => dismounted::DISMOUNTED,
         SymbolSet::LandInstallation => land_installation::LAND_INSTALLATIONS,
         SymbolSet::Activity => activity::ACTIVITIES,
         SymbolSet::Air => air::AIRCRAFT,
