@@ -156,9 +156,9 @@ function symbolSet(set) {
   const table = new Table();
   for (const identity of IDENTITIES) table.add(code(identity, set));
   const each = (kind, options) => {
-    for (const key of Object.keys(icons(set, 10)[kind]).sort()) {
-      // The common modifiers of 2525E have three digits.
-      if (kind !== "icons" && key.length !== 2) continue;
+    for (const [key, drawing] of Object.entries(icons(set, 10)[kind]).sort(([a], [b]) => (a < b ? -1 : 1))) {
+      // The common modifiers of 2525E have three digits; a number that is reserved has no drawing.
+      if (kind !== "icons" && (key.length !== 2 || drawing.length === 0)) continue;
       for (const version of versions(set, kind, key)) {
         for (const identity of IDENTITIES) table.add(code(identity, set, { version, ...options(key) }));
       }

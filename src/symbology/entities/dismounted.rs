@@ -6,7 +6,7 @@ pub(super) const DISMOUNTED: &[SymbolEntity] = &[
     entity(110000, "military", ""),
     entity(110100, "unit", ""),
     entity(110101, "infantry", "@infantry-dismounted"),
-    entity(110102, "medical", "@cross"),
+    entity(110102, "medical", "@cross-dismounted"),
     entity(110103, "reconnaissance", "@reconnaissance-dismounted"),
     entity(110104, "signal", "@signal-dismounted"),
     entity(110200, "specialty", ""),

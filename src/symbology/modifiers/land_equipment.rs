@@ -14,7 +14,6 @@ pub(super) const SECTOR_1: &[SymbolEntity] = &[
     entity(8, "hijacking/hijacked", "text 28 100,68.5 H"),
     entity(9, "civilian", "text 25 100,69 CIV"),
     entity(10, "tilt-rotor", "text 28 100,68.5 TR"),
-    entity(11, "{reserved for future use}", ""),
     entity(12, "multi-purpose blade", "M80,65 L100,55 L120,65 M100,80 L100,55"),
     entity(
         13,
@@ -49,8 +48,8 @@ pub(super) const SECTOR_2: &[SymbolEntity] = &[
     entity(4, "railway", "@railroad-below"),
     entity(5, "tracked", "@tracked-below"),
     entity(6, "tractor trailer", "M60,120 L140,120; circle 65,125 5; circle 75,125 5; circle 135,125 5"),
-    entity(7, "wheeled LTD", "@wheeled-limited-below"),
-    entity(8, "wheeled x", "@wheeled-below"),
+    entity(7, "wheeled, limited cross-country", "@wheeled-limited-below"),
+    entity(8, "wheeled, cross-country", "@wheeled-below"),
     entity(
         9,
         "robotic",

@@ -47,7 +47,7 @@ pub(super) const SECTOR_1: &[SymbolEntity] = &[
     entity(27, "forward", "text 25 100,69 FWD"),
     entity(28, "ground station module", "text 25 100,69 GSM"),
     entity(29, "landing support", "text 28 100,68.5 LS"),
-    entity(30, "{reserved for future use}", "text 25 100,69 LEN"),
+    entity(30, "large extension node", "text 25 100,69 LEN"),
     entity(31, "maintenance", "@maintenance-above"),
     entity(32, "meteorological", "text 25 100,69 MET"),
     entity(33, "mine countermeasure", "text 25 100,69 MCM"),
@@ -59,7 +59,7 @@ pub(super) const SECTOR_1: &[SymbolEntity] = &[
     ),
     entity(36, "mobile subscriber equipment", "text 25 100,69 MSE"),
     entity(37, "mobility support", "text 28 100,68.5 MS"),
-    entity(38, "{reserved for future use}", "text 25 100,69 MCC"),
+    entity(38, "movement control center", "text 25 100,69 MCC"),
     entity(39, "multinational", "text 28 100,68.5 MN"),
     entity(40, "multinational specialized unit", "text 25 100,69 MSU"),
     entity(41, "multiple rocket launcher", "M85,68 L100,53 L115,68 M85,76 L100,61 L115,76"),
@@ -163,7 +163,7 @@ pub(super) const SECTOR_1: &[SymbolEntity] = &[
     entity(98, "headquarters element", "@staff-line"),
     entity(
         99,
-        "{reserved for future use}",
+        "multi-domain",
         "M85.9,65.6 L85.9,60.9 L90.8,60.9 M100,75 L85.9,60.9 M83.7,71.6 L80.3,75 L83.7,79.1 M100,75 L80.3,75 \
          M116,71.6 L119,75 L116,79.1 M100,75 L119,75 M109,60.9 L114,60.9 L114,65.7 M100,75 L114,60.9 M96.6,58.3 \
          L100,54.9 L103,58.3 M100,75 L100,54.9",
@@ -251,7 +251,7 @@ pub(super) const SECTOR_2: &[SymbolEntity] = &[
     entity(55, "refuel", "text 28 100,131.5 K"),
     entity(56, "utility", "text 28 100,131.5 U"),
     entity(57, "combat search and rescue", "text 20 100,132.5 CSAR"),
-    entity(58, "guerilla", "text 28 100,131.5 G"),
+    entity(58, "guerrilla", "text 28 100,131.5 G"),
     entity(59, "air assault", "M85,125 L100,145 L115,125"),
     entity(60, "amphibious", "@amphibious-below"),
     entity(61, "very heavy", "text 28 100,131.5 VH"),
@@ -263,7 +263,7 @@ pub(super) const SECTOR_2: &[SymbolEntity] = &[
     entity(67, "landing craft", "text 28 100,131.5 LC"),
     entity(68, "landing ship", "text 28 100,131.5 LS"),
     entity(69, "service craft/yard", "text 28 100,131.5 YY"),
-    entity(70, "tug harbor", "text 28 100,131.5 YT"),
+    entity(70, "harbor tug", "text 28 100,131.5 YT"),
     entity(71, "ocean going tug boat", "text 28 100,131.5 AT"),
     entity(72, "surface deployment and distribution command", "text 20 100,132.5 SDDC"),
     entity(

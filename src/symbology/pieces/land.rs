@@ -377,6 +377,15 @@ pub(super) const FRAMED: &[FramedPiece] = &[
         ],
     ),
     (
+        "cross-dismounted",
+        [
+            "M45,100 L155,100 M100,45 L100,155",
+            "M28,100 L172,100 M100,28 L100,172",
+            "M45,100 L155,100 M100,45 L100,155",
+            "M31,100 L169,100 M100,31 L100,169",
+        ],
+    ),
+    (
         "division-and-below-support",
         [
             "M25,50 L55,100 L25,150",

@@ -111,7 +111,7 @@ fn add_missing(page: &mut String) {
         without.join(", ")
     );
     page.push_str(
-        "Modifiers of other sets than land units, the common modifiers of 2525E, country codes, signature and installation\n\
+        "Modifiers of sets outside the land, the common modifiers of 2525E, country codes, signature and installation\n\
          composition fields, and engagement bars are not drawn.\n",
     );
     let mut missing: BTreeMap<u8, Vec<String>> = BTreeMap::new();
@@ -126,7 +126,7 @@ fn add_missing(page: &mut String) {
         }
     }
     for set in SETS {
-        let names = missing.remove(&set.number()).unwrap_or_default();
+        let Some(names) = missing.remove(&set.number()) else { continue };
         let _ = writeln!(
             page,
             "\n{} ({:02}), {} entities: {}.",
