@@ -207,6 +207,7 @@ words! {
         Mean = "mean": "the mean",
         Highest = "highest": "the highest",
         Pad = "pad": "the mean, to which the ground is leveled",
+        Own = "own": "none: the heights of its file, as CityJSON has them",
     }
 
     /// The shape of a roof.

@@ -41,6 +41,12 @@ impl Attributes {
         }
     }
 
+    /// Its property `name` as text; `None` where it is absent or of another kind.
+    pub fn text(&self, name: &str) -> Option<&str> {
+        let (layer, feature) = self.feature.as_ref()?;
+        layer.features[*feature].properties.get(name)?.as_str()
+    }
+
     /// The feature's shape as its file has it; `None` where the scene file itself states the feature.
     pub fn geometry(&self) -> Option<&Geometry> {
         let (layer, feature) = self.feature.as_ref()?;

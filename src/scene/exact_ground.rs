@@ -53,7 +53,7 @@ fn shapes_ground(document: &Document) -> bool {
     };
     !(document.lakes.is_empty() && document.rivers.is_empty() && document.earthworks.is_empty())
         || document.roads.iter().any(|road| road.profile == ProfileMode::Conform)
-        || document.buildings.iter().any(|building| building.base == BaseRule::Pad)
+        || document.buildings.iter().any(|building| building.base == Some(BaseRule::Pad))
         || document.fences.iter().any(may_be_dug)
         || document.models.iter().any(|model| *model.footing == Footing::Pad)
 }

@@ -2,6 +2,7 @@
 
 mod broken_records;
 mod builder;
+pub mod cityjson;
 mod encoding;
 pub mod error;
 pub mod feature;

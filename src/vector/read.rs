@@ -3,6 +3,7 @@
 //! | format | layers | coordinate system |
 //! |---|---|---|
 //! | GeoJSON, also one feature to a line or as a text sequence | one | its `crs` member, else EPSG:4326 |
+//! | CityJSON, also one feature to a line | one: footprints | its reference system |
 //! | ESRI shapefile, also zipped | one; of an archive the names of its `.shp` files | its `.prj` |
 //! | GeoPackage (feature `vector-db`) | its tables and views of features | its own |
 //! | FlatGeobuf | one | its own |
@@ -14,12 +15,13 @@
 
 use std::borrow::Cow;
 
+use crate::cityjson::CityModel;
 use crate::error::VectorError;
 use crate::feature::VectorLayer;
 #[cfg(feature = "vector-db")]
 use crate::geopackage;
 use crate::hints::VectorHints;
-use crate::{flatgeobuf, geojson, gpx, kml, osm, shapefile};
+use crate::{cityjson, flatgeobuf, geojson, gpx, kml, osm, shapefile};
 use sandtable_base::archive::{self, ArchiveError, ZipReader};
 use sandtable_base::limits::UNPACKED_VECTOR_BYTES;
 
@@ -40,6 +42,22 @@ const SMALL_BYTES: u64 = 16 << 20;
 /// # Errors
 /// [`VectorError`]; for a format that cannot be read with the command that converts it.
 pub fn read(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
+    read_file(name, bytes, hints).map(|file| file.layer)
+}
+
+/// A vector file as read.
+pub struct VectorFile {
+    /// Its features.
+    pub layer: VectorLayer,
+    /// The surfaces of its objects, of CityJSON.
+    pub model: Option<CityModel>,
+}
+
+/// [`read`] with what a file holds besides features.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_file(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorFile, VectorError> {
     if archive::is_gzip(bytes) {
         let inner = name.strip_suffix(".gz").unwrap_or(name);
         return read_unpacked(
@@ -66,9 +84,14 @@ fn of_unpacking(error: ArchiveError) -> VectorError {
     }
 }
 
-fn read_unpacked(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
-    match format_of(name, bytes) {
+fn read_unpacked(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorFile, VectorError> {
+    let layer = match format_of(name, bytes) {
         VectorFormat::GeoJson => single(name, hints, geojson::read(bytes, hints)),
+        VectorFormat::CityJson => {
+            hints.choose_layer(&[stem(name)])?;
+            let (layer, model) = cityjson::read(bytes, hints)?;
+            return Ok(VectorFile { layer, model: Some(model) });
+        }
         VectorFormat::GeoJsonSequence => single(name, hints, geojson::read_sequence(bytes, hints)),
         VectorFormat::Shapefile => {
             let companion = |extension: &str| companion(name, extension, hints);
@@ -95,7 +118,8 @@ fn read_unpacked(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<Vector
         VectorFormat::OsmPbf => osm::read_pbf(bytes, hints),
         VectorFormat::Other(format) => Err(VectorError::OtherFormat { format, command: conversion(name) }),
         VectorFormat::Unknown => Err(VectorError::UnknownFormat),
-    }
+    };
+    Ok(VectorFile { layer: layer?, model: None })
 }
 
 /// Returns the layer of a file that holds one, which may be requested by the file's name.
@@ -122,7 +146,7 @@ fn companion(name: &str, extension: &str, hints: &VectorHints) -> Option<Vec<u8>
 }
 
 /// Reads an archive: a KMZ, zipped shapefiles, or one file of another format.
-fn read_zip(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
+fn read_zip(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorFile, VectorError> {
     const OTHERS: [&str; 6] = [".geojson", ".json", ".gpkg", ".fgb", ".gpx", ".osm"];
     let zip = ZipReader::open(bytes)?;
     let limit = most_unpacked(bytes);
@@ -161,6 +185,7 @@ fn has_extension(name: &str, extensions: &[&str]) -> bool {
 enum VectorFormat {
     GeoJson,
     GeoJsonSequence,
+    CityJson,
     Shapefile,
     GeoPackage,
     FlatGeobuf,
@@ -187,6 +212,7 @@ fn format_of(name: &str, bytes: &[u8]) -> VectorFormat {
         () if osm::is_pbf(bytes) => VectorFormat::OsmPbf,
         () if bytes.starts_with(b"PAR1") => VectorFormat::Other("GeoParquet"),
         () => xml_format(bytes).or_else(|| format_by_name(name)).unwrap_or_else(|| match text.first() {
+            Some(b'{') if cityjson::is_cityjson(text) => VectorFormat::CityJson,
             Some(_) if geojson::is_sequence(text) => VectorFormat::GeoJsonSequence,
             Some(b'{') => VectorFormat::GeoJson,
             _ => VectorFormat::Unknown,
