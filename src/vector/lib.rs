@@ -14,6 +14,7 @@ mod geopackage;
 mod gpx;
 pub mod hints;
 mod kml;
+mod landxml;
 mod osm;
 pub mod read;
 mod rings;

@@ -9,6 +9,7 @@
 //! | FlatGeobuf | one | its own |
 //! | GPX | waypoints, routes, tracks; route_points, track_points | EPSG:4326 |
 //! | KML, KMZ | the names of its folders; all where none is requested | EPSG:4326 |
+//! | LandXML | alignments; stations, points, plan_features | its EPSG code |
 //! | OpenStreetMap XML and PBF | points, lines, multipolygons; roads, railways, waterways, water, buildings | EPSG:4326 |
 //!
 //! Any of them may be packed by gzip.
@@ -21,7 +22,7 @@ use crate::feature::VectorLayer;
 #[cfg(feature = "vector-db")]
 use crate::geopackage;
 use crate::hints::VectorHints;
-use crate::{cityjson, flatgeobuf, geojson, gpx, kml, osm, shapefile};
+use crate::{cityjson, flatgeobuf, geojson, gpx, kml, landxml, osm, shapefile};
 use sandtable_base::archive::{self, ArchiveError, ZipReader};
 use sandtable_base::limits::UNPACKED_VECTOR_BYTES;
 
@@ -114,6 +115,7 @@ fn read_unpacked(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<Vector
         VectorFormat::FlatGeobuf => single(name, hints, flatgeobuf::read(bytes, hints)),
         VectorFormat::Gpx => gpx::read(bytes, hints),
         VectorFormat::Kml => kml::read(bytes, hints),
+        VectorFormat::LandXml => landxml::read(bytes, hints),
         VectorFormat::OsmXml => osm::read_xml(bytes, hints),
         VectorFormat::OsmPbf => osm::read_pbf(bytes, hints),
         VectorFormat::Other(format) => Err(VectorError::OtherFormat { format, command: conversion(name) }),
@@ -191,6 +193,7 @@ enum VectorFormat {
     FlatGeobuf,
     Gpx,
     Kml,
+    LandXml,
     OsmXml,
     OsmPbf,
     /// Known, but not read.
@@ -238,6 +241,7 @@ fn xml_format(bytes: &[u8]) -> Option<VectorFormat> {
     Some(match () {
         () if holds(b"<kml") || holds(b":kml") || holds(b"<Placemark") => VectorFormat::Kml,
         () if holds(b"<gpx") => VectorFormat::Gpx,
+        () if holds(b"<LandXML") => VectorFormat::LandXml,
         () if holds(b"<osm") => VectorFormat::OsmXml,
         () if holds(b"gml") => VectorFormat::Other("GML"),
         () => VectorFormat::Other("XML of an unknown kind"),
