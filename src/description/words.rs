@@ -164,6 +164,7 @@ words! {
     enum ProfileMode {
         Drape = "drape": "the road follows the ground",
         Conform = "conform": "the ground follows the road",
+        Own = "own": "the ground follows the road at the elevations of its file; without these as `conform`",
     }
 
     /// Where a river's water lies.
