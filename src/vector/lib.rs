@@ -2,7 +2,11 @@
 
 mod broken_records;
 mod builder;
+<<<<<<< HEAD
 mod cot;
+=======
+pub mod cityjson;
+>>>>>>> design
 mod encoding;
 pub mod error;
 pub mod feature;
@@ -15,11 +19,15 @@ mod gpx;
 mod ground_shape;
 pub mod hints;
 mod kml;
+<<<<<<< HEAD
 mod milx;
 pub mod moment;
 mod msdl;
 mod nvg;
 mod orbat;
+=======
+mod landxml;
+>>>>>>> design
 mod osm;
 pub mod overlay_schema;
 pub mod read;

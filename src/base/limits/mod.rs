@@ -154,6 +154,9 @@ limits! {
         XML_DEPTH = 64 => Fixed, "levels",
             "of elements in KML, GPX and OpenStreetMap XML",
             "flatten its folders";
+        CITY_VERTICES = 1 << 23 => COUNT, "vertices",
+            "of all surfaces of a CityJSON file with its templates wherever they are placed: some five hundred megabytes",
+            "cut it, for example with: cjio IN subset --bbox";
         GEOMETRY_DEPTH = 16 => Fixed, "levels",
             "of collections in a GeoPackage's geometry",
             "take the collections apart";
