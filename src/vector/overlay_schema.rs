@@ -18,6 +18,21 @@ use crate::feature::Properties;
 
 /// A symbol code: 15 letters, or 20 or 30 digits.
 pub const SIDC: &str = "sidc";
+/// The names that files have for the property of a symbol code, the most usual first.
+pub const SIDC_SPELLINGS: [&str; 12] = [
+    SIDC,
+    "SIDC",
+    "Sidc",
+    "symbolCode",
+    "symbol_code",
+    "symbolcode",
+    "SymbolCode",
+    "symbolID",
+    "sic",
+    "SIC",
+    "app6",
+    "milsym",
+];
 /// The word of a tactical graphic, where there is no code.
 pub const KIND: &str = "kind";
 /// Whose a feature without a code is: `friend`, `hostile`, `neutral` or `unknown`.
