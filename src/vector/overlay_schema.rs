@@ -186,8 +186,22 @@ pub fn bare_code(text: &str) -> Option<String> {
         && code.starts_with(|first: char| first.is_ascii_alphabetic());
     match (is_digits, is_letters) {
         (true, _) => Some(code),
-        (_, true) => Some(format!("{:-<15}", code.to_ascii_uppercase().replace('_', "-"))),
+        (_, true) => Some(of_letters(&code)),
         _ => None,
+    }
+}
+
+/// A code of 15 letters as MIL-STD-2525C has it: templates leave the identity and the status open, and APP-6A has command and
+/// general maneuver in a category of its own.
+fn of_letters(code: &str) -> String {
+    let padded = format!("{code:-<15}").to_ascii_uppercase().replace(['_', '*'], "-");
+    let (scheme, category) = (&padded[..1], &padded[2..3]);
+    let identity = if padded[1..].starts_with('-') { "U" } else { &padded[1..2] };
+    let status = if padded[3..].starts_with('-') { "P" } else { &padded[3..4] };
+    let (function, rest) = padded[4..].split_at(6);
+    match function.strip_prefix('M').filter(|_| scheme == "G" && category == "C") {
+        Some(function) => format!("{scheme}{identity}G{status}{function:-<6}{rest}"),
+        None => format!("{scheme}{identity}{category}{status}{function}{rest}"),
     }
 }
 
@@ -208,6 +222,8 @@ mod tests {
         assert_eq!(bare_code("2525d:10031000161211000000").as_deref(), Some("10031000161211000000"));
         assert_eq!(bare_code(" 1003 1000161211 000000").as_deref(), Some("10031000161211000000"));
         assert_eq!(bare_code("sfgpuci---").as_deref(), Some("SFGPUCI--------"));
+        assert_eq!(bare_code("S*G*UCI---*****").as_deref(), Some("SUGPUCI--------"));
+        assert_eq!(bare_code("app6a:GHC*MGLP--*****").as_deref(), Some("GHGPGLP--------"));
         for other in ["", "infantry", "1003100016121100000", "http://a.b/c", "SFGPUCI---------"] {
             assert_eq!(bare_code(other), None, "{other}");
         }

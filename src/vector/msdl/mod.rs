@@ -307,25 +307,23 @@ impl<'a> Placing<'a> {
     }
 }
 
-/// A code of letters with its affiliation, or of digits with its identity. Without one, a code that leaves it open is of an unknown
-/// side.
+/// A code of letters with its affiliation, or of digits with its identity.
 fn with_affiliation(code: &str, affiliation: Option<char>) -> String {
     let mut code = code.to_owned();
-    if code.len() == 15 {
-        let is_open = matches!(code.as_bytes()[1], b'-' | b'*');
-        if let Some(letter) = affiliation.or(is_open.then_some('U')) {
-            code.replace_range(1..2, letter.encode_utf8(&mut [0; 4]));
+    match affiliation {
+        Some(letter) if code.len() == 15 => code.replace_range(1..2, letter.encode_utf8(&mut [0; 4])),
+        Some(letter) => {
+            let digit = match letter {
+                'F' => "3",
+                'A' => "2",
+                'N' => "4",
+                'S' => "5",
+                'H' => "6",
+                _ => "1",
+            };
+            code.replace_range(3..4, digit);
         }
-    } else if let Some(letter) = affiliation {
-        let digit = match letter {
-            'F' => "3",
-            'A' => "2",
-            'N' => "4",
-            'S' => "5",
-            'H' => "6",
-            _ => "1",
-        };
-        code.replace_range(3..4, digit);
+        None => {}
     }
     code
 }

@@ -61,7 +61,7 @@ fn units_have_the_affiliation_of_their_side_their_echelon_and_fields() {
         .concat();
     let layer = layer(&format!("<Units>{body}</Units>"));
     let codes: Vec<&str> = layer.features.iter().map(|unit| text(unit, "sidc")).collect();
-    assert_eq!(codes, ["SFG-UCI----F--G", "SHG-UCI----F--G", "SHG-UCI----F--G", "SUG-UCI----F--G"]);
+    assert_eq!(codes, ["SFGPUCI----F--G", "SHGPUCI----F--G", "SHGPUCI----F--G", "SUGPUCI----F--G"]);
     let first = &layer.features[0];
     let fields = [
         ("side", "Blue"),
@@ -80,14 +80,14 @@ fn places_in_all_four_systems_are_one() {
     let forms = [
         at("GDC", &GDC),
         at("GCC", &[("X", "3226874.7725"), ("Y", "864638.4894"), ("Z", "5415043.0189")]),
-        at("UTM", &[("UTMGridZone", "33V"), ("UTMEasting", "500000"), ("UTMNorthing", "6484088.8")]),
+        at("UTM", &[("UTMGridZone", "33V"), ("UTMEasting", "500000"), ("UTMNorthing", "6484380.5")]),
         at(
             "MGRS",
             &[
                 ("MGRSGridZone", "33V"),
                 ("MGRSGridSquare", "WF"),
                 ("MGRSEasting", "0"),
-                ("MGRSNorthing", "84088"),
+                ("MGRSNorthing", "84380"),
             ],
         ),
     ];
@@ -113,7 +113,7 @@ fn things_without_a_place_are_with_the_unit_above_them_also_where_a_file_runs_in
     let layer = layer(&format!("<Units>{body}</Units>"));
     assert_eq!(layer.features.len(), 2);
     assert_eq!([text(&layer.features[1], "parent"), text(&layer.features[1], "side")], ["a", "Red"]);
-    assert_eq!(text(&layer.features[1], "sidc"), "SHG-UCI----F--G");
+    assert_eq!(text(&layer.features[1], "sidc"), "SHGPUCI----F--G");
     let notes = layer.notes.join("\n");
     assert!(
         notes.contains("1 thing is where the unit above it is") && notes.contains("2 things without a place"),
