@@ -1,7 +1,9 @@
 //! Drawings that several entities share, by name, and those whose shape the frame decides: an icon that fills its frame
 //! touches the frame's edge, wherever that is.
 
+mod industry;
 mod land;
+mod public_places;
 
 use crate::frame::FrameShape;
 
@@ -13,7 +15,7 @@ pub(super) fn piece(name: &str, shape: FrameShape) -> Option<&'static str> {
 }
 
 /// The tables of pieces that are the same in every frame, and of those that the frame decides.
-const SHARED: &[&[SharedPiece]] = &[&COMMON, land::SHARED];
+const SHARED: &[&[SharedPiece]] = &[&COMMON, land::SHARED, industry::SHARED, public_places::SHARED];
 const FRAMED: &[&[FramedPiece]] = &[&FRAME_FILLING, land::FRAMED];
 
 /// Name and drawing.
