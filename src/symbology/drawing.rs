@@ -251,14 +251,18 @@ fn add(
             ["text", size, center, text] => marks.push(style.text(text, point(center)?, size)?),
             [name, placement @ ..] if name.starts_with('@') => {
                 let drawing = piece(name.strip_prefix('@')?, shape)?;
+                let levels = levels.checked_sub(1)?;
                 let (offset, factor) = match placement {
-                    [] => (Vec2::ZERO, 1.0),
+                    [] => {
+                        add(drawing, style, shape, levels, marks)?;
+                        continue;
+                    }
                     [offset] => (point(offset)?, 1.0),
                     [offset, factor] => (point(offset)?, factor.parse().ok()?),
                     _ => return None,
                 };
                 let start = marks.len();
-                add(drawing, style, shape, levels.checked_sub(1)?, marks)?;
+                add(drawing, style, shape, levels, marks)?;
                 let piece = marks.split_off(start).into_iter();
                 marks.extend(piece.map(|mark| mark.placed(offset, factor).with_line_scaled(factor)));
             }

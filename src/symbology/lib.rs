@@ -13,6 +13,7 @@ pub mod frame;
 mod frame_marks;
 pub mod graphic;
 mod letter_code;
+mod letter_functions;
 pub mod modifiers;
 mod pieces;
 pub mod symbol;

@@ -2,7 +2,9 @@
 //! touches the frame's edge, wherever that is.
 
 mod activity;
+mod industry;
 mod land;
+mod public_places;
 mod sea;
 
 use crate::frame::FrameShape;
@@ -15,7 +17,8 @@ pub(super) fn piece(name: &str, shape: FrameShape) -> Option<&'static str> {
 }
 
 /// The tables of pieces that are the same in every frame, and of those that the frame decides.
-const SHARED: &[&[SharedPiece]] = &[&COMMON, land::SHARED, activity::SHARED, sea::SHARED];
+const SHARED: &[&[SharedPiece]] =
+    &[&COMMON, land::SHARED, industry::SHARED, public_places::SHARED, activity::SHARED, sea::SHARED];
 const FRAMED: &[&[FramedPiece]] = &[&FRAME_FILLING, land::FRAMED, activity::FRAMED];
 
 /// Name and drawing.

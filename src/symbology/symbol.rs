@@ -148,10 +148,13 @@ fn icon(code: &SymbolCode, shape: FrameShape, notes: &mut Vec<String>) -> Vec<Sy
         let function = String::from_utf8_lossy(&function).into_owned();
         notes.push(format!("the function {function} of 2525C is not drawn: the frame stands alone"));
     } else if code.entity != 0 {
-        let (offset, factor) = modifiers::place_of_icon(code);
         match drawing_of(code) {
             Some((icon, line)) => {
-                marks.extend(drawn(icon).into_iter().map(|mark| mark.placed(offset, factor)));
+                let icon = drawn(icon).into_iter();
+                match modifiers::place_of_icon(code) {
+                    Some((offset, factor)) => marks.extend(icon.map(|mark| mark.placed(offset, factor))),
+                    None => marks.extend(icon),
+                }
                 marks.extend(line.map(drawn).unwrap_or_default());
             }
             None => notes.push(format!(

@@ -99,17 +99,18 @@ const FIXED_EQUIPMENT: [u32; 25] = [
     210_500, 230_200, 250_000,
 ];
 
-/// Where the icon stands, by offset and factor: equipment, and the weapons of individuals, make way for modifiers.
-pub(super) fn place_of_icon(code: &SymbolCode) -> (Vec2, f32) {
+/// Where the icon stands, by offset and factor, if not in the middle: equipment, and the weapons of individuals, make way for
+/// modifiers.
+pub(super) fn place_of_icon(code: &SymbolCode) -> Option<(Vec2, f32)> {
     let makes_way = match code.set {
         SymbolSet::LandEquipment => !FIXED_EQUIPMENT.contains(&code.entity),
         SymbolSet::Dismounted => (110_301..=110_403).contains(&code.entity),
         _ => false,
     };
     match code.modifiers.map(|number| number > 0) {
-        [true, true] if makes_way => (Vec2::ZERO, 0.45),
-        [false, true] if makes_way => (Vec2::new(0.0, -10.0), 0.7),
-        [true, false] if makes_way => (Vec2::new(0.0, 10.0), 0.7),
-        _ => (Vec2::ZERO, 1.0),
+        [true, true] if makes_way => Some((Vec2::ZERO, 0.45)),
+        [false, true] if makes_way => Some((Vec2::new(0.0, -10.0), 0.7)),
+        [true, false] if makes_way => Some((Vec2::new(0.0, 10.0), 0.7)),
+        _ => None,
     }
 }
