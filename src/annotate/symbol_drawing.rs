@@ -81,12 +81,12 @@ pub(crate) fn symbol_marks(
                     shape.draw(&mut drawing);
                 }
             }
-            SymbolMark::Text { text, center, size } => {
+            SymbolMark::Text { text, center, size, color: [red, green, blue] } => {
                 let style = TextStyle::new(size * unit_px, TextStyle::BOLD);
                 let line = composer.line(text, style);
                 let at = (*center - Vec2::splat(100.0)) * unit_px;
                 let at = at + Vec2::new(-line.advance * 0.5, style.cap_px() * 0.5);
-                drawing.write(&line, at, Srgba::opaque(0, 0, 0));
+                drawing.write(&line, at, Srgba::opaque(*red, *green, *blue));
             }
         }
     }

@@ -185,6 +185,11 @@ impl SymbolCode {
         }
     }
 
+    /// The frame that digit 23 states, 0 for that of the set: only editions with the changes of 2525E have the digit.
+    pub fn stated_frame(&self) -> u8 {
+        if self.version.has_changes_of_e() { self.frame_shape } else { 0 }
+    }
+
     /// Whether it is a joker or faker: a friend who plays a suspect or an enemy in an exercise.
     pub fn is_joker_or_faker(&self) -> bool {
         let enemy = matches!(self.identity, SymbolIdentity::Suspect | SymbolIdentity::Hostile);

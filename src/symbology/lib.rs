@@ -10,6 +10,7 @@ pub mod drawing;
 pub mod entities;
 pub mod fields;
 pub mod frame;
+mod frame_marks;
 pub mod graphic;
 mod letter_code;
 mod letter_functions;
