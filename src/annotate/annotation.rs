@@ -163,6 +163,8 @@ pub struct PictureSymbol {
     pub texts: Vec<SymbolNote>,
     /// What the report calls it.
     pub name: String,
+    /// Where it is, as a list of symbols says it.
+    pub reference: Option<String>,
     /// The place on the ground, pixels.
     pub anchor_px: Vec2,
     /// The direction of its movement on the picture, of length 1.

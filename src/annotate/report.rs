@@ -110,8 +110,29 @@ pub struct SymbolReport {
     pub without_text: Vec<String>,
     /// Not drawn because their place is outside the picture.
     pub outside: Vec<String>,
-    /// Not drawn because no position near their place was free.
+    /// Drawn smaller than they are asked for, because there was no room.
+    pub reduced: Vec<String>,
+    /// Not drawn themselves: numbered at their place and listed with their grid reference.
+    pub listed: Vec<String>,
+    /// Neither drawn nor listed: counted at their place.
+    pub counted: Vec<String>,
+    /// Left out: not even a number has room.
     pub crowded_out: Vec<String>,
+}
+
+impl SymbolReport {
+    /// Adds the outcomes of more symbols.
+    pub(crate) fn append(&mut self, other: Self) {
+        let Self { placed, hidden, without_text, outside, reduced, listed, counted, crowded_out } = other;
+        self.placed.extend(placed);
+        self.hidden.extend(hidden);
+        self.without_text.extend(without_text);
+        self.outside.extend(outside);
+        self.reduced.extend(reduced);
+        self.listed.extend(listed);
+        self.counted.extend(counted);
+        self.crowded_out.extend(crowded_out);
+    }
 }
 
 /// What becomes of a label.

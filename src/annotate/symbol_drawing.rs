@@ -44,9 +44,9 @@ pub struct SymbolBlock {
 }
 
 impl SymbolBlock {
-    /// `texts` are the lines of text that are drawn.
-    pub fn new(symbol: &PictureSymbol, texts: &[SymbolNote], composer: &mut Composer) -> Self {
-        let unit_px = symbol.height.pixels(&composer.sheet) / 100.0;
+    /// `texts` are the lines of text that are drawn, `scale` is the share of its size that it has.
+    pub fn new(symbol: &PictureSymbol, texts: &[SymbolNote], scale: f32, composer: &mut Composer) -> Self {
+        let unit_px = symbol.height.pixels(&composer.sheet) * scale / 100.0;
         let pixels = |at: Vec2| (at - Vec2::splat(100.0)) * unit_px;
         let halo = composer.sheet.px(HALO_REACH).max(1.0);
         let mut drawing = symbol_marks(&symbol.symbol, unit_px, Some(halo), composer);

@@ -1,5 +1,5 @@
 //! Placement of military symbols: on a staff over their place, stacked where several share one place, without overlapping
-//! each other or the furniture.
+//! each other or the furniture; no unit is left out.
 //!
 //! ```text
 //!    ┌──┐      ┌──┐                  ┌──┐
@@ -9,36 +9,43 @@
 //!     •        └┬─┘                   ○
 //! ```
 //!
-//! Symbols take their turns by importance and take the first free position: a short staff, a longer one, then aside. A
-//! symbol without a free position is reported. Labels are placed after symbols and leave them free.
+//! Symbols take their turns by importance and take the first free position: a short staff, a longer one, then aside. Those
+//! without a position near their place take turns again: stacks part, leaders become as long as need be, texts go, and symbols
+//! become smaller, to half of their size. What still has no room is numbered at its place and listed with its grid reference;
+//! what the list has no room for is counted by place. Labels are placed after symbols and leave them free.
 
-use glam::Vec2;
-use tiny_skia::{Stroke, StrokeDash};
+use std::collections::HashSet;
+
+use glam::{IVec2, Vec2};
 
 use crate::annotation::PictureSymbol;
 use crate::composer::Composer;
-use crate::drawing::{Drawing, polygon, polyline};
-use crate::halo::Halo;
+use crate::drawing::Drawing;
 use crate::pixel_box::{PixelBox, PixelSegment};
 use crate::report::SymbolReport;
-use crate::sheet::{HALO, Sheet};
-use crate::symbol_drawing::SymbolBlock;
-use sandtable_draw::color::Srgba;
+use crate::sheet::Sheet;
+use crate::symbol_field::{LeaderRule, SymbolField};
+use crate::symbol_list::{SymbolBadge, SymbolList, badges};
+use crate::symbol_stack::{PreparedStack, StackPosition, has_own_staff};
 
-/// The staff's length, in heights of a friendly unit's frame, in the order of preference.
-const STAFF_LENGTHS: [f32; 7] = [0.45, 1.1, 1.9, 2.8, 3.8, 5.0, 6.5];
-/// How far aside of its place a symbol may stand, in widths of its block.
-const ASIDE: [f32; 11] = [0.0, 0.55, -0.55, 1.1, -1.1, 1.7, -1.7, 2.4, -2.4, 3.2, -3.2];
 /// Symbols whose places are nearer than this share of a frame's height stand at one place.
 const STACK_SHARE: f32 = 0.35;
 /// Symbols over each other; more would hide too much ground.
 const MOST_IN_STACK: usize = 6;
-/// Between symbols of a stack, in units of the symbol's box.
-const STACK_GAP: f32 = 6.0;
-/// The arrow of movement, in heights of a frame.
-const ARROW_LENGTH: f32 = 1.1;
+/// The forms of a symbol without room near its place: its share of its size, and whether it keeps its texts.
+const FORMS: [(f32, bool); 5] = [(1.0, true), (1.0, false), (0.8, false), (0.64, false), (0.5, false)];
 
-const BLACK: Srgba = Srgba::opaque(0, 0, 0);
+/// Symbols that would cover more than this share of a picture at their smallest do not all have room.
+const MOST_FILLED: f32 = 0.5;
+/// The form of a symbol beside a list.
+const LISTED_FORMS: [(f32, bool); 1] = [(0.64, false)];
+/// Beside a list symbols cover this share of the picture at most: what is numbered and counted needs room too, and on a small
+/// picture most of it.
+const MOST_COVERED: [f32; 4] = [0.4, 0.2, 0.1, 0.0];
+/// Beside a list the longest leader has this share of the picture's height.
+const LONGEST_LEADER: f32 = 0.25;
+/// Places in one square of so many design pixels have room, or have none, together.
+const HOPELESS_SIDE: f32 = 12.0;
 
 /// The drawing of all symbols, and the boxes that labels must avoid.
 #[derive(Default)]
@@ -55,41 +62,192 @@ pub fn draw_symbols(
     composer: &mut Composer,
     report: &mut SymbolReport,
 ) -> DrawnSymbols {
-    let sheet = composer.sheet;
-    let bounds = sheet.bounds().grown(-(sheet.margin() * 0.4).round());
-    let mut field = SymbolField { bounds, taken: furniture.to_vec(), lines: Vec::new(), gap: sheet.px(3.0) };
-    let mut drawn = DrawnSymbols::default();
-    let (mut staffs, mut faces) = (Drawing::default(), Drawing::default());
-    for symbols in stacks(symbols, &sheet, report) {
-        let mut stack = PreparedStack::new(&symbols, true, composer);
-        let mut position = field.position(&stack);
-        if position.is_none() {
-            // A unit without its name is better than none.
-            stack = PreparedStack::new(&symbols, false, composer);
-            position = field.position(&stack);
-            let texts = symbols.iter().filter(|symbol| position.is_some() && !symbol.texts.is_empty());
-            report.without_text.extend(texts.map(|symbol| symbol.name.clone()));
-        }
-        let Some(position) = position else {
-            report.crowded_out.extend(stack.names());
-            continue;
-        };
-        stack.draw_staff(&position, &sheet, &mut staffs);
-        stack.draw_faces(&position, &mut faces);
-        report.placed.extend(stack.names());
-        if !stack.is_visible {
-            report.hidden.extend(stack.names());
-        }
-        field.taken.extend(stack.boxes(&position));
-        drawn.boxes.extend(stack.boxes(&position));
-        for line in position.staff.into_iter().chain(stack.arrows()) {
-            field.lines.push(line);
+    let mut outside = SymbolReport::default();
+    let stacks = stacks(symbols, &composer.sheet, &mut outside);
+    let mut layout = SymbolLayout::new(furniture, composer);
+    let mut list = None;
+    let mut left = Vec::new();
+    if !layout.place_all(&stacks, composer) {
+        // Symbols start anew beside the list.
+        let most = stacks.iter().map(Vec::len).sum();
+        list = SymbolList::reserve(most, layout.bounds, furniture, composer);
+        let reserved: Vec<PixelBox> =
+            furniture.iter().copied().chain(list.as_ref().map(|list| list.area)).collect();
+        let rows = list.as_ref().map_or(0, |list| list.rows);
+        for most_covered in MOST_COVERED {
+            layout = SymbolLayout::new(&reserved, composer);
+            left = layout.place_some(&stacks, most_covered, composer);
+            badges(&left, rows, composer).into_iter().for_each(|badge| layout.place_badge(badge));
+            if layout.report.crowded_out.is_empty() {
+                break;
+            }
         }
     }
-    drawn.boxes.extend(field.lines.iter().map(|line| box_around(*line, sheet.px(2.0))));
-    drawn.drawing.append(staffs);
-    drawn.drawing.append(faces);
-    drawn
+    let SymbolLayout { mut staffs, faces, mut boxes, lines, report: placed, .. } = layout;
+    report.append(outside);
+    report.append(placed);
+    boxes.extend(lines.iter().map(|line| box_around(*line, composer.sheet.px(2.0))));
+    staffs.append(faces);
+    if let Some(list) = list {
+        let (drawing, area) = list.draw(&left, composer);
+        staffs.append(drawing);
+        boxes.push(area);
+    }
+    DrawnSymbols { drawing: staffs, boxes }
+}
+
+/// Symbols as they are placed.
+struct SymbolLayout {
+    bounds: PixelBox,
+    field: SymbolField,
+    sheet: Sheet,
+    staffs: Drawing,
+    faces: Drawing,
+    boxes: Vec<PixelBox>,
+    lines: Vec<PixelSegment>,
+    report: SymbolReport,
+}
+
+impl SymbolLayout {
+    fn new(furniture: &[PixelBox], composer: &Composer) -> Self {
+        let sheet = composer.sheet;
+        let bounds = sheet.bounds().grown(-(sheet.margin() * 0.4).round());
+        Self {
+            bounds,
+            field: SymbolField::new(bounds, furniture, sheet.px(3.0)),
+            sheet,
+            staffs: Drawing::default(),
+            faces: Drawing::default(),
+            boxes: Vec::new(),
+            lines: Vec::new(),
+            report: SymbolReport::default(),
+        }
+    }
+
+    /// Places all symbols; whether each has room.
+    fn place_all(&mut self, stacks: &[Vec<&PictureSymbol>], composer: &mut Composer) -> bool {
+        let smallest = FORMS.iter().map(|(scale, _)| *scale).fold(1.0, f32::min);
+        let area = |symbol: &&PictureSymbol| least_size(symbol, smallest, &self.sheet).element_product();
+        let (all, picture) = (stacks.iter().flatten().map(area).sum::<f32>(), self.bounds.size());
+        if all > picture.element_product() * MOST_FILLED {
+            return false;
+        }
+        let far: Vec<&Vec<&PictureSymbol>> = stacks
+            .iter()
+            .filter(|stack| {
+                ![true, false].iter().any(|&has_texts| self.place_near(stack, has_texts, composer))
+            })
+            .collect();
+        far.into_iter().flatten().all(|symbol| {
+            let by = [LeaderRule::Free, LeaderRule::Under];
+            by.iter().any(|&leader| self.place_anywhere(symbol, &FORMS, (leader, f32::INFINITY), composer))
+        })
+    }
+
+    /// Places symbols without their texts, as long as there is room; returns the others.
+    fn place_some<'a>(
+        &mut self,
+        stacks: &[Vec<&'a PictureSymbol>],
+        most_covered: f32,
+        composer: &mut Composer,
+    ) -> Vec<&'a PictureSymbol> {
+        let side = self.sheet.px(HOPELESS_SIDE).max(1.0);
+        let cell = |symbol: &PictureSymbol| (symbol.anchor_px / side).floor().as_ivec2();
+        let mut hopeless: HashSet<IVec2> = HashSet::new();
+        let mut far = Vec::new();
+        for stack in stacks {
+            let has_room = self.field.covered_share() < most_covered && !hopeless.contains(&cell(stack[0]));
+            if !has_room || !self.place_near(stack, false, composer) {
+                hopeless.insert(cell(stack[0]));
+                far.extend(stack);
+            }
+        }
+        hopeless.clear();
+        let rule = (LeaderRule::Free, self.bounds.size().y * LONGEST_LEADER);
+        let mut left = Vec::new();
+        for symbol in far {
+            let has_room = self.field.covered_share() < most_covered && !hopeless.contains(&cell(symbol));
+            if !has_room || !self.place_anywhere(symbol, &LISTED_FORMS, rule, composer) {
+                hopeless.insert(cell(symbol));
+                left.push(symbol);
+            }
+        }
+        left
+    }
+
+    /// Places a stack near its place, with or without its texts: a unit without its name is better than none.
+    fn place_near(&mut self, stack: &[&PictureSymbol], has_texts: bool, composer: &mut Composer) -> bool {
+        let stack = PreparedStack::new(stack, (1.0, has_texts), composer);
+        let found = self.field.near(&stack);
+        if let Some(position) = found {
+            self.keep(&stack, position, has_texts);
+        }
+        found.is_some()
+    }
+
+    /// Places a symbol anywhere within reach, with a leader, in the first form that has room.
+    fn place_anywhere(
+        &mut self,
+        symbol: &PictureSymbol,
+        forms: &[(f32, bool)],
+        (leader, reach): (LeaderRule, f32),
+        composer: &mut Composer,
+    ) -> bool {
+        for &(scale, has_texts) in forms {
+            let least = least_size(symbol, scale, &self.sheet);
+            let is_form = !has_texts || !symbol.texts.is_empty();
+            if !is_form || self.field.is_too_large(least, leader) {
+                continue;
+            }
+            let stack = PreparedStack::new(&[symbol], (scale, has_texts), composer);
+            if let Some(position) = self.field.anywhere(&stack.standing(), leader, reach) {
+                self.keep(&stack, position, has_texts);
+                self.report.reduced.extend((scale < 1.0).then(|| symbol.name.clone()));
+                return true;
+            }
+        }
+        false
+    }
+
+    fn keep(&mut self, stack: &PreparedStack<'_>, position: StackPosition, has_texts: bool) {
+        stack.draw_staff(&position, &self.sheet, &mut self.staffs);
+        stack.draw_faces(&position, &mut self.faces);
+        self.report.placed.extend(stack.names());
+        if !stack.is_visible {
+            self.report.hidden.extend(stack.names());
+        }
+        let bare = stack.symbols.iter().filter(|symbol| !has_texts && !symbol.texts.is_empty());
+        self.report.without_text.extend(bare.map(|symbol| symbol.name.clone()));
+        let boxes: Vec<PixelBox> = stack.boxes(&position).collect();
+        let lines: Vec<PixelSegment> = position.staff.into_iter().chain(stack.arrows()).collect();
+        self.field.take(&boxes, lines.iter().copied());
+        self.boxes.extend(boxes);
+        self.lines.extend(lines);
+    }
+
+    /// Places the number or the count of symbols that have no room themselves.
+    fn place_badge(&mut self, badge: SymbolBadge) {
+        let standing = badge.standing();
+        let by = [LeaderRule::Free, LeaderRule::Under];
+        let found = by.into_iter().find_map(|leader| self.field.anywhere(&standing, leader, f32::INFINITY));
+        let Some(position) = found else {
+            self.report.crowded_out.extend(badge.names);
+            return;
+        };
+        badge.draw(&position, &self.sheet, (&mut self.staffs, &mut self.faces));
+        let area = badge.area.moved(position.foot);
+        self.field.take(&[area], position.staff);
+        self.boxes.push(area);
+        self.lines.extend(position.staff);
+        let told = if badge.is_listed { &mut self.report.listed } else { &mut self.report.counted };
+        told.extend(badge.names);
+    }
+}
+
+/// The least size of a symbol at a share of its size, without texts.
+fn least_size(symbol: &PictureSymbol, scale: f32, sheet: &Sheet) -> Vec2 {
+    let bounds = symbol.symbol.bounds;
+    (bounds.max - bounds.min) * (symbol.height.pixels(sheet) * scale / 100.0)
 }
 
 /// The symbols in the picture by importance, those at one place together; the others are reported.
@@ -128,187 +286,8 @@ fn stacks<'a>(
     stacks
 }
 
-fn has_own_staff(symbol: &PictureSymbol) -> bool {
-    symbol.symbol.anchor != Vec2::splat(100.0)
-}
-
-/// Symbols over each other, the first at the bottom.
-struct PreparedStack<'a> {
-    symbols: Vec<&'a PictureSymbol>,
-    /// With the middle of each, from the stack's foot.
-    blocks: Vec<(SymbolBlock, Vec2)>,
-    /// Of the first symbol.
-    anchor: Vec2,
-    frame_px: f32,
-    is_visible: bool,
-}
-
-/// Where a stack stands.
-#[derive(Clone, Copy)]
-struct StackPosition {
-    /// The stack's foot.
-    foot: Vec2,
-    /// From the place to the foot.
-    staff: Option<PixelSegment>,
-}
-
-impl<'a> PreparedStack<'a> {
-    fn new(symbols: &[&'a PictureSymbol], has_texts: bool, composer: &mut Composer) -> Self {
-        let mut blocks: Vec<(SymbolBlock, Vec2)> = Vec::new();
-        for symbol in symbols {
-            let texts = if has_texts { symbol.texts.as_slice() } else { &[] };
-            let block = SymbolBlock::new(symbol, texts, composer);
-            let at = match blocks.last() {
-                Some((below, at)) => {
-                    let top = at.y + below.bounds.min.y - STACK_GAP * block.unit_px;
-                    Vec2::new(at.x, top - block.bounds.max.y)
-                }
-                None if has_own_staff(symbol) => -block.anchor,
-                None => Vec2::new(0.0, -block.symbol.max.y),
-            };
-            blocks.push((block, at));
-        }
-        Self {
-            symbols: symbols.to_vec(),
-            anchor: symbols[0].anchor_px,
-            frame_px: symbols[0].height.pixels(&composer.sheet),
-            is_visible: symbols.iter().all(|symbol| symbol.visible),
-            blocks,
-        }
-    }
-
-    fn names(&self) -> impl Iterator<Item = String> {
-        self.symbols.iter().map(|symbol| symbol.name.clone())
-    }
-
-    /// The positions, the best first.
-    fn positions(&self) -> impl Iterator<Item = StackPosition> {
-        let (anchor, frame) = (self.anchor, self.frame_px);
-        let own_staff = has_own_staff(self.symbols[0]);
-        let center = self.blocks[0].1;
-        let moves = self.symbols.iter().any(|symbol| symbol.direction_px.is_some());
-        let first = if own_staff {
-            Some(StackPosition { foot: anchor, staff: None })
-        } else {
-            // On a map a symbol's middle is at its place.
-            let on_place = self.symbols[0].is_on_map && self.symbols.len() == 1 && !moves;
-            on_place.then(|| StackPosition { foot: anchor - center, staff: None })
-        };
-        let width = self.blocks.iter().map(|(block, _)| block.symbol.size().x).fold(0.0, f32::max);
-        let aside = STAFF_LENGTHS.into_iter().flat_map(move |length| {
-            ASIDE.into_iter().map(move |aside| {
-                let foot = (anchor + Vec2::new(aside * width, -length * frame)).round();
-                StackPosition { foot, staff: Some(PixelSegment { from: anchor, to: foot }) }
-            })
-        });
-        first.into_iter().chain(aside)
-    }
-
-    /// From the place to where the symbols move.
-    fn arrows(&self) -> impl Iterator<Item = PixelSegment> {
-        let reach = self.frame_px * ARROW_LENGTH;
-        let directions = self.symbols.iter().filter_map(|symbol| symbol.direction_px);
-        directions
-            .map(move |direction| PixelSegment { from: self.anchor, to: self.anchor + direction * reach })
-    }
-
-    fn boxes(&self, position: &StackPosition) -> impl Iterator<Item = PixelBox> {
-        let foot = position.foot;
-        self.blocks.iter().map(move |(block, at)| block.bounds.moved(foot + *at))
-    }
-
-    fn draw_faces(&self, position: &StackPosition, drawing: &mut Drawing) {
-        for (block, at) in &self.blocks {
-            drawing.append(block.drawing.clone().moved(position.foot + *at));
-        }
-    }
-
-    /// The staff with its foot, and arrows of movement.
-    fn draw_staff(&self, position: &StackPosition, sheet: &Sheet, drawing: &mut Drawing) {
-        let width = sheet.px(1.6).max(1.1);
-        let halo = width + sheet.px(2.4).max(1.6);
-        self.arrows().for_each(|arrow| draw_arrow(arrow, sheet, drawing));
-        if let Some(staff) = position.staff {
-            drawing.line(staff, halo, HALO);
-            if self.is_visible {
-                drawing.line(staff, width, BLACK);
-            } else {
-                draw_dashes(staff, width, sheet, drawing);
-            }
-        }
-        let (anchor, radius) = (self.anchor, sheet.px(3.0).max(2.0));
-        if !self.is_visible {
-            drawing.disc(anchor, radius + width + sheet.px(1.2), HALO);
-            drawing.disc(anchor, radius + width * 0.5, BLACK);
-            drawing.disc(anchor, radius - width * 0.5, Srgba::opaque(255, 255, 255));
-        } else if position.staff.is_some() {
-            drawing.disc(anchor, radius + sheet.px(1.2), HALO);
-            drawing.disc(anchor, radius, BLACK);
-        }
-    }
-}
-
-/// An arrow along a line, with its head at the line's end.
-fn draw_arrow(arrow: PixelSegment, sheet: &Sheet, drawing: &mut Drawing) {
-    let PixelSegment { from, to } = arrow;
-    let reach = to - from;
-    let along = reach.normalize_or_zero();
-    let (head, width) = (reach.length() * 0.32, sheet.px(2.2).max(1.4));
-    let line = PixelSegment { from, to: to - along * head };
-    let corners =
-        [to, to - along * head + along.perp() * head * 0.42, to - along * head - along.perp() * head * 0.42];
-    let halo = sheet.px(1.6).max(1.0);
-    drawing.line(line, width + 2.0 * halo, HALO);
-    if let Some(triangle) = polygon(&corners) {
-        drawing.line(line, width, BLACK);
-        drawing.fill_haloed(triangle, BLACK, Halo::paper(halo));
-        drawing.line(line, width, BLACK);
-    }
-}
-
-fn draw_dashes(line: PixelSegment, width: f32, sheet: &Sheet, drawing: &mut Drawing) {
-    let lengths = vec![sheet.px(5.0).max(3.0), sheet.px(3.5).max(2.0)];
-    let dashed = StrokeDash::new(lengths, 0.0).zip(polyline(&[line.from, line.to]));
-    let dashes = dashed.and_then(|(dash, path)| path.dash(&dash, 1.0));
-    let outline = dashes.and_then(|path| path.stroke(&Stroke { width, ..Stroke::default() }, 1.0));
-    if let Some(outline) = outline {
-        drawing.fill(outline, BLACK);
-    }
-}
-
 fn box_around(line: PixelSegment, reach: f32) -> PixelBox {
     PixelBox { min: line.from.min(line.to), max: line.from.max(line.to) }.grown(reach)
-}
-
-/// What is taken on the picture.
-struct SymbolField {
-    bounds: PixelBox,
-    taken: Vec<PixelBox>,
-    /// Staffs and arrows.
-    lines: Vec<PixelSegment>,
-    gap: f32,
-}
-
-impl SymbolField {
-    /// The first free position of a stack, if there is one off its own arrows.
-    fn position(&self, stack: &PreparedStack<'_>) -> Option<StackPosition> {
-        let free = || stack.positions().filter(|position| self.is_free(stack, position));
-        let is_clear = |position: &StackPosition| {
-            stack.boxes(position).all(|area| !stack.arrows().any(|arrow| area.meets(&arrow)))
-        };
-        free().find(is_clear).or_else(|| free().next())
-    }
-
-    fn is_free(&self, stack: &PreparedStack<'_>, position: &StackPosition) -> bool {
-        let free = |area: PixelBox| {
-            let spaced = area.grown(self.gap);
-            self.bounds.holds(&area)
-                && !self.taken.iter().any(|taken| taken.overlaps(&spaced))
-                && !self.lines.iter().any(|line| area.meets(line))
-        };
-        let passes = |staff: PixelSegment| !self.taken.iter().any(|taken| taken.meets(&staff));
-        stack.boxes(position).all(free) && position.staff.is_none_or(passes)
-    }
 }
 
 #[cfg(test)]
@@ -325,6 +304,7 @@ mod tests {
             symbol: MilitarySymbol::new(&code).expect("a frame"),
             texts: vec![SymbolNote { text: name.to_owned(), place: TextPlace::Left(3) }],
             name: name.to_owned(),
+            reference: Some("16S GF 55447 24162".to_owned()),
             anchor_px: Vec2::new(x, y),
             direction_px: None,
             depth_m: 1000.0,
@@ -368,18 +348,83 @@ mod tests {
         draw(&(0..40).map(one).collect::<Vec<_>>())
     }
 
-    #[test]
-    fn forty_symbols_overlap_nowhere_and_stay_inside_however_close() {
-        for pitch in [Vec2::new(150.0, 120.0), Vec2::new(90.0, 70.0), Vec2::new(47.0, 31.0)] {
-            let (drawn, report) = forty(pitch);
-            assert_eq!(report.placed.len() + report.crowded_out.len(), 40);
-            let sheet = Composer::new(1920, 1080).sheet;
-            let faces = &drawn.boxes[..report.placed.len()];
-            for (number, area) in faces.iter().enumerate() {
-                assert!(!faces[..number].iter().any(|other| other.overlaps(area)), "{pitch}: {area:?}");
-            }
-            assert!(faces.iter().all(|area| sheet.bounds().holds(area)), "{pitch}");
+    /// Panics where symbols, numbers, counts and the list overlap, leave the sheet, or leave a symbol out.
+    fn check_all_are_shown(drawn: &DrawnSymbols, report: &SymbolReport, symbols: usize, what: &str) {
+        let SymbolReport { placed, outside, listed, counted, crowded_out, .. } = report;
+        assert!(crowded_out.is_empty(), "{what}: {}", crowded_out.len());
+        assert_eq!(placed.len() + outside.len() + listed.len() + counted.len(), symbols, "{what}");
+        let sheet = Composer::new(1920, 1080).sheet;
+        let faces = &drawn.boxes[..placed.len() + listed.len()];
+        for (number, area) in faces.iter().enumerate() {
+            assert!(!faces[..number].iter().any(|other| other.overlaps(area)), "{what}: {area:?}");
         }
+        assert!(faces.iter().all(|area| sheet.bounds().holds(area)), "{what}");
+    }
+
+    #[test]
+    fn forty_symbols_are_all_drawn_overlap_nowhere_and_stay_inside_however_close() {
+        for pitch in [Vec2::new(150.0, 120.0), Vec2::new(90.0, 70.0), Vec2::new(47.0, 31.0), Vec2::ONE] {
+            let (drawn, report) = forty(pitch);
+            check_all_are_shown(&drawn, &report, 40, &pitch.to_string());
+            assert_eq!(report.placed.len(), 40, "{pitch}");
+        }
+    }
+
+    /// `count` symbols of the numbers of a seed, about so many places that units gather at, within `spread` pixels.
+    fn scattered(seed: u64, count: usize, places: usize, spread: f32) -> Vec<PictureSymbol> {
+        let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+        let mut next = move || {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            (state >> 40) as f32 / (1u64 << 24) as f32
+        };
+        let middles: Vec<Vec2> = (0..places).map(|_| Vec2::new(next() * 1920.0, next() * 1080.0)).collect();
+        let one = |n: usize| {
+            let at = middles[n % places] + (Vec2::new(next(), next()) - 0.5) * spread;
+            let is_on_map = seed.is_multiple_of(2);
+            let code = if n.is_multiple_of(9) { HEADQUARTERS } else { BATTALION };
+            PictureSymbol {
+                is_on_map,
+                visible: !n.is_multiple_of(5),
+                ..symbol(&format!("{n}-77"), code, at.x, at.y)
+            }
+        };
+        (0..count).map(one).collect()
+    }
+
+    #[test]
+    fn two_hundred_symbols_are_all_on_the_sheet_and_none_over_another() {
+        for seed in 1..=12 {
+            let places = [3, 17, 200][seed as usize % 3];
+            let symbols = scattered(seed, 200, places, 400.0);
+            let (drawn, report) = draw(&symbols);
+            check_all_are_shown(&drawn, &report, 200, &format!("seed {seed}"));
+            assert_eq!(report.placed.len() + report.outside.len(), 200, "seed {seed}: drawn as symbols");
+        }
+    }
+
+    #[test]
+    fn symbols_beyond_what_a_sheet_holds_are_listed_by_number_or_counted() {
+        let symbols = scattered(5, 4000, 4000, 1.0);
+        let (drawn, report) = draw(&symbols);
+        check_all_are_shown(&drawn, &report, 4000, "4000");
+        let counts = [report.placed.len(), report.listed.len(), report.counted.len()];
+        assert!(counts[0] > 200 && counts[1] > 30 && counts[2] > 30, "{counts:?}");
+    }
+
+    #[test]
+    fn a_small_picture_counts_what_it_cannot_show() {
+        let symbols: Vec<PictureSymbol> = scattered(7, 300, 10, 100.0)
+            .into_iter()
+            .map(|symbol| PictureSymbol { anchor_px: symbol.anchor_px * 0.1, ..symbol })
+            .collect();
+        let mut report = SymbolReport::default();
+        draw_symbols(&symbols, &[], &mut Composer::new(192, 108), &mut report);
+        let SymbolReport { placed, outside, listed, counted, crowded_out, .. } = report;
+        let counts = [placed, outside, listed, counted, crowded_out].map(|names| names.len());
+        assert_eq!(counts.iter().sum::<usize>(), 300);
+        assert!(counts[3] > 100 && counts[4] == 0, "{counts:?}");
     }
 
     #[test]

@@ -277,7 +277,8 @@ impl RenderedScene {
                 },
                 "symbols": {
                     "placed": symbols.placed, "hidden": symbols.hidden, "outside": symbols.outside,
-                    "without_room": symbols.crowded_out, "without_text": symbols.without_text
+                    "without_room": symbols.crowded_out, "without_text": symbols.without_text,
+                    "reduced": symbols.reduced, "listed": symbols.listed, "counted": symbols.counted
                 },
                 "notes": notes,
                 "seconds": seconds,
@@ -314,10 +315,14 @@ impl RenderedPicture {
 impl RenderedPicture {
     /// The military symbols that are not drawn, or not where they can be seen, in lines.
     fn symbols(&self) -> impl Iterator<Item = String> {
-        let SymbolReport { hidden, without_text, outside, crowded_out, .. } = &self.annotations.symbols;
+        let SymbolReport { hidden, without_text, outside, reduced, listed, counted, crowded_out, .. } =
+            &self.annotations.symbols;
         let reasons = [
             ("over hidden places (dashed staffs)", hidden),
             ("without their text", without_text),
+            ("smaller, for want of room", reduced),
+            ("as numbers of a list, for want of room", listed),
+            ("counted at their place, for want of room", counted),
             ("outside the picture", outside),
             ("without room", crowded_out),
         ];

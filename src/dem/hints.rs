@@ -24,6 +24,8 @@ pub struct DemOptions {
     pub cell: Option<f64>,
     /// The coordinate system, in place of the file's.
     pub crs: Option<Crs>,
+    /// The name of the surface that is read of a LandXML file. Default: the first.
+    pub surface: Option<String>,
 }
 
 /// Options for reading one elevation file.

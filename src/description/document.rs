@@ -148,6 +148,8 @@ table! {
         /// `{ file = "b.tif", offset = 1.5 }` adds `offset`, in meters, to the heights of a tile that is counted
         /// from another zero. An address (`https://`, `s3://`, `gs://`, `az://`) is read with `--allow-remote HOST`.
         dem: Stated<Vec<ElevationFile>> = elevation_files(), required;
+        /// The surface that is read of a LandXML file, by its name.
+        surface: Option<String> = key::filled_text(), otherwise "the file's first";
         /// Coordinate system of the DEM where the file names none or a wrong one.
         crs: Option<Crs> = key::crs(), otherwise "what the file names";
         /// Meters per unit of a sample's value, of gray PNG and RAW files.

@@ -189,7 +189,10 @@ table! {
         height: Option<FeatureValue<f64>> = key::feature_number(SIZE, "m"),
             otherwise "the property `height`, else 3 m for each of `building:levels` (or `levels`) and `roof:levels`, else 6 m";
         /// The height of the ground under the footprint at which the building stands.
-        base: BaseRule = key::word::<BaseRule>(), default "lowest";
+        base: Option<BaseRule> = key::word::<BaseRule>(),
+            otherwise "`lowest`; of CityJSON `own`, unless most heights lie more than 5 m off the ground";
+        /// Of CityJSON: the level of detail that is drawn, such as `"1.2"`.
+        lod: Option<Stated<String>> = key::filled_text(), otherwise "the highest of each object", unless ["points"];
         /// The shape of the roof.
         roof: Option<FeatureValue<RoofShape>> = key::feature_word::<RoofShape>(), otherwise "the property `roof:shape`, else `flat`";
         /// How much of the height is roof.

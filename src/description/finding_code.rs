@@ -214,6 +214,13 @@ finding_codes! {
     PadRefused = "pad-refused", Warning,
         "A building stands without the level ground that its `base` asks for, because the ground there is shaped for something \
          else already: a lake, a road, or another building.";
+    CityHeights = "city-heights", Note,
+        "The buildings of a CityJSON file stand at the heights of their file, or are set on the ground because these are counted \
+         from another zero. The message states which, and by how many meters the file and the ground differ. State `base` to \
+         choose.";
+    CityOffGround = "city-off-ground", Warning,
+        "Single buildings of a CityJSON file stand over the ground or in it at the heights of their file, of which most fit: the \
+         ground changed, or the building is wrong. Walls reach down to the ground under them. State `base` to set all on it.";
     RoofReplaced = "roof-replaced", Note,
         "A building has another roof than asked for, because its footprint does not take that one, or because the shape that a \
          property names is not drawn. The nearest shape that is was taken.";

@@ -8,7 +8,7 @@ use crate::reader::TableReader;
 use crate::stated::Stated;
 use crate::table::Table;
 use crate::table_key;
-use crate::words::{GraphicSide, GraphicStatus, RangeExtent, ViewshedTint};
+use crate::words::{GraphicOrder, GraphicSide, GraphicStatus, RangeExtent, ViewshedTint};
 use sandtable_geom::crs::Crs;
 use sandtable_geom::position::Position;
 
@@ -26,16 +26,20 @@ table! {
         kind: Option<Stated<String>> = key::filled_text(), otherwise "by `sidc`; with `file` the property `kind`";
         /// Symbol identification code of symbol set 25, 20 or 30 digits: its kind, side, status and echelon.
         sidc: Option<Stated<String>> = key::filled_text(), otherwise "by `kind`; with `file` the property `sidc`";
-        /// Its points, in the order of its draw rule; of a file's feature those of its shape.
+        /// Its points, in the order of its draw rule (`scenes/SYMBOLS.md` says what each is); of a file's feature those of its
+        /// shape.
         source: FeatureSource = table_key::source::<1>(), inline;
-        /// Width of a corridor or lane; of an axis of advance the width of its head, instead of a last point.
-        width: Option<f64> = key::number(Above(0.0, 1e6), "m"), otherwise "by its points";
+        /// Width of a corridor, a lane or a rectangle; of an axis of advance the width of its head, instead of a last point, and
+        /// its points lead from its start to its tip.
+        width: Option<f64> = key::number(Above(0.0, 1e6), "m"), otherwise "by its points; with `file` the property `width`";
+        /// Of axes and arrows: whether their points lead from the tip or to it.
+        order: Option<GraphicOrder> = key::word::<GraphicOrder>(), otherwise "`drawn` for an axis with `width`, else `standard`";
         /// Whose it is; decides its color.
         side: Option<GraphicSide> = key::word::<GraphicSide>(), otherwise "by `sidc`, else `friend`";
         /// Whether it is there or planned; decides its dashes.
         status: Option<GraphicStatus> = key::word::<GraphicStatus>(), otherwise "by `sidc`, else `present`";
         /// Field T: its name or number.
-        designation: Option<String> = key::text(), otherwise "with `file` the property `designation`";
+        designation: Option<String> = key::text(), otherwise "with `file` the property `designation` or `unique_designation`";
         /// Field T1: a second name, such as that of the unit on the right of a boundary.
         designation_2: Option<String> = key::text(), otherwise "with `file` the property `designation_2`";
         /// Field B: a word such as `brigade`, or a mark such as `X`.
@@ -43,7 +47,7 @@ table! {
         /// Field AS: the country of a boundary's units.
         country: Option<String> = key::text(), otherwise "with `file` the property `country`";
         /// Field N: the mark of the enemy, `ENY`.
-        hostile: Option<String> = key::text(), otherwise "with `file` the property `hostile`";
+        hostile: Option<String> = key::text(), otherwise "`ENY` on areas of the hostile side; with `file` the property `hostile`";
         /// Field H: further text.
         further: Option<String> = key::text(), otherwise "with `file` the property `further`";
         /// Field AP: number of a target.
@@ -54,9 +58,11 @@ table! {
         until: Option<String> = key::text(), otherwise "with `file` the property `until`";
         /// Field X of airspace: lowest and highest elevation; a corridor is an upright ribbon between them.
         elevations: Option<[f64; 2]> = key::number_range(Bounds::ELEVATION, "m"), otherwise "on the ground";
-        /// Field AM: radius of a circle, or the rising ranges of a fan.
+        /// Field AM: radius of a circle, the rising ranges of a fan, or the half axes of an ellipse, and length and width of a
+        /// rectangle, the one along its azimuth first.
         distances: Option<Stated<Vec<f64>>> = key::numbers(REACH, "m"), otherwise "none";
-        /// Field AN: of a sector, the left and the right azimuth of each range.
+        /// Field AN: of a sector, the left and the right azimuth of each range; of an ellipse or rectangle that of its first
+        /// distance.
         azimuths: Option<Stated<Vec<f64>>> = key::numbers(Bounds::DIRECTION, "°"), otherwise "none";
     }
     check(reader) {

@@ -34,7 +34,7 @@ table! {
         size: f64 = key::number(Within(12.0, 200.0), "px"), default 38;
         /// Instead of `size`: height of that frame on the ground, so that near symbols are larger, from 16 to 120 pixels.
         extent: Option<f64> = key::number(Above(0.0, 1e6), "m"), otherwise "by `size`";
-        /// The lower, the more important: symbols that find no place beside more important ones are left out.
+        /// The lower, the more important: more important symbols take their places first, and are larger where room is scarce.
         rank: DefaultedValue<f64> = key::feature_number(Within(-1e9, 1e9), ""), default 0;
         /// Field Q: the direction of movement, as an arrow from the place.
         direction: Option<Stated<FeatureValue<f64>>> = key::feature_number(Bounds::DIRECTION, "°"), otherwise "no arrow";

@@ -164,6 +164,7 @@ words! {
     enum ProfileMode {
         Drape = "drape": "the road follows the ground",
         Conform = "conform": "the ground follows the road",
+        Own = "own": "the ground follows the road at the elevations of its file; without these as `conform`",
     }
 
     /// Where a river's water lies.
@@ -207,6 +208,7 @@ words! {
         Mean = "mean": "the mean",
         Highest = "highest": "the highest",
         Pad = "pad": "the mean, to which the ground is leveled",
+        Own = "own": "none: the heights of its file, as CityJSON has them",
     }
 
     /// The shape of a roof.
@@ -271,6 +273,12 @@ words! {
     enum GraphicStatus {
         Present = "present": "there, in solid lines",
         Planned = "planned": "planned, anticipated or suspected, in dashes",
+    }
+
+    /// In which order the points of an axis or arrow are.
+    enum GraphicOrder {
+        Standard = "standard": "by the draw rule of the standard, from its tip",
+        Drawn = "drawn": "as a person draws it, from start to tip",
     }
 
     /// Which ground a viewshed tints.

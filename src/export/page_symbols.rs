@@ -50,6 +50,7 @@ fn painted(scene: &SceneModel, symbol: &SceneSymbol, paper: Srgba) -> Pixels {
         symbol: symbol.symbol.clone(),
         texts: symbol.texts.clone(),
         name: symbol.name.clone(),
+        reference: None,
         anchor_px: PLACE_PX,
         direction_px: None,
         depth_m: 1.0,

@@ -21,6 +21,11 @@ impl Geodesic {
         Self { start, bearing_deg: Geodesic.bearing(from, to), length_m: Geodesic.distance(from, to) }
     }
 
+    /// The line of `length_m` meters that leaves `start` in the direction `bearing_deg`, degrees clockwise from north.
+    pub fn toward(start: DVec2, bearing_deg: f64, length_m: f64) -> Self {
+        Self { start, bearing_deg, length_m }
+    }
+
     /// The line between the places that two systems give the coordinates `at`; `None` where one of the systems has no
     /// place on Earth for them.
     pub fn between_systems(one: &Crs, other: &Crs, at: DVec2) -> Option<Self> {

@@ -28,6 +28,7 @@ pub mod read;
 pub mod simplify;
 mod soup;
 mod texture;
+pub mod texture_files;
 pub mod three_ds;
 mod triangulate;
 mod webp;

@@ -187,6 +187,11 @@ impl<'a> Textures<'a> {
         pixels.is_some_and(|pixels| pixels.data().iter().any(|pixel| pixel.0[3] < 255))
     }
 
+    /// The textures in the order of their numbers, and the notes.
+    pub(super) fn into_parts(self) -> (Vec<Pixels>, Vec<String>) {
+        (self.pixels, self.notes)
+    }
+
     pub(super) fn move_to(self, model: &mut Model) {
         model.textures = self.pixels;
         model.notes.extend(self.notes);

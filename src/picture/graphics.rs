@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use glam::DVec2;
 
-use crate::graphic_colors::{graphic_color, opposing};
+use crate::graphic_colors::{graphic_color, ground_color, opposing_color};
 use crate::graphic_lines::{DrapedPart, GraphicPen, GraphicView, LineLook};
 use crate::placed_text::{PlacedCourse, PlacedText};
 use sandtable_description::words::GraphicStatus;
@@ -17,7 +17,7 @@ use sandtable_geom::rect::Rect;
 use sandtable_ribbon::area;
 use sandtable_scene::scene_graphic::SceneGraphic;
 use sandtable_scene::scene_model::SceneModel;
-use sandtable_symbology::graphic::drawing::{GraphicInput, StrokeDash, StrokeSide, TextCourse};
+use sandtable_symbology::graphic::drawing::{FillInk, StrokeDash, StrokeSide, TextCourse};
 use sandtable_terrain::triangle_surface::TriangleSurface;
 
 /// The smallest part of a graphic's size that its text height is: a graphic of a few pixels is not all teeth.
@@ -52,8 +52,21 @@ pub(super) fn each<T: Send>(
 /// The colors that graphics are drawn in.
 pub(super) fn colors(scene: &SceneModel) -> impl Iterator<Item = Srgba> {
     scene.graphics.iter().flat_map(|graphic| {
-        [graphic.side, opposing(graphic.side)].map(|side| graphic_color(side, graphic.kind.tint))
+        let tint = graphic.kind.tint;
+        let lines = [graphic_color(graphic.side, tint), opposing_color(graphic.side, tint)];
+        lines.into_iter().chain(ground_colors(graphic))
     })
+}
+
+/// The colors of the ground within a graphic, which do not depend on the camera.
+fn ground_colors(graphic: &SceneGraphic) -> Vec<Srgba> {
+    let size_m = Rect::around(graphic.points.iter().copied()).size().length();
+    let drawing = graphic.kind.draw(&graphic.input((size_m * SMALLEST).max(1.0), DVec2::Y));
+    let colors = drawing.fills.iter().filter_map(|fill| match fill.ink {
+        FillInk::Ground(color) => Some(ground_color(color)),
+        _ => None,
+    });
+    colors.collect()
 }
 
 /// One graphic in plan; `None` where all of it is behind the eye.
@@ -61,26 +74,29 @@ fn drawn(graphic: &SceneGraphic, view: &GraphicView<'_>) -> Option<(GraphicPen, 
     let em_m = view.em_m(&graphic.points)?;
     let size_m = Rect::around(graphic.points.iter().copied()).size().length();
     let em_m = if size_m > 0.0 { em_m.min(size_m * SMALLEST) } else { em_m };
-    let input = GraphicInput {
-        points: &graphic.points,
-        em_m,
-        up: view.up(graphic.points[0]),
-        width_m: graphic.width_m,
-        fields: &graphic.fields,
-    };
-    let drawing = graphic.kind.draw(&input);
+    let drawing = graphic.kind.draw(&graphic.input(em_m, view.up(graphic.points[0])));
     let own = graphic_color(graphic.side, graphic.kind.tint);
+    let other = opposing_color(graphic.side, graphic.kind.tint);
     let mut pen = GraphicPen::default();
     for stroke in &drawing.strokes {
         let color = match stroke.side {
             StrokeSide::Own => own,
-            StrokeSide::Opposing => graphic_color(opposing(graphic.side), graphic.kind.tint),
+            StrokeSide::Opposing => other,
         };
-        let is_dashed = stroke.dash == StrokeDash::Dashed || graphic.status == GraphicStatus::Planned;
+        let is_dashed = match stroke.dash {
+            StrokeDash::Status => graphic.status == GraphicStatus::Planned,
+            StrokeDash::Dashed => true,
+            StrokeDash::Hatch => false,
+        };
         view.draw(&mut pen, &stroke.points, LineLook { color, is_dashed }, graphic.feature);
     }
-    for ring in &drawing.fills {
-        area::fill(&counter_clockwise(ring), &[], 1.0, pen.plan(own, graphic.feature));
+    for fill in &drawing.fills {
+        let color = match fill.ink {
+            FillInk::Own => own,
+            FillInk::Opposing => other,
+            FillInk::Ground(color) => ground_color(color),
+        };
+        area::fill(&counter_clockwise(&fill.ring), &[], 1.0, pen.plan(color, graphic.feature));
     }
     let texts = drawing
         .texts

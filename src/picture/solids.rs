@@ -22,6 +22,16 @@ pub(super) fn add(list: &mut DrawList, scene: &SceneModel) {
                     texture: Some(list.add_texture(facade())),
                     ..Material::default()
                 },
+                Coat::Sheet => Material { name: "sheet".into(), two_sided: true, ..Material::default() },
+                Coat::Picture(number) => Material {
+                    name: format!("picture {number}"),
+                    texture: scene
+                        .pictures
+                        .get(number as usize)
+                        .map(|pixels| list.add_texture(pixels.clone())),
+                    two_sided: true,
+                    ..Material::default()
+                },
                 Coat::Surface(surface) => Material {
                     name: format!("{surface:?} of a solid").to_lowercase(),
                     texture: Some(list.add_texture(texture(surface))),

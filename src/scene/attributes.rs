@@ -10,6 +10,7 @@ use sandtable_description::expression::Expression;
 use sandtable_description::feature_source::FeatureSource;
 use sandtable_description::feature_value::{DefaultedValue, FeatureValue, FromScalar};
 use sandtable_description::scalar::Scalar;
+use sandtable_geom::crs::Crs;
 use sandtable_vector::feature::{Geometry, VectorLayer};
 
 /// Longer texts name nothing; they are cut here.
@@ -39,6 +40,17 @@ impl Attributes {
             serde_json::Value::String(value) => Some(Scalar::Text(value.clone())),
             _ => None,
         }
+    }
+
+    /// The system of its file; `None` where the scene file itself states the feature.
+    pub fn crs(&self) -> Option<&Crs> {
+        self.feature.as_ref().map(|(layer, _)| &layer.crs)
+    }
+
+    /// Its property `name` as text; `None` where it is absent or of another kind.
+    pub fn text(&self, name: &str) -> Option<&str> {
+        let (layer, feature) = self.feature.as_ref()?;
+        layer.features[*feature].properties.get(name)?.as_str()
     }
 
     /// The feature's shape as its file has it; `None` where the scene file itself states the feature.

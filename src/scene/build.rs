@@ -204,6 +204,7 @@ pub fn build_with(
         graphics: collected.graphics,
         sight,
         solids: collected.solids,
+        pictures: collected.pictures,
         uprights: collected.uprights,
         details: models.iter().map(|_| OnceLock::new()).collect(),
         models,

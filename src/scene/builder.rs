@@ -14,6 +14,7 @@ use crate::tag_notes::TagNotes;
 use crate::water::lake_level::LakeSurface;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::FeatureId;
+use sandtable_draw::pixels::Pixels;
 use sandtable_ribbon::partition;
 use sandtable_ribbon::plan::PlanMesh;
 use sandtable_ribbon::texture::RibbonSurface;
@@ -31,6 +32,8 @@ pub struct SceneBuilder {
     pub features: Vec<SceneFeature>,
     /// Solids with fixed heights.
     pub solids: Vec<Solid>,
+    /// Pictures on solids.
+    pub pictures: Vec<Pixels>,
     /// Solids that each picture sets on its displayed ground.
     pub uprights: Vec<FeatureSolid>,
     /// Decks above the ground for height queries: triangles in world space, true heights in meters.
@@ -62,6 +65,7 @@ impl SceneBuilder {
             graphics: Vec::new(),
             features: Vec::new(),
             solids: Vec::new(),
+            pictures: Vec::new(),
             uprights: Vec::new(),
             decks: Vec::new(),
             lakes: Vec::new(),

@@ -16,6 +16,7 @@ use crate::builder::SceneBuilder;
 use crate::building_colors::color_named;
 use crate::building_parts::BuildingParts;
 use crate::building_tags::{BuildingHeights, RoofWish, heights};
+use crate::city_buildings::{self, CityPlots};
 use crate::crossed_shapes::CrossedShapes;
 use crate::feature::FeatureKind;
 use crate::feature_meshes::{Coat, FeatureSolid, Solid};
@@ -48,10 +49,10 @@ use sandtable_terrain::volumes::Volumes;
 use sandtable_vector::feature::Polygon;
 
 /// How deep walls go below the lowest ground under them, meters.
-const FOUNDATION_M: f64 = 1.0;
+pub(super) const FOUNDATION_M: f64 = 1.0;
 
 /// A building with its footprint, not raised yet.
-pub struct Plot {
+struct Plot {
     table: usize,
     attributes: Attributes,
     parts: Vec<BuildingFootprint>,
@@ -59,6 +60,15 @@ pub struct Plot {
     whole: Option<Arc<Vec<BuildingFootprint>>>,
     pad_m: Option<f64>,
     feature: FeatureId,
+}
+
+/// The buildings of a document, not raised yet.
+#[derive(Default)]
+pub struct BuildingPlots {
+    /// Footprints that are raised to a height.
+    footprints: Vec<Plot>,
+    /// Surfaces of CityJSON.
+    models: Vec<CityPlots>,
 }
 
 /// Counts of buildings that are not as stated.
@@ -127,9 +137,15 @@ pub fn lay_out(
     sources: &Sources<'_>,
     lattice: &mut Lattice,
     collected: &mut SceneBuilder,
-) -> Result<Vec<Plot>, Diagnostic> {
+) -> Result<BuildingPlots, Diagnostic> {
+    let mut models = Vec::new();
     let (mut plots, mut tally) = (Vec::new(), BuildingTally::default());
     for (table, building) in document.buildings.iter().enumerate() {
+        if let Some(model) = sources.city_model(&building.source)? {
+            models.push(city_buildings::lay_out(table, building, &model, sources, lattice, collected)?);
+            continue;
+        }
+        city_buildings::refuse_keys(document, building)?;
         let mut crossed = CrossedShapes::default();
         let polygons = sources.polygons(&building.source)?;
         let by_parts = BuildingParts::find(&polygons);
@@ -159,7 +175,8 @@ pub fn lay_out(
             crossed.add_polygon(shape, *crossings, || name.clone());
             let whole = by_parts.replaced_outline_of(index);
             let mut level = |parts: &[BuildingFootprint]| {
-                let ground = GroundUnder::parts(lattice, parts).filter(|_| building.base == BaseRule::Pad)?;
+                let ground =
+                    GroundUnder::parts(lattice, parts).filter(|_| building.base == Some(BaseRule::Pad))?;
                 let pad_m = pad(lattice, parts, ground.mean_m, &name, collected);
                 tally.pads_refused += usize::from(pad_m.is_none());
                 pad_m
@@ -183,7 +200,7 @@ pub fn lay_out(
         crossed.report(("building", outcome), building.source.span(), sources.frame, &mut collected.findings);
     }
     tally.note(document, &mut collected.findings);
-    Ok(plots)
+    Ok(BuildingPlots { footprints: plots, models })
 }
 
 /// The outline of a building that is drawn by its parts; of another nothing but its pad.
@@ -194,7 +211,7 @@ struct WholeBuilding {
 }
 
 /// Levels the ground under a building and returns its level; `None` where a lake or another pad shares that ground.
-fn pad(
+pub(super) fn pad(
     lattice: &mut Lattice,
     parts: &[BuildingFootprint],
     mean_m: f64,
@@ -223,15 +240,24 @@ fn is_taken(lattice: &Lattice, footprint: &BuildingFootprint) -> bool {
 
 /// The heights of the ground under a building, meters.
 #[derive(Clone, Copy)]
-struct GroundUnder {
-    low_m: f64,
-    mean_m: f64,
-    high_m: f64,
+pub(super) struct GroundUnder {
+    pub low_m: f64,
+    pub mean_m: f64,
+    pub high_m: f64,
 }
 
 impl GroundUnder {
+    /// The height at which a building stands by a rule; without heights of its own on the lowest ground.
+    pub(super) fn level_m(&self, rule: BaseRule) -> f64 {
+        match rule {
+            BaseRule::Lowest | BaseRule::Own => self.low_m,
+            BaseRule::Highest => self.high_m,
+            BaseRule::Mean | BaseRule::Pad => self.mean_m,
+        }
+    }
+
     /// Over all of the finest triangles that the footprints meet; `None` where some have no data.
-    fn parts(lattice: &Lattice, parts: &[BuildingFootprint]) -> Option<Self> {
+    pub(super) fn parts(lattice: &Lattice, parts: &[BuildingFootprint]) -> Option<Self> {
         let mut under = Self { low_m: f64::INFINITY, mean_m: 0.0, high_m: f64::NEG_INFINITY };
         let (mut area_m2, mut sum) = (0.0, 0.0);
         for part in parts {
@@ -255,9 +281,17 @@ impl GroundUnder {
 const NO_DATA_SHARE: f64 = 1e-6;
 
 /// Raises the buildings on the ground as it is now.
-pub fn raise(document: &Document, plots: &[Plot], ground: DrawnGround<'_>, collected: &mut SceneBuilder) {
+pub fn raise(
+    document: &Document,
+    plots: &BuildingPlots,
+    ground: DrawnGround<'_>,
+    collected: &mut SceneBuilder,
+) {
+    for plots in &plots.models {
+        city_buildings::raise(&document.buildings[plots.table], plots, ground, collected);
+    }
     let mut tally = BuildingTally::default();
-    for plot in plots {
+    for plot in &plots.footprints {
         let building = &document.buildings[plot.table];
         let Some(under) = GroundUnder::parts(ground.lattice, &plot.parts) else {
             tally.off += 1;
@@ -268,9 +302,7 @@ pub fn raise(document: &Document, plots: &[Plot], ground: DrawnGround<'_>, colle
         let base = whole.unwrap_or(under);
         let base_m = match (plot.pad_m, building.base) {
             (Some(level_m), _) => level_m,
-            (None, BaseRule::Lowest) => base.low_m,
-            (None, BaseRule::Highest) => base.high_m,
-            (None, BaseRule::Mean | BaseRule::Pad) => base.mean_m,
+            (None, rule) => base.level_m(rule.unwrap_or(BaseRule::Lowest)),
         };
         let base_z = ground.scale.world_z(base_m);
         let foot_z = ground.scale.world_z(under.low_m.min(base_m)) - FOUNDATION_M;
@@ -342,13 +374,20 @@ fn paint(
     made: &UnitRoof,
 ) -> Paint {
     let by_place = Paint::by_place(part, made);
+    let [wall, roof] = stated_colors(building, attributes);
+    Paint { wall: wall.unwrap_or(by_place.wall), roof: roof.unwrap_or(by_place.roof), ..by_place }
+}
+
+/// The colors of walls and roof by the table, else by the properties.
+pub(super) fn stated_colors(building: &BuildingTable, attributes: &Attributes) -> [Option<Srgba>; 2] {
     let color = |stated: Option<Color>, names: [&str; 2]| {
         let tagged = || names.iter().find_map(|name| color_named(&attributes.get(name)?));
-        stated.map(|color| Srgba(color.0)).or_else(tagged)
+        // Walls and roofs are solid, whatever the color's alpha says.
+        let solid = |Srgba([red, green, blue, _]): Srgba| Srgba::opaque(red, green, blue);
+        stated.map(|color| Srgba(color.0)).or_else(tagged).map(solid)
     };
-    // Walls and roofs are solid, whatever the color's alpha says.
-    let solid = |Srgba([red, green, blue, _]): Srgba| Srgba::opaque(red, green, blue);
-    let wall = color(building.wall_color, ["building:colour", "building:color"]);
-    let roof = color(building.roof_color, ["roof:colour", "roof:color"]);
-    Paint { wall: wall.map_or(by_place.wall, solid), roof: roof.map_or(by_place.roof, solid), ..by_place }
+    [
+        color(building.wall_color, ["building:colour", "building:color"]),
+        color(building.roof_color, ["roof:colour", "roof:color"]),
+    ]
 }

@@ -477,6 +477,7 @@ fn stated(document: &Document) -> Result<DemOptions, Diagnostic> {
         vertical_datum: terrain.vertical_datum.clone(),
         cell: terrain.cell,
         crs: terrain.crs.clone(),
+        surface: terrain.surface.clone(),
     })
 }
 

@@ -52,8 +52,8 @@ fn shapes_ground(document: &Document) -> bool {
         None => fence.source.file.is_some(),
     };
     !(document.lakes.is_empty() && document.rivers.is_empty() && document.earthworks.is_empty())
-        || document.roads.iter().any(|road| road.profile == ProfileMode::Conform)
-        || document.buildings.iter().any(|building| building.base == BaseRule::Pad)
+        || document.roads.iter().any(|road| road.profile != ProfileMode::Drape)
+        || document.buildings.iter().any(|building| building.base == Some(BaseRule::Pad))
         || document.fences.iter().any(may_be_dug)
         || document.models.iter().any(|model| *model.footing == Footing::Pad)
 }

@@ -45,6 +45,10 @@ pub enum Coat {
     Painted,
     /// Walls with windows where they have texture coordinates, times the colors of their vertices.
     Facade,
+    /// The colors of their vertices, on both sides.
+    Sheet,
+    /// One of the scene's pictures, by its number, times the colors of their vertices, on both sides.
+    Picture(u32),
     /// A surface's texture, times the colors of their vertices.
     Surface(RibbonSurface),
 }

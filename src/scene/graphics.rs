@@ -13,19 +13,24 @@ use sandtable_base::message::numbers::fixed;
 use sandtable_base::message::suggest::{nearest, quoted};
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
+use sandtable_description::feature_value::FromScalar;
 use sandtable_description::graphics::GraphicTable;
 use sandtable_description::scalar::Scalar;
 use sandtable_description::stated::Stated;
-use sandtable_description::words::{GraphicSide, GraphicStatus};
+use sandtable_description::words::{GraphicOrder, GraphicSide, GraphicStatus};
 use sandtable_draw::list::FeatureId;
 use sandtable_geom::rect::Rect;
 use sandtable_symbology::code::SymbolCode;
 use sandtable_symbology::fields::{SymbolIdentity, SymbolSet, SymbolStatus};
 use sandtable_symbology::graphic::check::{GraphicError, MOST_RANGES, PlacedGraphic, check};
 use sandtable_symbology::graphic::fields::{ECHELONS, GraphicFields, echelon_mark};
-use sandtable_symbology::graphic::kind::GraphicKind;
+use sandtable_symbology::graphic::kind::{GraphicKind, GraphicShape};
 use sandtable_symbology::graphic::kind_table::GRAPHIC_KINDS;
+use sandtable_symbology::graphic::rules::points_of;
 use sandtable_vector::feature::Geometry;
+
+/// The mark of the enemy (field N).
+const ENEMY: &str = "ENY";
 
 /// Adds the document's graphics to `collected`; those of files that lie off the ground are left out with a note. It keeps an
 /// error where a source cannot be had, or a graphic does not fit its draw rule.
@@ -97,6 +102,11 @@ fn graphic(
         Some(Scalar::Number(number)) => Some(number.to_string()),
         _ => None,
     };
+    let number = |key: &str| match attributes.get(key) {
+        Some(Scalar::Number(number)) => Some(number),
+        Some(Scalar::Text(text)) => text.trim().parse().ok(),
+        _ => None,
+    };
     let text =
         |stated: &Option<String>, key: &str| stated.clone().or_else(|| property(key)).unwrap_or_default();
     let stated_or = |stated: &Option<Stated<String>>, rival: bool, key: &str| {
@@ -119,13 +129,24 @@ fn graphic(
     let echelon = text(&table.echelon, "echelon");
     let echelon =
         if echelon.is_empty() { code.map(|code| echelon_of(&code)).unwrap_or_default() } else { echelon };
+    let side = table.side.or_else(|| code.map(|code| side_of(code.identity))).unwrap_or_default();
+    let hostile = text(&table.hostile, "hostile");
+    let is_marked = kind.set == 25 && (kind.is_area() || kind.shows("N"));
+    let hostile = match (side, hostile.as_str()) {
+        (GraphicSide::Hostile, "") if is_marked => ENEMY.to_owned(),
+        _ => hostile,
+    };
+    let designation = match text(&table.designation, "designation") {
+        stated if stated.is_empty() => property("unique_designation").unwrap_or_default(),
+        stated => stated,
+    };
     let heights = table.elevations.map(|range| range.map(|meters| format!("{} m", fixed(meters, 0))));
     let fields = GraphicFields {
-        designation: text(&table.designation, "designation"),
+        designation,
         designation_2: text(&table.designation_2, "designation_2"),
         echelon: echelon_mark(&echelon).to_owned(),
         country: text(&table.country, "country"),
-        hostile: text(&table.hostile, "hostile"),
+        hostile,
         further: text(&table.further, "further"),
         target: text(&table.target, "target"),
         from: text(&table.from, "from"),
@@ -137,20 +158,32 @@ fn graphic(
     if kind.is_area() && points.len() > 1 && points.first() == points.last() {
         points.pop();
     }
-    let placed = PlacedGraphic { points: &points, width_m: table.width, fields: &fields };
+    let width_m = table.width.or_else(|| number("width")).filter(|width| *width > 0.0);
+    let order =
+        table.order.or_else(|| attributes.get("order").and_then(|word| GraphicOrder::from_scalar(&word, ())));
+    if order == Some(GraphicOrder::Drawn) && !kind.leads_from_tip() {
+        let message = format!("`order` has no effect on {}, whose points do not lead from a tip", kind.word);
+        return Err(failed(message, format!("its points are: {}", points_of(kind))));
+    }
+    let is_axis_with_width = kind.shape == GraphicShape::Axis && width_m.is_some();
+    if order.unwrap_or(if is_axis_with_width { GraphicOrder::Drawn } else { GraphicOrder::Standard })
+        == GraphicOrder::Drawn
+    {
+        kind.turn_to_standard(&mut points, width_m.is_some());
+    }
+    let placed = PlacedGraphic { points: &points, width_m, fields: &fields };
     check(kind, &placed).map_err(|error| {
         let place =
             if matches!(error, GraphicError::Missing { .. }) { span.clone() } else { table.source.span() };
         let help = error.help();
         document.error_at(place, error).with_help(help)
     })?;
-    let side = table.side.or_else(|| code.map(|code| side_of(code.identity))).unwrap_or_default();
     let planned = code.is_some_and(|code| code.status == SymbolStatus::Planned);
     let status = if planned { GraphicStatus::Planned } else { GraphicStatus::Present };
     Ok(Some(SceneGraphic {
         kind,
         points,
-        width_m: table.width,
+        width_m,
         fields,
         side,
         status: table.status.unwrap_or(status),
@@ -170,7 +203,7 @@ fn numbers(stated: &Option<Stated<Vec<f64>>>, document: &Document) -> Result<Vec
 }
 
 fn kind_of_word(word: &str) -> Result<&'static GraphicKind, (String, String)> {
-    if let Some(kind) = GraphicKind::of_word(word).or_else(|| GraphicKind::of_code(word)) {
+    if let Some(kind) = GraphicKind::of_word(word).or_else(|| GraphicKind::of_code(25, word)) {
         return Ok(kind);
     }
     let near = nearest(word, GRAPHIC_KINDS.iter().map(|kind| kind.word));
@@ -183,14 +216,20 @@ fn kind_of_word(word: &str) -> Result<&'static GraphicKind, (String, String)> {
 
 fn kind_of_code(code: &SymbolCode) -> Result<&'static GraphicKind, (String, String)> {
     let help = "scenes/SYMBOLS.md lists the codes of graphics".to_owned();
-    if code.set != SymbolSet::ControlMeasure {
-        let message =
-            format!("the code is of symbol set {:02}, and graphics are of set 25", code.set.number());
+    if !matches!(code.set, SymbolSet::ControlMeasure | SymbolSet::Atmosphere | SymbolSet::Ocean) {
+        let message = format!(
+            "the code is of symbol set {:02}, and graphics are of sets 25, 45 and 46",
+            code.set.number()
+        );
         return Err((message, "use `[[symbol]]` for it".to_owned()));
     }
     let digits = format!("{:06}", code.entity);
-    GraphicKind::of_code(&digits)
-        .ok_or_else(|| (format!("the graphic {digits} of symbol set 25 is not drawn yet"), help))
+    GraphicKind::of_code(code.set.number(), &digits).ok_or_else(|| {
+        (
+            format!("symbol set {:02} has no line, area or point {digits} that is drawn", code.set.number()),
+            help,
+        )
+    })
 }
 
 /// The word of a code's echelon; empty where it has none.

@@ -20,6 +20,8 @@ mod building_parts;
 mod building_tags;
 pub mod buildings;
 mod cause_code;
+mod city_buildings;
+mod city_paint;
 pub mod crossed_shapes;
 pub mod earthworks;
 mod elevation;

@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use sandtable_description::words::{GraphicSide, GraphicStatus};
 use sandtable_draw::list::FeatureId;
+use sandtable_symbology::graphic::drawing::GraphicInput;
 use sandtable_symbology::graphic::fields::GraphicFields;
 use sandtable_symbology::graphic::kind::GraphicKind;
 
@@ -26,4 +27,11 @@ pub struct SceneGraphic {
     pub elevations_m: Option<[f64; 2]>,
     /// The feature it is.
     pub feature: FeatureId,
+}
+
+impl SceneGraphic {
+    /// What it is drawn from, with texts `em_m` high in meters and the direction that is up on the picture.
+    pub fn input(&self, em_m: f64, up: DVec2) -> GraphicInput<'_> {
+        GraphicInput { points: &self.points, em_m, up, width_m: self.width_m, fields: &self.fields }
+    }
 }

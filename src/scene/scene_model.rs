@@ -32,6 +32,7 @@ use sandtable_draw::ground::{ColorRamp, Contours};
 use sandtable_draw::ground_cover::GroundCover;
 use sandtable_draw::ground_imagery::GroundImagery;
 use sandtable_draw::list::FeatureId;
+use sandtable_draw::pixels::Pixels;
 use sandtable_earthworks::brush::Change;
 use sandtable_earthworks::held_posts::HeldPosts;
 use sandtable_geom::crs::Crs;
@@ -114,6 +115,8 @@ pub struct SceneModel {
     pub sight: SightLayers,
     /// Solids with fixed heights: buildings, bridges.
     pub solids: Vec<Solid>,
+    /// Pictures on them, by the numbers that their coats name.
+    pub pictures: Vec<Pixels>,
     /// Solids that each picture sets on its displayed ground: walls, fences, lines, footings.
     pub uprights: Vec<FeatureSolid>,
     /// Model files, each loaded once.

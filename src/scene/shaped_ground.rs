@@ -7,7 +7,7 @@ use crate::assets::Assets;
 use crate::bridges;
 use crate::build_errors::BuildErrors;
 use crate::builder::SceneBuilder;
-use crate::buildings::{self, Plot};
+use crate::buildings::{self, BuildingPlots};
 use crate::earthworks;
 use crate::fences::{self, FenceLine};
 use crate::ground::{self, LoadedGround};
@@ -54,7 +54,7 @@ pub(super) fn shape_loaded(
 /// Features that shaped the ground and are not built yet.
 pub(super) struct ShapedFeatures {
     pub roads: Vec<Centerline>,
-    pub plots: Vec<Plot>,
+    pub plots: BuildingPlots,
     pub lines: Vec<FenceLine>,
     pub held: HeldPosts,
     pub dug: Vec<Change>,

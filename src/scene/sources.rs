@@ -23,11 +23,12 @@ use sandtable_description::selection::Selection;
 use sandtable_description::stated::Stated;
 use sandtable_geom::crs::{Crs, CrsError};
 use sandtable_geom::self_crossing::count_crossings;
+use sandtable_vector::cityjson::CityModel;
 use sandtable_vector::error::{VectorError, did_you_mean, list};
 use sandtable_vector::feature::{Geometry, Polygon, VectorLayer};
 use sandtable_vector::filter::{Condition, Filter};
 use sandtable_vector::hints::VectorHints;
-use sandtable_vector::read;
+use sandtable_vector::read::{self, VectorFile};
 
 /// A file's name, and the layer and the system stated for it.
 type LayerKey = (String, Option<String>, Option<String>);
@@ -39,6 +40,8 @@ pub struct Sources<'a> {
     /// The files that the document may name.
     pub assets: &'a Assets,
     layers: RefCell<BTreeMap<LayerKey, Arc<VectorLayer>>>,
+    /// The surfaces of CityJSON files.
+    city_models: RefCell<BTreeMap<LayerKey, Arc<CityModel>>>,
     /// The systems that files state and the scene overrides.
     overridden: RefCell<BTreeMap<LayerKey, Crs>>,
     /// How many crossings more the scene's polygons may have with themselves.
@@ -76,6 +79,7 @@ impl<'a> Sources<'a> {
             frame,
             assets,
             layers: RefCell::default(),
+            city_models: RefCell::default(),
             overridden: RefCell::default(),
             crossings_left,
             reaches: RefCell::default(),
@@ -178,6 +182,18 @@ impl<'a> Sources<'a> {
     pub fn geometries(&self, source: &FeatureSource) -> Result<(Crs, Vec<Geometry>), Diagnostic> {
         let (crs, shapes) = self.shapes(source, |geometry| vec![geometry.clone()])?;
         Ok((crs, shapes.into_iter().map(|sourced| sourced.shape).collect()))
+    }
+
+    /// The surfaces of a CityJSON file; `None` of a source of another format. The property `id` of its features names their
+    /// objects.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn city_model(&self, source: &FeatureSource) -> Result<Option<Arc<CityModel>>, Diagnostic> {
+        let Some(file) = &source.file else { return Ok(None) };
+        let key = layer_key(file, source.layer.as_ref(), source.crs.as_ref());
+        self.layer(file, source.layer.as_ref(), source.crs.as_ref())?;
+        Ok(self.city_models.borrow().get(&key).cloned())
     }
 
     /// The shapes that `pick` takes from every feature that matches, unplaced.
@@ -294,9 +310,13 @@ impl<'a> Sources<'a> {
         let overridden = |own: &Crs| drop(self.overridden.borrow_mut().insert(key.clone(), own.clone()));
         let found = |name: &str| companions.get(name);
         let hints = VectorHints { crs: stated, overridden: &overridden, layer: name, companions: &found };
-        let layer = read::read(file, &bytes, &hints);
+        let read = read::read_file(file, &bytes, &hints);
         companions.check().map_err(|error| self.frame.document.error(file, error))?;
-        let layer = Arc::new(layer.map_err(|error| self.unread(file, wanted, error))?);
+        let VectorFile { layer, model } = read.map_err(|error| self.unread(file, wanted, error))?;
+        if let Some(model) = model {
+            self.city_models.borrow_mut().insert(key.clone(), Arc::new(model));
+        }
+        let layer = Arc::new(layer);
         self.note_reading(file, &layer);
         self.layers.borrow_mut().insert(key, Arc::clone(&layer));
         Ok(layer)

@@ -26,12 +26,14 @@ pub fn overlay_entries(scene: &SceneModel, picture: &Rendering) -> Vec<LegendEnt
     let shown: BTreeSet<FeatureId> = picture.features.iter().copied().collect();
     let mut entries = Vec::new();
     let mut seen = BTreeSet::new();
+    let mut weather = BTreeSet::new();
     for graphic in scene.graphics.iter().filter(|graphic| shown.contains(&graphic.feature)) {
-        let class = match graphic.kind.tint {
-            GraphicTint::Obstacle => None,
-            GraphicTint::Own => Some(graphic.side),
+        match graphic.kind.tint {
+            GraphicTint::Obstacle => seen.insert(None),
+            GraphicTint::Own => seen.insert(Some(graphic.side)),
+            // Weather and the sea have a color for every kind.
+            tint => weather.insert((graphic.kind.name, graphic_color(graphic.side, tint).0)),
         };
-        seen.insert(class);
     }
     for class in seen.into_iter().rev() {
         let color = graphic_color(
@@ -40,6 +42,7 @@ pub fn overlay_entries(scene: &SceneModel, picture: &Rendering) -> Vec<LegendEnt
         );
         entries.push(line(class.map_or("Obstacle", side_name), color));
     }
+    entries.extend(weather.into_iter().map(|(name, color)| line(name, Srgba(color))));
     for layer in &scene.sight.viewsheds {
         let named = |text: &str| match layer.name.as_str() {
             "" => text.to_owned(),

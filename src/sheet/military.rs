@@ -5,6 +5,7 @@ use glam::Vec3;
 use crate::line_labels::is_seen;
 use sandtable_annotate::annotation::{PictureSymbol, SymbolHeight};
 use sandtable_description::words::StylePreset;
+use sandtable_geom::position::notation::PositionForm;
 use sandtable_picture::nested_ground::NestedHeights;
 use sandtable_render::picture::Rendering;
 use sandtable_scene::military::{SceneSymbol, SymbolSize};
@@ -25,7 +26,7 @@ pub fn picture_symbols(
 ) -> Vec<PictureSymbol> {
     let symbols = scene.military.iter().filter_map(|symbol| {
         let ground = nested.lifted(scene, symbol.ground);
-        picture_symbol(symbol, ground, camera, picture)
+        picture_symbol(scene, symbol, (ground, camera), picture)
     });
     match scene.preset {
         Some(StylePreset::Print) => symbols.map(in_black_and_white).collect(),
@@ -38,9 +39,9 @@ fn in_black_and_white(symbol: PictureSymbol) -> PictureSymbol {
 }
 
 fn picture_symbol(
+    scene: &SceneModel,
     symbol: &SceneSymbol,
-    place: Vec3,
-    camera: &Camera,
+    (place, camera): (Vec3, &Camera),
     picture: &Rendering,
 ) -> Option<PictureSymbol> {
     let ground = camera.project(place)?;
@@ -60,6 +61,7 @@ fn picture_symbol(
         symbol: symbol.symbol.clone(),
         texts: symbol.texts.clone(),
         name: symbol.name.clone(),
+        reference: Some(reference(scene, symbol.ground)),
         anchor_px: ground.pixel,
         direction_px: toward,
         depth_m: ground.depth_m,
@@ -68,6 +70,12 @@ fn picture_symbol(
         rank: symbol.rank,
         height,
     })
+}
+
+/// The grid reference of a place in world space; map coordinates where the map has no place on Earth.
+fn reference(scene: &SceneModel, place: Vec3) -> String {
+    let at = scene.lattice.origin() + place.truncate().as_dvec2();
+    PositionForm::Usng.write(&scene.crs, at).unwrap_or_else(|_| format!("{:.0} E {:.0} N", at.x, at.y))
 }
 
 /// A camera that looks down more steeply than this draws a map, on which symbols need no staff.

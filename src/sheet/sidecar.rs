@@ -89,7 +89,9 @@ impl SidecarDraft {
         whole["furniture"] = furniture.map(corners).collect();
         whole["symbols"] = json!({
             "placed": report.symbols.placed, "hidden": report.symbols.hidden,
-            "outside": report.symbols.outside, "without_room": report.symbols.crowded_out,
+            "outside": report.symbols.outside, "reduced": report.symbols.reduced,
+            "listed": report.symbols.listed, "counted": report.symbols.counted,
+            "without_room": report.symbols.crowded_out,
         });
         whole
     }

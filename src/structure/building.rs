@@ -92,13 +92,18 @@ const FLATS: [Srgba; 5] = [
 impl Paint {
     /// The default paint: a plaster and a roof chosen by the position, so that they are the same in every picture.
     pub fn by_place(footprint: &BuildingFootprint, roof: &UnitRoof) -> Self {
-        let at = centroid(footprint.exterior()).round();
+        Self::at(centroid(footprint.exterior()), roof.run_m > 0.0)
+    }
+
+    /// The default paint of a building at a place, whose roof slopes or is flat.
+    pub fn at(place: DVec2, is_sloped: bool) -> Self {
+        let at = place.round();
         let pick = |colors: &[Srgba], salt: u64| {
             let share = (noise(at, salt) + 1.0) / 2.0;
             colors[((share * colors.len() as f64) as usize).min(colors.len() - 1)]
         };
         let tint = noise(at, 7) as f32 * 5.0;
-        let roof = if roof.run_m > 0.0 { pick(&TILES, 1) } else { pick(&FLATS, 2) };
+        let roof = if is_sloped { pick(&TILES, 1) } else { pick(&FLATS, 2) };
         Self {
             wall: shaded(pick(&PLASTERS, 3), tint),
             roof: shaded(roof, tint * 1.4),

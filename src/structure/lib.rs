@@ -28,6 +28,7 @@ mod roof_mansard;
 pub mod roof_rectangle;
 mod roof_ridged;
 mod roof_skillion;
+pub mod space_polygon;
 pub mod straight_skeleton;
 pub mod tunnel;
 pub mod unit_roof;

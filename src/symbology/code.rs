@@ -167,6 +167,11 @@ impl SymbolCode {
         )
     }
 
+    /// The code as 15 letters of MIL-STD-2525C; `None` where 2525C has no such entity, modifier, context, or echelon.
+    pub fn letters(&self) -> Option<String> {
+        letter_code::letters(self)
+    }
+
     /// The code of the kind alone, without the fields that distinguish single symbols of it.
     pub fn kind(&self) -> Self {
         Self {

@@ -2,16 +2,16 @@
 //!
 //! ```text
 //! drawing   := statement { ";" statement }
-//! statement := { "fill" | "pale" | "thin" | "bold" | "broad" } ( path | circle | text | piece )
+//! statement := { "fill" | "solid" | "pale" | "light" | "thin" | "bold" | "broad" } ( path | circle | text | piece )
 //! path      := "M" x,y { "M" x,y | "L" x,y | "Q" x,y x,y | "C" x,y x,y x,y | "A" center radii from to | "Z" }
 //! circle    := "circle" x,y radius
 //! text      := "text" size [ x,y ] WORD        centered; size of the em
-//! piece     := "@" name                        a drawing of `pieces`
+//! piece     := "@" name [ dx,dy [ factor ] ]   a drawing of `pieces`, scaled about (100, 100), then moved
 //! ```
 //!
 //! `A` is an arc of an axis-parallel ellipse, from one angle to another in degrees, clockwise from the right; a straight
-//! line leads to its start. A path is stroked in black; `fill` fills it in black instead, `pale` in near white under its
-//! stroke, and the others change the stroke's width.
+//! line leads to its start. A path is stroked in black; `fill` fills it in black instead, `solid` fills it in black under its
+//! stroke, `pale` in near white under its stroke and `light` in near white alone, and the others change the stroke's width. A piece may hold other pieces.
 
 use std::f32::consts::FRAC_PI_4;
 
@@ -33,6 +33,12 @@ pub const PALE: [u8; 3] = [239, 239, 239];
 
 /// Where a centered text stands that states no place: capitals look centered a little above the middle.
 const TEXT_CENTER: Vec2 = Vec2::new(100.0, 99.5);
+
+/// The middle of the box.
+const BOX_CENTER: Vec2 = Vec2::splat(100.0);
+
+/// Pieces hold pieces no deeper than this, so that a piece that holds itself is none. The tables need three levels.
+const MOST_LEVELS: usize = 4;
 
 /// A step of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,10 +108,45 @@ impl SymbolMark {
     }
 }
 
+impl SymbolMark {
+    /// The mark scaled about the middle of the box and then moved; its line stays as wide.
+    pub(super) fn placed(self, offset: Vec2, factor: f32) -> Self {
+        let place = |at: Vec2| BOX_CENTER + (at - BOX_CENTER) * factor + offset;
+        match self {
+            Self::Shape { steps, fill, stroke } => {
+                let steps = steps.into_iter().map(|step| step.map(place)).collect();
+                Self::Shape { steps, fill, stroke }
+            }
+            Self::Text { text, center, size } => {
+                Self::Text { text, center: place(center), size: size * factor }
+            }
+        }
+    }
+
+    fn with_line_scaled(mut self, factor: f32) -> Self {
+        if let Self::Shape { stroke: Some(pen), .. } = &mut self {
+            pen.width *= factor;
+        }
+        self
+    }
+}
+
+impl PathStep {
+    fn map(self, place: impl Fn(Vec2) -> Vec2) -> Self {
+        match self {
+            Self::Move(at) => Self::Move(place(at)),
+            Self::Line(at) => Self::Line(place(at)),
+            Self::Quad(control, end) => Self::Quad(place(control), place(end)),
+            Self::Cubic(one, two, end) => Self::Cubic(place(one), place(two), place(end)),
+            Self::Close => Self::Close,
+        }
+    }
+}
+
 /// The marks of a drawing in a frame of a shape; `None` where the text is none.
 pub fn parse(drawing: &str, shape: FrameShape) -> Option<Vec<SymbolMark>> {
     let mut marks = Vec::new();
-    add(drawing, DrawingStyle::default(), shape, &mut marks)?;
+    add(drawing, DrawingStyle::default(), shape, MOST_LEVELS, &mut marks)?;
     Some(marks)
 }
 
@@ -139,7 +180,9 @@ impl DrawingStyle {
     fn with(self, word: &str) -> Option<Self> {
         Some(match word {
             "fill" => Self { fill: Some(BLACK), has_stroke: false, ..self },
+            "solid" => Self { fill: Some(BLACK), has_stroke: true, ..self },
             "pale" => Self { fill: Some(PALE), ..self },
+            "light" => Self { fill: Some(PALE), has_stroke: false, ..self },
             "thin" => Self { width: THIN, ..self },
             "bold" => Self { width: BOLD, ..self },
             "broad" => Self { width: BROAD, ..self },
@@ -153,7 +196,13 @@ impl DrawingStyle {
     }
 }
 
-fn add(drawing: &str, style: DrawingStyle, shape: FrameShape, marks: &mut Vec<SymbolMark>) -> Option<()> {
+fn add(
+    drawing: &str,
+    style: DrawingStyle,
+    shape: FrameShape,
+    levels: usize,
+    marks: &mut Vec<SymbolMark>,
+) -> Option<()> {
     for statement in drawing.split(';') {
         let words: Vec<&str> = statement.split_whitespace().collect();
         let (mut words, mut style) = (words.as_slice(), style);
@@ -166,13 +215,18 @@ fn add(drawing: &str, style: DrawingStyle, shape: FrameShape, marks: &mut Vec<Sy
             }
             ["text", size, text] => marks.push(text_mark(text, TEXT_CENTER, size)?),
             ["text", size, center, text] => marks.push(text_mark(text, point(center)?, size)?),
-            [name] => {
-                let drawing = piece(name.strip_prefix('@')?, shape);
-                // A piece holds no pieces, so that this ends.
-                if drawing.is_empty() || drawing.contains('@') {
-                    return None;
-                }
-                add(drawing, style, shape, marks)?;
+            [name, placement @ ..] if name.starts_with('@') => {
+                let drawing = piece(name.strip_prefix('@')?, shape)?;
+                let (offset, factor) = match placement {
+                    [] => (Vec2::ZERO, 1.0),
+                    [offset] => (point(offset)?, 1.0),
+                    [offset, factor] => (point(offset)?, factor.parse().ok()?),
+                    _ => return None,
+                };
+                let start = marks.len();
+                add(drawing, style, shape, levels.checked_sub(1)?, marks)?;
+                let piece = marks.split_off(start).into_iter();
+                marks.extend(piece.map(|mark| mark.placed(offset, factor).with_line_scaled(factor)));
             }
             _ => marks.push(style.mark(steps(words)?)),
         }
@@ -256,9 +310,23 @@ mod tests {
 
     #[test]
     fn what_is_no_drawing_gives_none() {
-        for text in ["", "L1,2", "M1", "M1,2 X3,4", "circle 1,2", "@nothing", "text CA", "M1,2 A3,4 5"] {
+        let placed = ["@wheel 1", "@wheel 1,2 x", "@wheel 1,2 3 4"];
+        let texts = ["", "L1,2", "M1", "M1,2 X3,4", "circle 1,2", "@nothing", "text CA", "M1,2 A3,4 5"];
+        for text in placed.into_iter().chain(texts) {
             assert_eq!(parse(text, FrameShape::Circle), None, "{text:?}");
         }
+    }
+
+    #[test]
+    fn a_piece_is_scaled_about_the_middle_and_moved() {
+        let marks = parse("@arrow 5,10 0.5", FrameShape::Circle).expect("a drawing");
+        let at = |x, y| Vec2::new(x, y);
+        let steps = vec![
+            PathStep::Move(at(97.5, 97.5)),
+            PathStep::Line(at(105.0, 90.0)),
+            PathStep::Line(at(112.5, 97.5)),
+        ];
+        assert_eq!(marks, [SymbolMark::stroke(steps, SymbolPen::black(LINE / 2.0))]);
     }
 
     #[test]

@@ -175,6 +175,13 @@ fields! {
     }
 }
 
+impl SymbolVersion {
+    /// Whether it is MIL-STD-2525E, APP-6E or a later edition.
+    pub fn has_changes_of_e(self) -> bool {
+        !matches!(self, Self::D | Self::D1 | Self::AppD2)
+    }
+}
+
 impl SymbolIdentity {
     /// Whether the frame is drawn with dashes: what is only assumed is not drawn firm.
     pub fn is_assumed(self) -> bool {

@@ -6,7 +6,7 @@ use glam::Vec2;
 
 use crate::code::SymbolCode;
 use crate::drawing::{PathStep, circle, path};
-use crate::fields::{SymbolIdentity, SymbolSet, SymbolVersion};
+use crate::fields::{SymbolIdentity, SymbolSet};
 
 /// Width of a frame's line.
 pub(super) const FRAME_LINE: f32 = 4.0;
@@ -209,7 +209,7 @@ const CIVILIAN: [u8; 3] = [255, 161, 255];
 
 /// The color inside the frame.
 pub(super) fn fill(code: &SymbolCode) -> [u8; 3] {
-    let has_suspects = !matches!(code.version, SymbolVersion::D | SymbolVersion::D1 | SymbolVersion::AppD2);
+    let has_suspects = code.version.has_changes_of_e();
     match code.identity {
         SymbolIdentity::Suspect if has_suspects && !code.is_joker_or_faker() => SUSPECT,
         SymbolIdentity::Suspect | SymbolIdentity::Hostile => HOSTILE,
@@ -225,6 +225,7 @@ fn is_civilian(code: &SymbolCode) -> bool {
     match code.set {
         SymbolSet::LandCivilian => true,
         SymbolSet::Air => group == 12,
+        SymbolSet::LandEquipment => group == 16,
         SymbolSet::SeaSurface => group == 14,
         _ => false,
     }

@@ -13,6 +13,7 @@ use crate::fields::{
     CodedField, SymbolAmplifier, SymbolContext, SymbolIdentity, SymbolRole, SymbolSet, SymbolStatus,
     SymbolVersion,
 };
+use crate::letter_functions::{self, FUNCTIONS, LetterFunction};
 
 /// Identities with their contexts.
 const IDENTITIES: [(u8, SymbolContext, SymbolIdentity, &str); 14] = [
@@ -55,7 +56,7 @@ const SETS: [(&[u8], SymbolSet); 16] = [
     (b"SF", SymbolSet::LandUnit),
     (b"SZ", SymbolSet::Unknown),
     (b"SX", SymbolSet::Unknown),
-    (b"GM", SymbolSet::ControlMeasure),
+    (b"G", SymbolSet::ControlMeasure),
     (b"EF", SymbolSet::LandInstallation),
     (b"EI", SymbolSet::Activity),
     (b"EN", SymbolSet::Activity),
@@ -110,17 +111,13 @@ pub(super) fn parse(code: &str) -> Result<SymbolCode, SymbolCodeError> {
         .find(|row| row.0 == *status)
         .ok_or_else(|| error(code, 4, 1, "status", STATUSES.iter().map(|row| (row.0, row.2))))?;
     let key: Vec<u8> = [*scheme, *dimension].into_iter().chain(function.iter().copied()).collect();
-    let known = FUNCTIONS.iter().find(|row| row.letters.as_slice() == key.as_slice());
+    let known = letter_functions::find(&key);
     let (set, entity, modifiers) = match known {
         Some(row) => (SymbolSet::from_number(row.set), row.entity, row.modifiers),
         None => (SETS.iter().find(|(start, _)| key.starts_with(start)).map(|row| row.1), 0, [0, 0]),
     };
-    let schemes = [
-        (b'S', "warfighting"),
-        (b'G', "tactical graphics, dimension M"),
-        (b'O', "stability"),
-        (b'E', "emergency"),
-    ];
+    let schemes =
+        [(b'S', "warfighting"), (b'G', "tactical graphics"), (b'O', "stability"), (b'E', "emergency")];
     let set = set.ok_or_else(|| error(code, 1, 1, "coding scheme", schemes))?;
     let (role, amplifier) = role_and_amplifier(*first, *second).ok_or_else(|| SymbolCodeError::Field {
         places: CodePlaces { first: 11, count: 2, unit: "letter" },
@@ -144,6 +141,56 @@ pub(super) fn parse(code: &str) -> Result<SymbolCode, SymbolCodeError> {
         frame_shape: 0,
         unknown_function: (known.is_none() && unknown != [b'-'; 6]).then_some(unknown),
     })
+}
+
+/// The 15 letters of a code; `None` where 2525C has none for one of its fields.
+pub(super) fn letters(code: &SymbolCode) -> Option<String> {
+    let is_same = |row: &&LetterFunction| {
+        (row.set, row.entity, row.modifiers) == (code.set.number(), code.entity, code.modifiers)
+    };
+    let function = match code.unknown_function {
+        Some(_) => None,
+        None => FUNCTIONS.iter().find(is_same),
+    };
+    let [scheme, dimension, function @ ..] = function?.letters;
+    let identity =
+        IDENTITIES.iter().find(|row| (row.1, row.2) == (code.context, code.identity)).map(|row| row.0)?;
+    let status = STATUSES.iter().find(|row| row.1 == code.status)?.0;
+    let (first, second) = role_and_amplifier_letters(code)?;
+    let end: &[u8] = if scheme == b'G' { b"--X" } else { b"---" };
+    let letters: Vec<u8> = [scheme, identity, dimension, status]
+        .into_iter()
+        .chain(function)
+        .chain([first, second])
+        .chain(end.iter().copied())
+        .collect();
+    String::from_utf8(letters).ok()
+}
+
+/// Letters 11 and 12.
+fn role_and_amplifier_letters(code: &SymbolCode) -> Option<(u8, u8)> {
+    let number = code.amplifier.number();
+    let is_plain = code.role == SymbolRole::None;
+    if code.set == SymbolSet::LandInstallation && number == 0 {
+        return match code.role {
+            SymbolRole::None => Some((b'H', b'-')),
+            SymbolRole::Dummy => Some((b'H', b'B')),
+            _ => None,
+        };
+    }
+    let echelon = match number {
+        0 => b'-',
+        11..=18 => b'A' + number - 11,
+        21..=26 => b'I' + number - 21,
+        61 if is_plain => return Some((b'N', b'S')),
+        62 if is_plain => return Some((b'N', b'L')),
+        _ if is_plain => {
+            let letter = MOBILITIES.iter().find(|row| row.1 == number)?.0;
+            return Some((b'M', letter));
+        }
+        _ => return None,
+    };
+    Some((ROLES.iter().find(|row| row.1 == code.role)?.0, echelon))
 }
 
 /// The role and the amplifier of letters 11 and 12.
@@ -188,157 +235,6 @@ fn error(
     }
 }
 
-/// A function of 2525C and what it is in 2525D.
-struct LetterFunction {
-    /// Coding scheme, battle dimension and the six letters of the function.
-    letters: [u8; 8],
-    set: u8,
-    entity: u32,
-    modifiers: [u16; 2],
-}
-
-const fn row(letters: &[u8; 8], set: u8, entity: u32, modifiers: [u16; 2]) -> LetterFunction {
-    LetterFunction { letters: *letters, set, entity, modifiers }
-}
-
-/// The functions whose entity and modifiers are drawn, by MIL-STD-2525D, appendix A, table of conversions.
-const FUNCTIONS: &[LetterFunction] = &[
-    row(b"EFLF----", 20, 121305, [0, 0]),
-    row(b"EFLJ----", 20, 121307, [0, 0]),
-    row(b"EFMB----", 20, 121402, [0, 0]),
-    row(b"ENBC----", 40, 170202, [0, 0]),
-    row(b"OOD-----", 40, 120100, [0, 0]),
-    row(b"OOM-----", 40, 130500, [0, 0]),
-    row(b"OOP-----", 40, 130100, [0, 0]),
-    row(b"OVE-----", 40, 110600, [0, 0]),
-    row(b"SAC-----", 1, 120000, [0, 0]),
-    row(b"SACF----", 1, 120100, [0, 0]),
-    row(b"SACH----", 1, 120200, [0, 0]),
-    row(b"SAM-----", 1, 110000, [0, 0]),
-    row(b"SAMF----", 1, 110100, [0, 0]),
-    row(b"SAMFA---", 1, 110102, [0, 0]),
-    row(b"SAMFB---", 1, 110103, [0, 0]),
-    row(b"SAMFC---", 1, 110107, [0, 0]),
-    row(b"SAMFF---", 1, 110104, [0, 0]),
-    row(b"SAMFK---", 1, 110109, [0, 0]),
-    row(b"SAMFQ---", 1, 110300, [0, 0]),
-    row(b"SAMFR---", 1, 110111, [0, 0]),
-    row(b"SAMH----", 1, 110200, [0, 0]),
-    row(b"SF------", 10, 121800, [0, 0]),
-    row(b"SFGC----", 10, 110200, [0, 0]),
-    row(b"SFGS----", 10, 121700, [0, 0]),
-    row(b"SGESR---", 15, 220300, [0, 0]),
-    row(b"SGEVAA--", 15, 120103, [0, 0]),
-    row(b"SGEVAI--", 15, 120101, [0, 0]),
-    row(b"SGEVAT--", 15, 120200, [0, 0]),
-    row(b"SGEVEA--", 15, 130900, [0, 0]),
-    row(b"SGEVEB--", 15, 130100, [0, 0]),
-    row(b"SGEVU---", 15, 140100, [0, 0]),
-    row(b"SGEWA---", 15, 110500, [0, 0]),
-    row(b"SGEWG---", 15, 110600, [0, 0]),
-    row(b"SGEWH---", 15, 110900, [0, 0]),
-    row(b"SGEWMA--", 15, 111100, [0, 0]),
-    row(b"SGEWMAT-", 15, 111100, [0, 0]),
-    row(b"SGEWMS--", 15, 111300, [0, 0]),
-    row(b"SGEWMT--", 15, 111200, [0, 0]),
-    row(b"SGEWO---", 15, 111400, [0, 0]),
-    row(b"SGEWX---", 15, 111600, [0, 0]),
-    row(b"SGEXM---", 15, 210100, [0, 0]),
-    row(b"SGIB----", 20, 120802, [0, 0]),
-    row(b"SGIBA---", 20, 121301, [0, 0]),
-    row(b"SGIBN---", 20, 121309, [0, 0]),
-    row(b"SGIXH---", 20, 120702, [0, 0]),
-    row(b"SGUCA---", 10, 120500, [0, 0]),
-    row(b"SGUCAA--", 10, 120400, [0, 0]),
-    row(b"SGUCAAD-", 10, 120400, [0, 0]),
-    row(b"SGUCAAL-", 10, 120400, [0, 19]),
-    row(b"SGUCAAM-", 10, 120400, [0, 1]),
-    row(b"SGUCAAU-", 10, 120400, [0, 27]),
-    row(b"SGUCAT--", 10, 120500, [0, 0]),
-    row(b"SGUCATA-", 10, 120500, [0, 1]),
-    row(b"SGUCATH-", 10, 120500, [0, 15]),
-    row(b"SGUCATL-", 10, 120500, [0, 19]),
-    row(b"SGUCATM-", 10, 120500, [0, 24]),
-    row(b"SGUCAW--", 10, 120500, [0, 51]),
-    row(b"SGUCD---", 10, 130100, [0, 0]),
-    row(b"SGUCDM--", 10, 130102, [0, 0]),
-    row(b"SGUCDMH-", 10, 130102, [0, 15]),
-    row(b"SGUCDML-", 10, 130102, [0, 19]),
-    row(b"SGUCDMM-", 10, 130102, [0, 24]),
-    row(b"SGUCE---", 10, 140700, [0, 0]),
-    row(b"SGUCECA-", 10, 140700, [0, 1]),
-    row(b"SGUCECT-", 10, 140701, [0, 0]),
-    row(b"SGUCF---", 10, 130300, [0, 0]),
-    row(b"SGUCFHA-", 10, 130300, [0, 1]),
-    row(b"SGUCFHE-", 10, 130301, [0, 0]),
-    row(b"SGUCFHH-", 10, 130300, [0, 15]),
-    row(b"SGUCFHL-", 10, 130300, [0, 19]),
-    row(b"SGUCFHM-", 10, 130300, [0, 24]),
-    row(b"SGUCFHO-", 10, 130300, [0, 27]),
-    row(b"SGUCFM--", 10, 130800, [0, 0]),
-    row(b"SGUCFR--", 10, 130300, [41, 0]),
-    row(b"SGUCFRM-", 10, 130300, [41, 0]),
-    row(b"SGUCFRMR", 10, 130301, [41, 51]),
-    row(b"SGUCFRMS", 10, 130301, [41, 0]),
-    row(b"SGUCFTCM", 10, 130302, [0, 0]),
-    row(b"SGUCI---", 10, 121100, [0, 0]),
-    row(b"SGUCIA--", 10, 121100, [0, 1]),
-    row(b"SGUCII--", 10, 121105, [0, 0]),
-    row(b"SGUCIL--", 10, 121100, [0, 19]),
-    row(b"SGUCIM--", 10, 121104, [0, 0]),
-    row(b"SGUCIO--", 10, 121100, [0, 27]),
-    row(b"SGUCIZ--", 10, 121102, [0, 0]),
-    row(b"SGUCM---", 10, 130700, [0, 0]),
-    row(b"SGUCR---", 10, 121300, [0, 0]),
-    row(b"SGUCRA--", 10, 121300, [0, 1]),
-    row(b"SGUCRL--", 10, 121300, [0, 19]),
-    row(b"SGUCRO--", 10, 121300, [0, 27]),
-    row(b"SGUCRRL-", 10, 120501, [0, 19]),
-    row(b"SGUCRVA-", 10, 120501, [0, 0]),
-    row(b"SGUCRVG-", 10, 121300, [0, 0]),
-    row(b"SGUCS---", 10, 141700, [0, 0]),
-    row(b"SGUCSA--", 10, 120600, [54, 0]),
-    row(b"SGUCSG--", 10, 141700, [0, 0]),
-    row(b"SGUCV---", 10, 120600, [0, 0]),
-    row(b"SGUCVC--", 10, 120700, [0, 0]),
-    row(b"SGUCVF--", 10, 120800, [0, 0]),
-    row(b"SGUCVFA-", 10, 120800, [3, 0]),
-    row(b"SGUCVRA-", 10, 120600, [3, 0]),
-    row(b"SGUCVU--", 10, 121900, [0, 0]),
-    row(b"SGUSM---", 10, 161300, [0, 0]),
-    row(b"SGUSMC--", 10, 161300, [0, 0]),
-    row(b"SGUSMM--", 10, 161400, [0, 0]),
-    row(b"SGUSMMC-", 10, 161400, [0, 0]),
-    row(b"SGUSMMT-", 10, 161400, [0, 0]),
-    row(b"SGUSMT--", 10, 161300, [0, 0]),
-    row(b"SGUST---", 10, 163600, [0, 0]),
-    row(b"SGUSTC--", 10, 163600, [0, 0]),
-    row(b"SGUSTT--", 10, 163600, [0, 0]),
-    row(b"SGUSX---", 10, 161100, [0, 0]),
-    row(b"SGUSXC--", 10, 161100, [0, 0]),
-    row(b"SGUSXH--", 10, 161100, [0, 15]),
-    row(b"SGUSXHC-", 10, 161100, [0, 15]),
-    row(b"SGUSXHT-", 10, 161100, [0, 15]),
-    row(b"SGUSXT--", 10, 161100, [0, 0]),
-    row(b"SGUUA---", 10, 140100, [0, 0]),
-    row(b"SGUUE---", 10, 140800, [0, 0]),
-    row(b"SGUULM--", 10, 141200, [0, 0]),
-    row(b"SGUUM---", 10, 151000, [0, 0]),
-    row(b"SGUUMR--", 10, 151000, [0, 0]),
-    row(b"SGUUMSE-", 10, 150500, [0, 0]),
-    row(b"SGUUMSEC", 10, 150500, [0, 0]),
-    row(b"SGUUMSET", 10, 150500, [0, 0]),
-    row(b"SGUUS---", 10, 111000, [0, 0]),
-    row(b"SSCA----", 30, 120300, [0, 0]),
-    row(b"SSCLCC--", 30, 120202, [0, 0]),
-    row(b"SSCLCV--", 30, 120100, [0, 0]),
-    row(b"SSCLDD--", 30, 120203, [0, 0]),
-    row(b"SSCLFF--", 30, 120204, [0, 0]),
-    row(b"SSCM----", 30, 120400, [0, 0]),
-    row(b"SSCP----", 30, 120500, [0, 0]),
-    row(b"SSXM----", 30, 140100, [0, 0]),
-];
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -364,6 +260,37 @@ mod tests {
         let code = SymbolCode::parse("SFGPEZZZ--MO---").expect("a frame");
         assert_eq!((code.set, code.entity), (SymbolSet::LandEquipment, 0));
         assert_eq!(code.unknown_function, Some(*b"EZZZ--"));
+    }
+
+    #[test]
+    fn functions_ascend_so_that_they_are_found() {
+        assert!(FUNCTIONS.windows(2).all(|pair| pair[0].letters < pair[1].letters));
+    }
+
+    #[test]
+    fn every_function_comes_back_as_letters_that_mean_the_same() {
+        for (row, identity) in FUNCTIONS.iter().zip(IDENTITIES.iter().cycle()) {
+            let [scheme, dimension, function @ ..] = row.letters;
+            let letters: Vec<u8> =
+                [scheme, identity.0, dimension, b'P'].into_iter().chain(function).collect();
+            let letters = String::from_utf8(letters).expect("letters") + "-----";
+            let code = SymbolCode::parse(&letters).expect(&letters);
+            let back = code.letters().expect(&letters);
+            assert_eq!(SymbolCode::parse(&back), Ok(code), "{letters} {back}");
+        }
+    }
+
+    #[test]
+    fn roles_echelons_and_mobilities_come_back_as_letters() {
+        for letters in
+            ["SFGPUCI----D---", "SHGPUCA---AH---", "SNGAEVAT--MQ---", "SJGPUCIZ--GF---", "SFGPIB----HB---"]
+        {
+            let back = SymbolCode::parse(letters).expect(letters).letters();
+            assert_eq!(back.as_deref(), Some(letters));
+        }
+        // 2525C has no simulation and no headquarters of equipment that moves.
+        assert_eq!(SymbolCode::parse("10231000151211000000").expect("a code").letters(), None);
+        assert_eq!(SymbolCode::parse("10031502331202000000").expect("a code").letters(), None);
     }
 
     #[test]

@@ -12,6 +12,7 @@ pub mod fields;
 pub mod frame;
 pub mod graphic;
 mod letter_code;
+mod letter_functions;
 pub mod modifiers;
 mod pieces;
 pub mod symbol;

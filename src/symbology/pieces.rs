@@ -1,18 +1,28 @@
 //! Drawings that several entities share, by name, and those whose shape the frame decides: an icon that fills its frame
 //! touches the frame's edge, wherever that is.
 
+mod land;
+
 use crate::frame::FrameShape;
 
-/// The drawing of a piece in a frame of a shape; empty for a name that is none.
-pub(super) fn piece(name: &str, shape: FrameShape) -> &'static str {
-    match SHARED.iter().find(|row| row.0 == name) {
-        Some((_, drawing)) => drawing,
-        None => FRAMED.iter().find(|row| row.0 == name).map_or("", |(_, drawings)| drawings[column(shape)]),
-    }
+/// The drawing of a piece in a frame of a shape; `None` for a name that is none.
+pub(super) fn piece(name: &str, shape: FrameShape) -> Option<&'static str> {
+    let shared = SHARED.iter().flat_map(|table| *table).find(|row| row.0 == name);
+    let framed = || FRAMED.iter().flat_map(|table| *table).find(|row| row.0 == name);
+    shared.map(|row| row.1).or_else(|| framed().map(|row| row.1[column(shape)]))
 }
 
+/// The tables of pieces that are the same in every frame, and of those that the frame decides.
+const SHARED: &[&[SharedPiece]] = &[&COMMON, land::SHARED];
+const FRAMED: &[&[FramedPiece]] = &[&FRAME_FILLING, land::FRAMED];
+
+/// Name and drawing.
+type SharedPiece = (&'static str, &'static str);
+/// Name and drawings: in a rectangle (circle, hexagon, arch), a diamond, a square and a quatrefoil.
+type FramedPiece = (&'static str, [&'static str; 4]);
+
 /// The same in every frame.
-const SHARED: [(&str, &str); 11] = [
+const COMMON: [SharedPiece; 11] = [
     ("track", "M75,80 L125,80 A125,100 20,20 -90 90 L75,120 A75,100 20,20 90 270 Z"),
     ("rotor", "fill M60,85 L100,99 L140,85 L140,115 L100,101 L60,115 Z"),
     ("unmanned", "fill M60,84 L100,103.5 L140,84 L140,92 L100,116.5 L60,92 Z"),
@@ -27,7 +37,7 @@ const SHARED: [(&str, &str); 11] = [
 ];
 
 /// In a rectangle (or a circle), a diamond, a square and a quatrefoil.
-const FRAMED: [(&str, [&str; 4]); 11] = [
+const FRAME_FILLING: [FramedPiece; 11] = [
     (
         "infantry",
         [
@@ -95,5 +105,22 @@ fn column(shape: FrameShape) -> usize {
         FrameShape::Square | FrameShape::OpenBox(_) => 2,
         FrameShape::Quatrefoil | FrameShape::Trefoil(_) => 3,
         FrameShape::Rectangle | FrameShape::Circle | FrameShape::Hexagon | FrameShape::Arch(_) => 0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn every_piece_has_a_name_of_its_own() {
+        let shared = SHARED.iter().flat_map(|table| *table).map(|row| row.0);
+        let framed = FRAMED.iter().flat_map(|table| *table).map(|row| row.0);
+        let mut names = BTreeSet::new();
+        for name in shared.chain(framed) {
+            assert!(names.insert(name), "{name} is there twice");
+        }
     }
 }

@@ -17,7 +17,7 @@ use crate::drawing::{BLACK, PathStep, SymbolMark, SymbolPen, parse, path};
 use crate::entities;
 use crate::fields::{SymbolContext, SymbolIdentity, SymbolSet, SymbolStatus};
 use crate::frame::{FRAME_LINE, FrameOpening, FrameShape, SymbolBox, fill};
-use crate::modifiers::modifiers;
+use crate::modifiers;
 
 /// The light dashes over the frame of what is only assumed, and of what is planned: lengths of dash and gap.
 const ASSUMED_DASH: [f32; 2] = [4.0, 4.0];
@@ -25,6 +25,13 @@ const PLANNED_DASH: [f32; 2] = [8.0, 12.0];
 /// Between the marks of mobility and the condition bar, besides its own gap.
 const MOBILITY_GAP: f32 = 2.0;
 const WHITE: [u8; 3] = [255, 255, 255];
+/// Subtypes of any type: headquarters element; support of a division and below, of a corps, of a theater.
+const SPECIAL_ELEMENTS: [(u32, &str); 4] = [
+    (95, "@staff-line"),
+    (96, "@division-and-below-support"),
+    (97, "@corps-support"),
+    (98, "@theater-support"),
+];
 /// In the frame of a thing of an unknown set.
 const UNKNOWN_SET: &str = "text 80 ?";
 
@@ -100,28 +107,11 @@ impl MilitarySymbol {
 
 /// The icon and its modifiers; what is missing is noted.
 fn icon(code: &SymbolCode, shape: FrameShape, notes: &mut Vec<String>) -> Vec<SymbolMark> {
-    let mut drawings = Vec::new();
-    if code.set == SymbolSet::Unknown {
-        drawings.push(UNKNOWN_SET);
-    }
-    if let Some(function) = code.unknown_function {
-        let function = String::from_utf8_lossy(&function).into_owned();
-        notes.push(format!("the function {function} of 2525C is not drawn: the frame stands alone"));
-    } else if code.entity != 0 {
-        match entities::find(code.set, code.entity) {
-            Some(entity) => drawings.push(entity.drawing),
-            None => notes.push(format!(
-                "the entity {:06} of the set {:02} ({}) is not drawn: the frame stands alone",
-                code.entity,
-                code.set.number(),
-                code.set.name()
-            )),
-        }
-    }
+    let drawn = |drawing: &str| parse(drawing, shape).unwrap_or_default();
+    let mut above: Vec<SymbolMark> = Vec::new();
     for (sector, number) in [(1, code.modifiers[0]), (2, code.modifiers[1])] {
-        let found = modifiers(code.set, sector).iter().find(|row| row.code == u32::from(number));
-        match found {
-            Some(modifier) => drawings.push(modifier.drawing),
+        match modifiers::find(code, sector) {
+            Some(modifier) => above.extend(drawn(modifier.drawing)),
             None if number == 0 => {}
             None => notes.push(format!(
                 "the sector {sector} modifier {number:02} of the set {:02} ({}) is not drawn",
@@ -130,7 +120,39 @@ fn icon(code: &SymbolCode, shape: FrameShape, notes: &mut Vec<String>) -> Vec<Sy
             )),
         }
     }
-    drawings.iter().filter_map(|drawing| parse(drawing, shape)).flatten().collect()
+    let mut marks = Vec::new();
+    if code.set == SymbolSet::Unknown {
+        marks.extend(drawn(UNKNOWN_SET));
+    }
+    if let Some(function) = code.unknown_function {
+        let function = String::from_utf8_lossy(&function).into_owned();
+        notes.push(format!("the function {function} of 2525C is not drawn: the frame stands alone"));
+    } else if code.entity != 0 {
+        let (offset, factor) = modifiers::place_of_icon(code);
+        match drawing_of(code) {
+            Some((icon, line)) => {
+                marks.extend(drawn(icon).into_iter().map(|mark| mark.placed(offset, factor)));
+                marks.extend(line.map(drawn).unwrap_or_default());
+            }
+            None => notes.push(format!(
+                "the entity {:06} of the set {:02} ({}) is not drawn: the frame stands alone",
+                code.entity,
+                code.set.number(),
+                code.set.name()
+            )),
+        }
+    }
+    marks.extend(above);
+    marks
+}
+
+/// The drawing of the entity, and the line of a special element of it: a headquarters, or support of a level of command.
+fn drawing_of(code: &SymbolCode) -> Option<(&'static str, Option<&'static str>)> {
+    if let Some(entity) = entities::find(code.set, code.entity) {
+        return Some((entity.drawing, None));
+    }
+    let line = SPECIAL_ELEMENTS.iter().find(|row| row.0 == code.entity % 100)?.1;
+    Some((entities::find(code.set, code.entity / 100 * 100)?.drawing, Some(line)))
 }
 
 fn frame_dash(code: &SymbolCode) -> Option<[f32; 2]> {
@@ -249,21 +271,57 @@ mod tests {
     fn every_drawing_is_one_in_every_frame() {
         let shapes = [FrameShape::Rectangle, FrameShape::Diamond, FrameShape::Square, FrameShape::Quatrefoil];
         for set in entities::SETS {
-            let rows = entities::entities(set).iter().chain(modifiers(set, 1)).chain(modifiers(set, 2));
+            let rows = entities::entities(set)
+                .iter()
+                .chain(modifiers::modifiers(set, 1))
+                .chain(modifiers::modifiers(set, 2));
+            let rows = rows.chain(modifiers::changed(set, 1)).chain(modifiers::changed(set, 2));
             for (row, shape) in rows.flat_map(|row| shapes.map(|shape| (row, shape))) {
-                assert!(parse(row.drawing, shape).is_some_and(|marks| !marks.is_empty()), "{}", row.name);
+                let marks = parse(row.drawing, shape).map(|marks| marks.len());
+                // An entity whose symbol is the frame alone has no drawing.
+                assert_eq!(marks.is_some_and(|count| count > 0), !row.drawing.is_empty(), "{}", row.name);
             }
         }
     }
 
     #[test]
     fn an_entity_that_is_not_drawn_leaves_its_frame_and_a_note_that_names_it() {
-        let unknown = symbol("10031500001205000000");
-        assert!(unknown.notes[0].contains("120500 of the set 15 (land equipment)"), "{:?}", unknown.notes);
+        let unknown = symbol("10031500001299000000");
+        assert!(unknown.notes[0].contains("129900 of the set 15 (land equipment)"), "{:?}", unknown.notes);
         assert_eq!(unknown.bounds, symbol("10031500000000000000").bounds);
-        assert_eq!(symbol("10031000001211009900").notes.len(), 1);
+        assert_eq!(symbol("10031000001211000099").notes.len(), 1);
         assert!(symbol("10031000001211000319").notes.is_empty());
         assert!(symbol("SFGPEZZZ--MO---").notes[0].contains("EZZZ--"));
+    }
+
+    #[test]
+    fn a_headquarters_element_is_drawn_over_the_icon_of_its_type() {
+        let (infantry, line) = (symbol("10031000001211000000"), parse("@staff-line", FrameShape::Rectangle));
+        let element = symbol("10031000001211950000");
+        assert!(element.notes.is_empty() && element.marks.len() == infantry.marks.len() + 1);
+        assert!(line.is_some_and(|line| element.marks.contains(&line[0])));
+        for (_, drawing) in SPECIAL_ELEMENTS {
+            assert!(parse(drawing, FrameShape::Diamond).is_some(), "{drawing}");
+        }
+    }
+
+    #[test]
+    fn equipment_makes_way_for_modifiers_and_its_lines_stay_as_wide() {
+        let (tank, modified) = (symbol("10031500001202000000"), symbol("10031500001202000100"));
+        let (SymbolMark::Shape { stroke: whole, .. }, SymbolMark::Shape { stroke: small, .. }) =
+            (&tank.marks[1], &modified.marks[1])
+        else {
+            panic!("a tank is lines")
+        };
+        assert_eq!(whole, small);
+        assert_eq!(modified.marks[1], tank.marks[1].clone().placed(Vec2::new(0.0, 10.0), 0.7));
+    }
+
+    #[test]
+    fn a_number_means_by_edition_what_it_means_there() {
+        assert_eq!(symbol("10031000000000008100").notes, symbol("13031000000000008100").notes);
+        assert_ne!(symbol("10031000000000008100").marks, symbol("13031000000000008100").marks);
+        assert_eq!(symbol("10031000000000008000").marks, symbol("13031000000000008000").marks);
     }
 
     #[test]

@@ -87,6 +87,11 @@ impl LayerBuilder {
         }
     }
 
+    /// Returns the system of the coordinates.
+    pub fn crs(&self) -> &Crs {
+        &self.crs
+    }
+
     /// Adds the file's next feature. One without a usable shape, or with coordinates that cannot be of the layer's
     /// system, is counted and left out.
     pub fn add(&mut self, parts: FeatureParts, properties: Properties) {

@@ -2,6 +2,11 @@
 
 mod broken_records;
 mod builder;
+<<<<<<< HEAD
+mod cot;
+=======
+pub mod cityjson;
+>>>>>>> design
 mod encoding;
 pub mod error;
 pub mod feature;
@@ -11,11 +16,23 @@ mod geojson;
 #[cfg(feature = "vector-db")]
 mod geopackage;
 mod gpx;
+mod ground_shape;
 pub mod hints;
 mod kml;
+<<<<<<< HEAD
+mod milx;
+pub mod moment;
+mod msdl;
+mod nvg;
+mod orbat;
+=======
+mod landxml;
+>>>>>>> design
 mod osm;
+pub mod overlay_schema;
 pub mod read;
 mod rings;
 mod shapefile;
+mod svg_style;
 mod tally;
 mod xml;

@@ -3,23 +3,29 @@
 //! | format | layers | coordinate system |
 //! |---|---|---|
 //! | GeoJSON, also one feature to a line or as a text sequence | one | its `crs` member, else EPSG:4326 |
+//! | CityJSON, also one feature to a line | one: footprints | its reference system |
 //! | ESRI shapefile, also zipped | one; of an archive the names of its `.shp` files | its `.prj` |
 //! | GeoPackage (feature `vector-db`) | its tables and views of features | its own |
 //! | FlatGeobuf | one | its own |
 //! | GPX | waypoints, routes, tracks; route_points, track_points | EPSG:4326 |
 //! | KML, KMZ | the names of its folders; all where none is requested | EPSG:4326 |
+//! | Cursor-on-Target events, also of a data package | one | EPSG:4326 |
+//! | MilX, MSDL, NVG | the names of its layers or groups, of MSDL units, equipment, installations, graphics; all where none is requested | EPSG:4326 |
+//! | scenarios of ORBAT Mapper | units, and the names of its layers; all where none is requested | EPSG:4326 |
+//! | LandXML | alignments; stations, points, plan_features | its EPSG code |
 //! | OpenStreetMap XML and PBF | points, lines, multipolygons; roads, railways, waterways, water, buildings | EPSG:4326 |
 //!
 //! Any of them may be packed by gzip.
 
 use std::borrow::Cow;
 
+use crate::cityjson::CityModel;
 use crate::error::VectorError;
 use crate::feature::VectorLayer;
 #[cfg(feature = "vector-db")]
 use crate::geopackage;
 use crate::hints::VectorHints;
-use crate::{flatgeobuf, geojson, gpx, kml, osm, shapefile};
+use crate::{cityjson, cot, flatgeobuf, geojson, gpx, kml, landxml, milx, msdl, nvg, orbat, osm, shapefile};
 use sandtable_base::archive::{self, ArchiveError, ZipReader};
 use sandtable_base::limits::UNPACKED_VECTOR_BYTES;
 
@@ -40,6 +46,22 @@ const SMALL_BYTES: u64 = 16 << 20;
 /// # Errors
 /// [`VectorError`]; for a format that cannot be read with the command that converts it.
 pub fn read(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
+    read_file(name, bytes, hints).map(|file| file.layer)
+}
+
+/// A vector file as read.
+pub struct VectorFile {
+    /// Its features.
+    pub layer: VectorLayer,
+    /// The surfaces of its objects, of CityJSON.
+    pub model: Option<CityModel>,
+}
+
+/// [`read`] with what a file holds besides features.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_file(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorFile, VectorError> {
     if archive::is_gzip(bytes) {
         let inner = name.strip_suffix(".gz").unwrap_or(name);
         return read_unpacked(
@@ -66,9 +88,19 @@ fn of_unpacking(error: ArchiveError) -> VectorError {
     }
 }
 
-fn read_unpacked(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
-    match format_of(name, bytes) {
+fn read_unpacked(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorFile, VectorError> {
+    let layer = match format_of(name, bytes) {
         VectorFormat::GeoJson => single(name, hints, geojson::read(bytes, hints)),
+        VectorFormat::Cot => single(name, hints, cot::read(bytes, hints)),
+        VectorFormat::MilX => milx::read(bytes, hints),
+        VectorFormat::Msdl => msdl::read(bytes, hints),
+        VectorFormat::Nvg => nvg::read(bytes, hints),
+        VectorFormat::Orbat => orbat::read(bytes, hints),
+        VectorFormat::CityJson => {
+            hints.choose_layer(&[stem(name)])?;
+            let (layer, model) = cityjson::read(bytes, hints)?;
+            return Ok(VectorFile { layer, model: Some(model) });
+        }
         VectorFormat::GeoJsonSequence => single(name, hints, geojson::read_sequence(bytes, hints)),
         VectorFormat::Shapefile => {
             let companion = |extension: &str| companion(name, extension, hints);
@@ -91,11 +123,13 @@ fn read_unpacked(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<Vector
         VectorFormat::FlatGeobuf => single(name, hints, flatgeobuf::read(bytes, hints)),
         VectorFormat::Gpx => gpx::read(bytes, hints),
         VectorFormat::Kml => kml::read(bytes, hints),
+        VectorFormat::LandXml => landxml::read(bytes, hints),
         VectorFormat::OsmXml => osm::read_xml(bytes, hints),
         VectorFormat::OsmPbf => osm::read_pbf(bytes, hints),
         VectorFormat::Other(format) => Err(VectorError::OtherFormat { format, command: conversion(name) }),
         VectorFormat::Unknown => Err(VectorError::UnknownFormat),
-    }
+    };
+    Ok(VectorFile { layer: layer?, model: None })
 }
 
 /// Returns the layer of a file that holds one, which may be requested by the file's name.
@@ -122,8 +156,8 @@ fn companion(name: &str, extension: &str, hints: &VectorHints) -> Option<Vec<u8>
 }
 
 /// Reads an archive: a KMZ, zipped shapefiles, or one file of another format.
-fn read_zip(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
-    const OTHERS: [&str; 6] = [".geojson", ".json", ".gpkg", ".fgb", ".gpx", ".osm"];
+fn read_zip(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorFile, VectorError> {
+    const OTHERS: [&str; 8] = [".geojson", ".json", ".gpkg", ".fgb", ".gpx", ".osm", ".milxly", ".nvg"];
     let zip = ZipReader::open(bytes)?;
     let limit = most_unpacked(bytes);
     let members = |extensions: &[&str]| {
@@ -141,6 +175,15 @@ fn read_zip(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer
         let companions = |name: &str| zip.read(name, limit).ok();
         let hints = VectorHints { layer: None, companions: &companions, ..*hints };
         return read_unpacked(member, &zip.read(member, limit).map_err(of_unpacking)?, &hints);
+    }
+    // A data package has a folder for each event.
+    let events = members(&[".cot"]);
+    if !events.is_empty() {
+        let mut all = Vec::new();
+        for member in events {
+            all.extend(zip.read(member, limit.saturating_sub(all.len() as u64)).map_err(of_unpacking)?);
+        }
+        return read_unpacked(name, &all, hints);
     }
     match members(&OTHERS)[..] {
         [only] => read_unpacked(only, &zip.read(only, limit).map_err(of_unpacking)?, hints),
@@ -161,11 +204,18 @@ fn has_extension(name: &str, extensions: &[&str]) -> bool {
 enum VectorFormat {
     GeoJson,
     GeoJsonSequence,
+    CityJson,
     Shapefile,
     GeoPackage,
     FlatGeobuf,
     Gpx,
     Kml,
+    Cot,
+    MilX,
+    Msdl,
+    Nvg,
+    Orbat,
+    LandXml,
     OsmXml,
     OsmPbf,
     /// Known, but not read.
@@ -187,6 +237,8 @@ fn format_of(name: &str, bytes: &[u8]) -> VectorFormat {
         () if osm::is_pbf(bytes) => VectorFormat::OsmPbf,
         () if bytes.starts_with(b"PAR1") => VectorFormat::Other("GeoParquet"),
         () => xml_format(bytes).or_else(|| format_by_name(name)).unwrap_or_else(|| match text.first() {
+            Some(_) if orbat::is_orbat(text) => VectorFormat::Orbat,
+            Some(b'{') if cityjson::is_cityjson(text) => VectorFormat::CityJson,
             Some(_) if geojson::is_sequence(text) => VectorFormat::GeoJsonSequence,
             Some(b'{') => VectorFormat::GeoJson,
             _ => VectorFormat::Unknown,
@@ -212,6 +264,11 @@ fn xml_format(bytes: &[u8]) -> Option<VectorFormat> {
     Some(match () {
         () if holds(b"<kml") || holds(b":kml") || holds(b"<Placemark") => VectorFormat::Kml,
         () if holds(b"<gpx") => VectorFormat::Gpx,
+        () if holds(b"<MilitaryScenario") || holds(b":MilitaryScenario") => VectorFormat::Msdl,
+        () if holds(b"<MilXDocument") || holds(b"<MilXLayer") => VectorFormat::MilX,
+        () if holds(b"<nvg") => VectorFormat::Nvg,
+        () if holds(b"<event") && holds(b"uid=") => VectorFormat::Cot,
+        () if holds(b"<LandXML") => VectorFormat::LandXml,
         () if holds(b"<osm") => VectorFormat::OsmXml,
         () if holds(b"gml") => VectorFormat::Other("GML"),
         () => VectorFormat::Other("XML of an unknown kind"),

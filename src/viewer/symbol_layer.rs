@@ -47,6 +47,7 @@ impl SymbolPicture {
                 symbol: symbol.symbol.clone(),
                 texts: symbol.texts.clone(),
                 name: symbol.name.clone(),
+                reference: None,
                 anchor_px: anchor,
                 direction_px: None,
                 depth_m: 1.0,

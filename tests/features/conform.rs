@@ -183,3 +183,60 @@ fn a_real_town_s_roads_keep_their_grade_and_agree_where_they_meet() {
         assert!(row.highest_fill <= 12.0 + ROUNDED_M && row.deepest_cut <= 15.0 + ROUNDED_M, "{row:?}");
     }
 }
+
+/// A road of LandXML 100 m north of the hills' corner: 600 m east, up at 12 %, then down.
+const ALIGNMENT: &str = "<LandXML><Units><Metric linearUnit=\"meter\"/></Units><CoordinateSystem epsgCode=\"32616\"/>\
+    <Alignments><Alignment name=\"relief road\" staStart=\"1000\"><CoordGeom><Line><Start>100 60</Start><End>100 660</End></Line>\
+    </CoordGeom><Profile><ProfAlign name=\"FG\"><PVI>1000 110</PVI><ParaCurve length=\"120\">1300 146</ParaCurve>\
+    <PVI>1600 120</PVI></ProfAlign></Profile></Alignment></Alignments></LandXML>";
+
+#[test]
+fn a_road_keeps_the_profile_of_its_file_whatever_its_grade_and_others_meet_it_there() {
+    let scratch = Scratch::new();
+    let at = |index: u32| (f64::from(index % 81) * 10.0, f64::from(60 - index / 81) * 10.0);
+    let heights: Vec<String> = (0..81 * 61).map(at).map(|(x, y)| format!("{:.4}", hills(x, y))).collect();
+    let grid =
+        "ncols 81\nnrows 61\nxllcorner -5\nyllcorner -5\ncellsize 10\n".to_owned() + &heights.join(" ");
+    scratch.write("ground.asc", grid);
+    scratch.write("road.xml", ALIGNMENT.to_owned());
+    let text = |profile: &str| {
+        format!(
+            "[terrain]\ndem = \"ground.asc\"\ncrs = \"EPSG:32616\"\n[[road]]\nfile = \"road.xml\"\nlayer = \"alignments\"\nwidth = 8\n{profile}\n\
+             [[road]]\nname = \"side\"\nprofile = \"conform\"\npoints = [[360, 100], [360, 400]]\n"
+        )
+    };
+    let own = scene(&scratch.at("scene.toml"), &text("profile = \"own\"")).expect("a scene");
+    let design =
+        &own.profiles.iter().find(|profile| profile.name == "relief road").expect("it conforms").design;
+    // Up, over the crest 120 · 0.2067 / 8 m below the intersection, and down.
+    let crest = 146.0 - 120.0 * (0.12 + 26.0 / 300.0) / 8.0;
+    for (station, level) in
+        [(0.0, 110.0), (240.0, 138.8), (300.0, crest), (400.0, 146.0 - 26.0 / 3.0), (600.0, 120.0)]
+    {
+        assert!(
+            (design.at(station) - level).abs() < 2e-3,
+            "{station}: {} and not {level}",
+            design.at(station)
+        );
+        if station > 0.0 && station < 600.0 {
+            let on_ground = ground(&own, DVec2::new(60.0 + station, 100.0));
+            assert!(
+                (on_ground - level).abs() < 0.02,
+                "{station}: the ground at {on_ground}, the road at {level}"
+            );
+        }
+    }
+    let side = own.profiles.iter().find(|profile| profile.name == "side").expect("it conforms");
+    assert!((side.design.at(0.0) - crest).abs() < 0.01, "{}", side.design.at(0.0));
+    let designed = scene(&scratch.at("scene.toml"), &text("profile = \"conform\"")).expect("a scene");
+    let gentle = designed.profiles.iter().find(|profile| profile.name == "relief road").expect("it conforms");
+    assert!(steepest(gentle) < 0.0801, "of its own accord it is no steeper than 8 %");
+    let without = ALIGNMENT.replace("ProfAlign", "Other");
+    scratch.write("road.xml", without);
+    let told = scene(&scratch.at("scene.toml"), &text("profile = \"own\"")).expect("a scene");
+    assert!(
+        told.notes().iter().any(|note| note.contains("1 road without elevations all along")),
+        "{:?}",
+        told.notes()
+    );
+}

@@ -10,6 +10,7 @@ mod buildings;
 mod check_built;
 mod check_data;
 mod check_walk;
+mod city_buildings;
 mod conform;
 mod earthworks;
 mod fences;

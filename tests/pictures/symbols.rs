@@ -1,6 +1,8 @@
-//! Military symbols against those of npm milsymbol, from the table that tests/tools/milsymbol_table.mjs writes.
+//! Military symbols against those of npm milsymbol, from the tables that tests/tools/milsymbol_table.mjs writes: a file for
+//! each symbol set in tests/symbology/milsymbol/.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 
 use glam::Vec2;
 use sandtable_annotate::annotation::{Annotations, PictureSymbol, SymbolHeight};
@@ -9,41 +11,82 @@ use sandtable_draw::color::Srgba;
 use sandtable_draw::pixels::Pixels;
 use sandtable_symbology::code::SymbolCode;
 use sandtable_symbology::entities::{SETS, entities};
+use sandtable_symbology::modifiers::modifiers;
 use sandtable_symbology::symbol::MilitarySymbol;
-
-const TABLE: &str = include_str!("../symbology/milsymbol.txt");
 
 /// What the table draws, as its head says: pixels per unit, the corner and the size of the picture in units.
 const PIXELS_PER_UNIT: f32 = 0.64;
-const CORNER: Vec2 = Vec2::new(-50.0, -60.0);
-const SIZE: (u32, u32) = (192, 218);
+const CORNER: Vec2 = Vec2::new(-50.0, -62.5);
+const SIZE: (u32, u32) = (192, 220);
 /// The standard deviation of the blur in pixels, and the darkness above which a pixel is dark.
 const BLUR: f64 = 2.0;
 const DARK: f64 = 0.25;
 
-/// A line of the table.
+/// A line of a table.
 struct OracleSymbol {
-    code: &'static str,
+    code: String,
     /// Left, top, right, bottom; units.
     bounds: [f32; 4],
     anchor: Vec2,
-    /// In hexadecimal; `None` where only box and anchor count.
-    dark: Option<&'static str>,
+    /// Of every second pixel of every second row; `None` where only box and anchor count.
+    dark: Option<Vec<bool>>,
 }
 
-fn table() -> Vec<OracleSymbol> {
-    let lines = TABLE.lines().filter(|line| !line.starts_with('#'));
-    let row = |line: &'static str| {
+/// The tables by name, such as `10` of land units.
+fn tables() -> BTreeMap<String, Vec<OracleSymbol>> {
+    let folder = Path::new(env!("SANDTABLE_ROOT")).join("tests/symbology/milsymbol");
+    let files = std::fs::read_dir(&folder).expect("a folder").map(|entry| entry.expect("a file").path());
+    let named = |file: PathBuf| Some((file.file_stem()?.to_str()?.to_owned(), table(&file)));
+    files.filter_map(named).collect()
+}
+
+fn table(file: &Path) -> Vec<OracleSymbol> {
+    let text = std::fs::read_to_string(file).expect("a table");
+    let mut frames: BTreeMap<String, Vec<bool>> = BTreeMap::new();
+    let mut last = "";
+    let mut rows = Vec::new();
+    for line in text.lines().filter(|line| !line.starts_with('#')) {
         let words: Vec<&str> = line.split(' ').collect();
         let number = |index: usize| words[index].parse::<f32>().expect("a number");
-        OracleSymbol {
-            code: words[0],
+        let key = words[0][3..6].to_owned();
+        let runs = if words[7] == "=" { last } else { words[7] };
+        let dark = (runs != "-").then(|| match frames.get(&key) {
+            Some(frame) => flipped(frame.clone(), runs),
+            None => flipped(vec![false; (SIZE.0.div_ceil(2) * SIZE.1.div_ceil(2)) as usize], runs),
+        });
+        if let Some(dark) = &dark {
+            last = runs;
+            frames.entry(key).or_insert_with(|| dark.clone());
+        }
+        rows.push(OracleSymbol {
+            code: words[0].to_owned(),
             bounds: [1, 2, 3, 4].map(number),
             anchor: Vec2::new(number(5), number(6)),
-            dark: Some(words[7]).filter(|dark| *dark != "-"),
-        }
+            dark,
+        });
+    }
+    rows
+}
+
+/// The pixels with every second run turned.
+fn flipped(mut pixels: Vec<bool>, runs: &str) -> Vec<bool> {
+    let digit = |letter: u8| match letter {
+        b'A'..=b'Z' => letter - b'A',
+        b'a'..=b'z' => letter - b'a' + 26,
+        b'0'..=b'9' => letter - b'0' + 52,
+        b'+' => 62,
+        _ => 63,
     };
-    lines.map(row).collect()
+    let (mut at, mut turns, mut length, mut shift) = (0, false, 0, 0);
+    for digit in runs.bytes().map(digit) {
+        length |= usize::from(digit % 32) << shift;
+        shift += 5;
+        if digit < 32 {
+            pixels[at..at + length].iter_mut().for_each(|pixel| *pixel ^= turns);
+            (at, turns, length, shift) = (at + length, !turns, 0, 0);
+        }
+    }
+    pixels
 }
 
 fn symbol(code: &str) -> MilitarySymbol {
@@ -57,6 +100,7 @@ fn darkness(symbol: &MilitarySymbol) -> Vec<f64> {
         symbol: symbol.clone(),
         texts: Vec::new(),
         name: String::new(),
+        reference: None,
         anchor_px: (symbol.anchor - CORNER) * PIXELS_PER_UNIT,
         direction_px: None,
         depth_m: 1.0,
@@ -93,60 +137,81 @@ fn blurred(dark: &[f64]) -> Vec<f64> {
 }
 
 /// The share of the dark pixels of either that are dark in both.
-fn overlap(dark: &[f64], row: &OracleSymbol, bits: &str) -> f64 {
-    let [left, top, right, bottom] = row.bounds;
-    let pixel = |value: f32, from: f32| ((value - from) * PIXELS_PER_UNIT).floor() as usize;
-    let columns: Vec<usize> =
-        (pixel(left - 4.0, CORNER.x)..pixel(right + 4.0, CORNER.x)).step_by(2).collect();
-    let rows = (pixel(top - 4.0, CORNER.y)..pixel(bottom + 4.0, CORNER.y)).step_by(2);
-    let ours = rows.flat_map(|y| columns.iter().map(move |x| dark[y * SIZE.0 as usize + x] > DARK));
-    let digits = bits.chars().map(|digit| digit.to_digit(16).expect("hexadecimal"));
-    let theirs = digits.flat_map(|digit| (0..4).rev().map(move |bit| digit >> bit & 1 == 1));
+fn overlap(dark: &[f64], theirs: &[bool]) -> f64 {
+    let (width, height) = (SIZE.0 as usize, SIZE.1 as usize);
+    let ours =
+        (0..height).step_by(2).flat_map(|y| (0..width).step_by(2).map(move |x| dark[y * width + x] > DARK));
     let (mut both, mut either) = (0, 0);
-    for (ours, theirs) in ours.zip(theirs) {
+    for (ours, &theirs) in ours.zip(theirs) {
         both += usize::from(ours && theirs);
         either += usize::from(ours || theirs);
     }
     f64::from(both as u32) / f64::from(either.max(1) as u32)
 }
 
+/// What is wrong with a symbol, and how well it overlaps.
+fn compared(row: &OracleSymbol) -> (Vec<String>, f64) {
+    let symbol = symbol(&row.code);
+    let mut wrong: Vec<String> = symbol.notes.iter().map(|note| format!("{}: {note}", row.code)).collect();
+    let (min, max) = (symbol.bounds.min, symbol.bounds.max);
+    let off = [min.x, min.y, max.x, max.y].into_iter().zip(row.bounds).map(|(a, b)| (a - b).abs());
+    let off = off.fold(0.0, f32::max);
+    if off > 2.0 {
+        wrong.push(format!("{}: box off by {off}", row.code));
+    }
+    if symbol.anchor.distance(row.anchor) > 1.0 {
+        wrong.push(format!("{}: anchor at {}, not {}", row.code, symbol.anchor, row.anchor));
+    }
+    let overlap = row.dark.as_ref().map_or(1.0, |dark| overlap(&darkness(&symbol), dark));
+    if overlap < 0.8 {
+        wrong.push(format!("{}: overlap {overlap:.3}", row.code));
+    }
+    (wrong, overlap)
+}
+
+/// `SANDTABLE_SYMBOL_SETS="10 15"` looks at these tables alone.
 #[test]
 #[ignore = "slow: draws every symbol of the oracle"]
 fn symbols_have_the_boxes_anchors_and_dark_pixels_of_milsymbol() {
-    let (mut wrong, mut least) = (Vec::new(), (1.0, ""));
-    for row in table() {
-        let symbol = symbol(row.code);
-        let (min, max) = (symbol.bounds.min, symbol.bounds.max);
-        let off = [min.x, min.y, max.x, max.y].into_iter().zip(row.bounds).map(|(a, b)| (a - b).abs());
-        let off = off.fold(0.0, f32::max);
-        if off > 2.0 {
-            wrong.push(format!("{}: box off by {off}", row.code));
-        }
-        if symbol.anchor.distance(row.anchor) > 1.0 {
-            wrong.push(format!("{}: anchor at {}, not {}", row.code, symbol.anchor, row.anchor));
-        }
-        if let Some(bits) = row.dark {
-            let overlap = overlap(&darkness(&symbol), &row, bits);
+    let wanted = std::env::var("SANDTABLE_SYMBOL_SETS").ok();
+    let is_wanted = |name: &str| wanted.as_ref().is_none_or(|names| names.split(' ').any(|one| one == name));
+    let (mut wrong, mut count) = (Vec::new(), 0);
+    for (name, rows) in tables().into_iter().filter(|(name, _)| is_wanted(name)) {
+        let mut least = (1.0, "");
+        for row in &rows {
+            let (reasons, overlap) = compared(row);
+            wrong.extend(reasons);
             if overlap < least.0 {
-                least = (overlap, row.code);
-            }
-            if overlap < 0.8 {
-                wrong.push(format!("{}: overlap {overlap:.3}", row.code));
+                least = (overlap, &row.code);
             }
         }
+        println!("{name}: {} symbols, least overlap {:.3} ({})", rows.len(), least.0, least.1);
+        count += rows.len();
     }
-    println!("least overlap {:.3} ({})", least.0, least.1);
-    assert!(wrong.is_empty(), "{} of {}:\n{}", wrong.len(), table().len(), wrong.join("\n"));
+    assert!(count > 0 && wrong.is_empty(), "{} of {count}:\n{}", wrong.len(), wrong.join("\n"));
 }
 
 #[test]
-fn every_entity_is_in_the_table() {
+fn every_entity_and_modifier_is_in_the_tables() {
     let seen: BTreeSet<String> =
-        table().iter().map(|row| row.code[4..6].to_owned() + &row.code[10..16]).collect();
+        tables().into_values().flatten().map(|row| row.code[4..6].to_owned() + &row.code[10..20]).collect();
+    let is_seen = |key: String| assert!(seen.contains(&key), "{key}: make tests/symbology/milsymbol anew");
     for set in SETS {
+        let number = set.number();
         for entity in entities(set) {
-            let key = format!("{:02}{:06}", set.number(), entity.code);
-            assert!(seen.contains(&key), "{key}: make tests/symbology/milsymbol.txt anew");
+            is_seen(format!("{number:02}{:06}0000", entity.code));
+        }
+        for modifier in modifiers(set, 1) {
+            is_seen(format!("{number:02}000000{:02}00", modifier.code));
+        }
+        for modifier in modifiers(set, 2) {
+            is_seen(format!("{number:02}00000000{:02}", modifier.code));
         }
     }
+}
+
+#[test]
+fn runs_turn_pixels() {
+    let turned = flipped(vec![false; 70], "ChBB");
+    assert!(turned.iter().enumerate().all(|(at, &pixel)| pixel == (2..35).contains(&at)));
 }

@@ -13,6 +13,7 @@ use sandtable_scene::build::build;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_symbology::graphic::kind::{GraphicKind, GraphicShape, MOST_POINTS};
 use sandtable_symbology::graphic::kind_table::GRAPHIC_KINDS;
+use sandtable_symbology::graphic::rules::{NUMBER_MEANINGS, POINT_MEANINGS};
 use sandtable_terrain::sight::viewshed::{PostVisibility, viewshed};
 
 use crate::common::forest::seen_from;
@@ -47,19 +48,20 @@ fn drawn(scene: &SceneModel) -> ViewDraw {
     build_draw_list(scene, &camera, &|_| ())
 }
 
-/// Points in a cell of 1.4 km that fit a kind.
+/// Points in a cell of 700 m that fit a kind.
 fn points_of(kind: &GraphicKind, corner: DVec2) -> String {
     let ring: &[[f64; 2]] = &[[0.0, 0.0], [1.2, 0.0], [1.2, 1.0], [0.0, 1.1]];
     let axis: &[[f64; 2]] = &[[1.3, 0.6], [0.6, 0.4], [0.0, 0.6], [1.1, 0.9]];
     let line: &[[f64; 2]] = &[[0.0, 0.2], [0.6, 0.6], [1.3, 0.5]];
-    let figure: &[[f64; 2]] = &[[0.0, 1.0], [0.0, 0.2], [1.2, 0.7], [1.3, 0.1]];
+    let figure: &[[f64; 2]] = &[[0.0, 1.0], [0.0, 0.2], [1.2, 0.7], [1.3, 0.1], [0.9, 0.4], [0.8, 0.1]];
     let points = match kind.shape {
         GraphicShape::Area => ring,
         GraphicShape::Axis | GraphicShape::Wide => axis,
-        GraphicShape::Line | GraphicShape::Corridor => line,
+        GraphicShape::Line => line,
+        GraphicShape::Corridor => &line[..kind.points[1].min(3)],
         _ => &figure[..kind.points[0]],
     };
-    let places = points.iter().map(|&at| corner + DVec2::from(at) * 1000.0);
+    let places = points.iter().map(|&at| corner + DVec2::from(at) * 470.0);
     let places: Vec<String> = places.map(|at| format!("[{:.0}, {:.0}]", at.x, at.y)).collect();
     format!("[{}]", places.join(", "))
 }
@@ -68,14 +70,16 @@ fn points_of(kind: &GraphicKind, corner: DVec2) -> String {
 fn every_graphic_lies_in_the_displayed_triangles_and_shows() {
     let mut text = String::new();
     for (index, kind) in GRAPHIC_KINDS.iter().enumerate() {
-        let corner = DVec2::new((index % 13) as f64, (index / 13) as f64) * 1500.0 + 250.0;
+        let corner = DVec2::new((index % 27) as f64, (index / 27) as f64) * 700.0 + 250.0;
         let points = points_of(kind, corner);
         let _ =
             writeln!(text, "[[graphic]]\nkind = \"{}\"\npoints = {points}\ndesignation = \"A\"", kind.word);
         let numbers = match kind.shape {
-            GraphicShape::Corridor => "width = 300",
-            GraphicShape::Circle => "distances = [300, 500]",
-            GraphicShape::Sector => "distances = [300, 500]\nazimuths = [10, 80, 20, 70]",
+            GraphicShape::Corridor => "width = 150",
+            GraphicShape::Circle => "distances = [150, 250]",
+            GraphicShape::Sector if kind.rule == "POINT18" => "distances = [150, 250]\nazimuths = [10, 80]",
+            GraphicShape::Sector => "distances = [150, 250]\nazimuths = [10, 80, 20, 70]",
+            GraphicShape::Ellipse => "distances = [250, 150]\nazimuths = [10]",
             _ => "",
         };
         let _ = writeln!(text, "{numbers}");
@@ -129,6 +133,67 @@ fn a_code_gives_the_kind_the_side_the_status_and_the_echelon() {
     assert_eq!((graphic.kind.word, graphic.fields.echelon.as_str()), ("boundary", "X"));
     let words = (format!("{:?}", graphic.side), format!("{:?}", graphic.status));
     assert_eq!(words, ("Hostile".to_owned(), "Planned".to_owned()));
+}
+
+#[test]
+fn an_axis_is_taken_from_start_to_tip_with_a_width_or_by_the_standard() {
+    let start = "[2000, 2000], [6000, 3000], [9000, 7000]";
+    let tip = "[9000, 7000], [6000, 3000], [2000, 2000]";
+    let forms = [
+        format!("width = 1000\npoints = [{start}]"),
+        format!("width = 1000\norder = \"standard\"\npoints = [{tip}]"),
+        format!("order = \"drawn\"\npoints = [{start}, [8400, 7400]]"),
+        format!("points = [{tip}, [8400, 7400]]"),
+    ];
+    for form in forms {
+        let scene = scene(&format!("[[graphic]]\nkind = \"axis_main_attack\"\n{form}\n")).expect("an axis");
+        assert_eq!(scene.graphics[0].points[0], DVec2::new(9000.0, 7000.0), "{form}");
+    }
+    let arrow =
+        format!("[[graphic]]\nkind = \"main_direction_of_attack\"\norder = \"drawn\"\npoints = [{start}]\n");
+    assert_eq!(scene(&arrow).expect("an arrow").graphics[0].points[0], DVec2::new(9000.0, 7000.0));
+    let wrong = [
+        (
+            format!("kind = \"axis_main_attack\"\npoints = [{start}, [8400, 7400]]"),
+            "lies beside point 3 and not beside point 1",
+        ),
+        (
+            format!("kind = \"phase_line\"\norder = \"drawn\"\npoints = [{start}]"),
+            "`order` has no effect on phase_line",
+        ),
+        (
+            "kind = \"seize\"\npoints = [[0, 0], [900, 0]]".to_owned(),
+            "1 the middle of the circle, 2 a place on it",
+        ),
+    ];
+    for (table, expected) in wrong {
+        let error = scene(&format!("[[graphic]]\n{table}\n")).map(|_| ()).expect_err(&table);
+        assert!(error.contains(expected), "{table}: {error}");
+    }
+}
+
+#[test]
+fn areas_of_the_hostile_side_are_marked_and_weather_has_its_colors() {
+    let square = "[[2000, 2000], [6000, 2000], [6000, 6000], [2000, 6000]]";
+    let text = format!(
+        "[[graphic]]\nsidc = \"10062500001517000000\"\npoints = {square}\n[[graphic]]\nsidc = \
+         \"10034500001103120000\"\npoints = [[2000, 9000], [9000, 9000]]\n[[graphic]]\nkind = \"bottom_clay\"\npoints = \
+         [[9000, 2000], [12000, 2000], [12000, 6000]]\n"
+    );
+    let scene = scene(&text).expect("an objective, a front and clay");
+    assert_eq!(scene.graphics[0].fields.hostile, "ENY");
+    let shot = drawn(&scene);
+    let marks = shot.graphic_texts.iter().filter(|text| text.text == "ENY").count();
+    assert_eq!(marks, 2, "on two sides");
+    let colors = |graphic: usize| -> Vec<[u8; 4]> {
+        let feature = scene.graphics[graphic].feature;
+        let items =
+            shot.list.items.iter().filter(|item| item.feature == feature && !item.triangles.is_empty());
+        items.map(|item| shot.list.materials[item.material.0 as usize].base_color.0).collect()
+    };
+    let front = colors(1);
+    assert!(front.contains(&[255, 0, 0, 255]) && front.contains(&[0, 0, 255, 255]), "{front:?}");
+    assert!(colors(2).contains(&[100, 130, 255, 110]), "{:?}", colors(2));
 }
 
 #[test]
@@ -199,13 +264,23 @@ fn layers_of_sight_off_the_ground_are_refused_by_their_place() {
 /// The part of `scenes/SYMBOLS.md` on graphics.
 fn graphics_page() -> String {
     let mut page = String::from(
-        "<!-- graphics -->\n\n## Tactical graphics\n\nWhat `[[graphic]]` draws of symbol set 25 (control measures). `kind` takes \
-         the word or the code. The draw rule is that of\nMIL-STD-2525D (2014), appendix H, which is the source of every row: it \
-         says where the points go, in which order. Fields: T\n`designation`, T1 `designation_2`, B `echelon`, AS `country`, N \
+        "<!-- graphics -->\n\n## Tactical graphics\n\nWhat `[[graphic]]` draws of symbol set 25 (control measures) and of 45 \
+         and 46 (lines and areas of weather and sea). `kind` takes\nthe word, or the code of set 25. The draw rule is that of \
+         MIL-STD-2525D (2014), appendix H, or of 2525E, which is the source of\nevery row: it says where the points go, in \
+         which order; the table of rules follows. Areas of the hostile side are marked `ENY`.\nFields: T `designation`, T1 `designation_2`, B `echelon`, AS `country`, N \
          `hostile`, H `further`, AP `target`, W `from`, W1 `until`, X\n`elevations`, AM `distances`, AN `azimuths`.\n\n| code | \
          kind | name | rule | points | fields |\n|---|---|---|---|---|---|\n",
     );
+    let mut set = 25;
     for kind in GRAPHIC_KINDS {
+        if kind.set != set {
+            set = kind.set;
+            let title = if set == 45 { "Weather" } else { "Sea" };
+            let _ = write!(
+                page,
+                "\n### {title}: symbol set {set}\n\n| code | kind | name | rule | points | fields |\n|---|---|---|---|---|---|\n"
+            );
+        }
         let points = match kind.points {
             [least, most] if least == most => least.to_string(),
             [least, MOST_POINTS] => format!("{least} or more"),
@@ -218,19 +293,25 @@ fn graphics_page() -> String {
             fields.replace(' ', ", ")
         );
     }
+    let _ = write!(page, "\n### Draw rules\n\n| rule | its points |\n|---|---|\n");
+    for (rule, meaning) in POINT_MEANINGS.iter().chain(&NUMBER_MEANINGS) {
+        let _ = writeln!(page, "| {rule} | {meaning} |");
+    }
     let set = include_str!("../symbology/set_25.txt");
     let rows = set.lines().filter_map(|line| line.split_once(' ')).filter(|(code, _)| *code != "#");
     let missing: Vec<String> = rows
-        .filter(|(code, _)| GraphicKind::of_code(code).is_none())
+        .filter(|(code, _)| GraphicKind::of_code(25, code).is_none())
         .map(|(code, name)| format!("{code} {name}"))
         .collect();
     let _ = write!(
         page,
-        "\n{} kinds are drawn. Of symbol set 25 these {} are not: {}.\n\nNot drawn of what is: texts on both sides of a line's \
-         ends, `ENY` at the borders of hostile areas, labels on every segment of a\nboundary.\n\n<!-- end of graphics -->\n",
+        "\n{} kinds are drawn. Of symbol set 25 {}.\n\n<!-- end of graphics -->\n",
         GRAPHIC_KINDS.len(),
-        missing.len(),
-        missing.join("; ")
+        if missing.is_empty() {
+            "nothing is missing".to_owned()
+        } else {
+            format!("these are not: {}", missing.join("; "))
+        }
     );
     page
 }

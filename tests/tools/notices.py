@@ -137,6 +137,8 @@ def main():
     fonts = pathlib.Path("assets/fonts/OFL.txt").read_text()
     lines.append("Noto Sans and Noto Sans Math (fonts): OFL-1.1")
     lines += [f"    {line}" for line in copyrights([fonts])]
+    lines.append("Figures of military symbols (src/symbology), many measured from milsymbol 3.0.4: MIT")
+    lines.append("    Copyright (c) 2017 Måns Beckman - www.spatialillusions.com")
     lines.append("SQLite (within libsqlite3-sys): in the public domain")
     used.setdefault("OFL-1.1", {})[fonts[fonts.find(BEGINNINGS["OFL-1.1"]):].strip("\n")] = 1 << 20
     out = ["What sandtable is made of, and the licenses under which it is used.", ""] + lines

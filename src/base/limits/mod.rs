@@ -154,6 +154,9 @@ limits! {
         XML_DEPTH = 64 => Fixed, "levels",
             "of elements in KML, GPX and OpenStreetMap XML",
             "flatten its folders";
+        CITY_VERTICES = 1 << 23 => COUNT, "vertices",
+            "of all surfaces of a CityJSON file with its templates wherever they are placed: some five hundred megabytes",
+            "cut it, for example with: cjio IN subset --bbox";
         GEOMETRY_DEPTH = 16 => Fixed, "levels",
             "of collections in a GeoPackage's geometry",
             "take the collections apart";
@@ -218,7 +221,7 @@ limits! {
         SCENE_GRAPHICS = 4096 => COUNT, "graphics",
             "of a scene; more hide the ground that they lie on",
             "draw fewer";
-        SCENE_SYMBOLS = 4096 => COUNT, "symbols",
+        SCENE_SYMBOLS = 65_536 => COUNT, "symbols",
             "of a scene; later ones are left out, with a note",
             "draw fewer";
     }

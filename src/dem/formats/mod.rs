@@ -19,6 +19,8 @@ mod header;
 pub mod height_encoding;
 mod hfa;
 mod hgt;
+mod landxml;
+mod landxml_tin;
 mod plain_raster;
 mod png;
 pub(crate) mod raw;
@@ -48,6 +50,7 @@ pub static FORMATS: &[&DemFormat] = &[
     &surfer::FORMAT,
     &xyz::FORMAT,
     &png::FORMAT,
+    &landxml::FORMAT,
     &hfa::FORMAT,
     #[cfg(feature = "gpkg")]
     &gpkg::FORMAT,

@@ -4,9 +4,11 @@
 //! fitted to all ground first; ground that a bridge then passes over, or a tunnel under, no longer pulls at the road,
 //! and the network is fitted again. What was let go of once stays so, which makes the rounds end.
 
+use std::collections::BTreeMap;
+
 use crate::alignment::chain::{ChainLink, Direction, SectionChain};
 use crate::alignment::fit;
-use crate::alignment::network::{RoadSection, SectionNetwork, StationLevels};
+use crate::alignment::network::{NodeId, RoadSection, SectionNetwork, StationLevels};
 use crate::alignment::spans::spans;
 use crate::alignment::{Support, SupportSpan};
 use sandtable_geom::profile::Profile;
@@ -26,8 +28,9 @@ pub struct Design {
 /// Designs a network: a level a node that roads should pass through or NaN, and the length of vertical curves in meters.
 pub fn design(network: &SectionNetwork, pins: &[f64], curve_m: f64) -> Design {
     let chains = SectionChain::all(network);
-    let target = |section: &RoadSection| match section.support {
-        Support::Ground => section.ground_m.clone(),
+    let target = |section: &RoadSection| match (&section.stated_m, section.support) {
+        (Some(stated_m), _) => stated_m.clone(),
+        (None, Support::Ground) => section.ground_m.clone(),
         _ => vec![f64::NAN; section.ground_m.len()],
     };
     let mut targets: StationLevels = network.sections.iter().map(target).collect();
@@ -37,6 +40,9 @@ pub fn design(network: &SectionNetwork, pins: &[f64], curve_m: f64) -> Design {
         let mut found = vec![Vec::new(); network.sections.len()];
         for chain in &chains {
             shape(network, chain, &targets, curve_m, &mut levels_m);
+        }
+        keep_stated(network, &mut levels_m);
+        for chain in &chains {
             find(network, chain, &levels_m, &mut found);
         }
         let released = release(network, &found, &mut targets);
@@ -45,6 +51,30 @@ pub fn design(network: &SectionNetwork, pins: &[f64], curve_m: f64) -> Design {
             return Design { levels_m, spans: found };
         }
         round += 1;
+    }
+}
+
+/// Puts stated levels in place of designed ones, and leads the roads that meet them there.
+fn keep_stated(network: &SectionNetwork, levels: &mut StationLevels) {
+    let mut at_nodes: BTreeMap<NodeId, f64> = BTreeMap::new();
+    for (section, levels) in network.sections.iter().zip(levels.iter_mut()) {
+        if let Some(stated_m) = &section.stated_m {
+            levels.clone_from(stated_m);
+            at_nodes.entry(section.ends[0]).or_insert(stated_m[0]);
+            at_nodes.entry(section.ends[1]).or_insert(stated_m[stated_m.len() - 1]);
+        }
+    }
+    let designed = network.sections.iter().zip(levels).filter(|(section, _)| section.stated_m.is_none());
+    for (section, levels) in designed {
+        let last = levels.len() - 1;
+        let off =
+            |end: usize, at: usize| at_nodes.get(&section.ends[end]).map_or(0.0, |level| level - levels[at]);
+        let (first_m, last_m) = (off(0, 0), off(1, last));
+        let length_m = section.length_m().max(f64::MIN_POSITIVE);
+        for (level, station) in levels.iter_mut().zip(&section.stations_m) {
+            let share = station / length_m;
+            *level += first_m * (1.0 - share) + last_m * share;
+        }
     }
 }
 

@@ -30,6 +30,8 @@ pub struct RoadSection {
     pub support: Support,
     /// What an embankment and a cutting may be.
     pub limits: EarthworkLimits,
+    /// The levels that are stated for it at its stations in meters, whatever the grade; `None` where they are designed.
+    pub stated_m: Option<Vec<f64>>,
 }
 
 impl RoadSection {
@@ -115,6 +117,14 @@ pub(crate) mod tests {
     pub fn section(ends: [u32; 2], stations_m: Vec<f64>, max_grade: f64) -> RoadSection {
         let ground_m = vec![0.0; stations_m.len()];
         let (support, limits) = (Support::Ground, EarthworkLimits::NONE);
-        RoadSection { ends: ends.map(NodeId), stations_m, ground_m, max_grade, support, limits }
+        RoadSection {
+            ends: ends.map(NodeId),
+            stations_m,
+            ground_m,
+            max_grade,
+            support,
+            limits,
+            stated_m: None,
+        }
     }
 }

@@ -281,8 +281,15 @@ mod tests {
         let ground_m = stations.iter().map(|at| at.ground.height_m().expect("ground")).collect();
         let ends = [NodeId(0), NodeId(1)];
         let (support, limits) = (Support::Ground, EarthworkLimits::NONE);
-        let section =
-            RoadSection { ends, stations_m: stations_m.clone(), ground_m, max_grade, support, limits };
+        let section = RoadSection {
+            ends,
+            stations_m: stations_m.clone(),
+            ground_m,
+            max_grade,
+            support,
+            limits,
+            stated_m: None,
+        };
         let network = SectionNetwork { nodes: 2, sections: vec![section] };
         let design = design(&network, &[f64::NAN; 2], 50.0);
         let mut strip = strip(points, [0.0; 2], FLAT);

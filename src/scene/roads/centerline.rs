@@ -1,5 +1,9 @@
 //! The document's roads as centerlines, each with what it is to become.
 
+use std::collections::BTreeMap;
+
+use glam::DVec2;
+
 use crate::attributes::Attributes;
 use crate::builder::SceneBuilder;
 use crate::feature::FeatureKind;
@@ -12,7 +16,8 @@ use crate::tag_notes::{NumberLimits, TagNotes};
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::features::RoadTable;
-use sandtable_description::words::{self, Markings};
+use sandtable_description::finding_code::FindingCode;
+use sandtable_description::words::{self, Markings, ProfileMode};
 use sandtable_draw::list::FeatureId;
 use sandtable_earthworks::alignment::{Alignment, Support, Width};
 use sandtable_geom::polyline::Polyline;
@@ -40,6 +45,8 @@ pub struct Centerline {
     pub table: usize,
     /// Its properties in the file.
     pub attributes: Attributes,
+    /// The levels that it is to have, meters, where its table takes those of its file.
+    pub own_levels: Option<Profile>,
 }
 
 /// The centerlines of the document's roads that come near the ground.
@@ -55,19 +62,49 @@ pub fn collect(
     let mut all = Vec::new();
     for (table, road) in document.roads.iter().enumerate() {
         let lines = sources.lines(&road.source)?;
+        let mut without_levels = 0;
         let widths_m = lines.first().and_then(|line| near::widths_m(road.widths.as_deref(), &line.shape));
         let named =
             FeatureTable { kind: FeatureKind::Road, name: road.name.as_deref(), source: &road.source };
         for (attributes, line) in near::lines(lines, extent, REACH_M, &named, &mut collected.findings) {
             let mut centerline = centerline(road, attributes, line, collected);
             centerline.table = table;
+            if road.profile == ProfileMode::Own {
+                centerline.own_levels = own_levels(&centerline, sources);
+                without_levels += usize::from(centerline.own_levels.is_none());
+            }
             if let Some(widths_m) = &widths_m {
                 centerline.vary(widths_m);
             }
             all.push(centerline);
         }
+        if without_levels > 0 {
+            let noun = FeatureKind::Road.noun(without_levels);
+            let message = format!(
+                "{without_levels} {noun} without elevations all along in the file: the ground follows as with `profile = \"conform\"`"
+            );
+            collected.findings.add(FindingCode::DefaultTaken, road.source.span(), message);
+        }
     }
     Ok(all)
+}
+
+/// The elevations that a road's file states along it; `None` where a vertex is without one.
+fn own_levels(road: &Centerline, sources: &Sources<'_>) -> Option<Profile> {
+    let crs = road.attributes.crs()?;
+    let mut levels: BTreeMap<[u64; 2], f64> = BTreeMap::new();
+    for (at, elevation_m) in road.attributes.elevations_m() {
+        // The same arithmetic as that which placed the line.
+        let world = sources.frame.world(crs, at).ok()?;
+        levels.entry(bits(world)).or_insert(elevation_m);
+    }
+    let line = &road.street.alignment.line;
+    let values: Option<Vec<f64>> = line.points().iter().map(|at| levels.get(&bits(*at)).copied()).collect();
+    Profile::new(line.stations().to_vec(), values?)
+}
+
+fn bits(at: DVec2) -> [u64; 2] {
+    at.to_array().map(f64::to_bits)
 }
 
 impl Centerline {
@@ -114,6 +151,7 @@ fn centerline(
         ),
         table: 0,
         attributes,
+        own_levels: None,
     }
 }
 
@@ -177,6 +215,7 @@ pub(in crate::roads) mod tests {
             feature: FeatureId(2),
             table: 0,
             attributes: Attributes::default(),
+            own_levels: None,
         }
     }
 

@@ -57,14 +57,14 @@ impl Rules {
 
 /// Whether the ground follows the roads of a table.
 pub fn conforms(table: &RoadTable) -> bool {
-    table.profile == ProfileMode::Conform
+    table.profile != ProfileMode::Drape
 }
 
 /// A network of roads to be designed, with the ground where single roads end.
 pub struct NetworkSurvey {
     /// The sections between nodes.
     pub network: SectionNetwork,
-    /// One a node: the ground where a single road ends, NaN elsewhere.
+    /// One a node: the stated level, the ground where a single road ends, NaN elsewhere.
     pub pins: Vec<f64>,
     /// One a road of the network.
     surveyed: Vec<SurveyedRoad>,
@@ -111,13 +111,19 @@ impl NetworkSurvey {
             let points = road.street.alignment.line.between(pair[0].station_m, pair[1].station_m);
             let points: Vec<_> = points.into_iter().map(|point| point + origin).collect();
             let stations = profile(lattice, &points);
+            let stated =
+                |own: &Profile| stations.iter().map(|at| own.at(pair[0].station_m + at.station_m)).collect();
+            let stated_m: Option<Vec<f64>> = road.own_levels.as_ref().map(stated);
+            // A stated profile is as steep as it is.
+            let steepest = road.own_levels.as_ref().map_or(0.0, |own| own.steepest(1e-3));
             self.network.sections.push(RoadSection {
                 ends: [pair[0].node, pair[1].node],
                 stations_m: stations.iter().map(|at| at.station_m).collect(),
                 ground_m: stations.iter().map(|at| at.ground.height_m().unwrap_or(f64::NAN)).collect(),
-                max_grade: rules.max_grade,
+                max_grade: rules.max_grade.max(steepest),
                 support: road.street.alignment.support,
                 limits: rules.limits,
+                stated_m,
             });
         }
         let starts_m = stops.iter().map(|stop| stop.station_m).collect();
@@ -128,7 +134,7 @@ impl NetworkSurvey {
         });
     }
 
-    /// A road that ends where no other of the network does ends on the ground.
+    /// A road that ends where no other of the network does ends on the ground, one of stated levels at these.
     fn pin(&mut self) {
         let pin = |arms: Vec<LineEnd>| match arms[..] {
             [LineEnd { line, end }] => {
@@ -138,6 +144,13 @@ impl NetworkSurvey {
             _ => f64::NAN,
         };
         self.pins = self.network.arms().into_iter().map(pin).collect();
+        // Others meet a road of stated levels at these.
+        for section in &self.network.sections {
+            let Some([first, .., last]) = section.stated_m.as_deref() else { continue };
+            for (node, level) in section.ends.iter().zip([first, last]) {
+                self.pins[node.index()] = *level;
+            }
+        }
     }
 
     /// The roads with their design; without those that no ground gave a level.

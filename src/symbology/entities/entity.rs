@@ -12,6 +12,6 @@ pub struct SymbolEntity {
 }
 
 /// A row of a table.
-pub(super) const fn entity(code: u32, name: &'static str, drawing: &'static str) -> SymbolEntity {
+pub(crate) const fn entity(code: u32, name: &'static str, drawing: &'static str) -> SymbolEntity {
     SymbolEntity { code, name, drawing }
 }

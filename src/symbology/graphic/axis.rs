@@ -8,11 +8,15 @@ use glam::DVec2;
 
 use crate::graphic::drawing::{GraphicDrawing, GraphicInput};
 use crate::graphic::kind::GraphicKind;
-use crate::graphic::plane::{direction, offset, turned};
+use crate::graphic::letters::{CAPITAL, letter_lines};
+use crate::graphic::plane::{arrowhead, direction, offset, turned};
 use sandtable_geom::polyline::Polyline;
 
 /// The half width of the shaft, as a share of that of the head.
 const SHAFT: f64 = 0.5;
+
+/// How far behind its tip a counterattack by fire has its apex and, at least, the base of its head, in text heights.
+const BY_FIRE_EM: [f64; 2] = [3.75, 4.3];
 
 /// The length of a head whose width is stated, in half widths.
 const HEAD_LENGTH: f64 = 0.5;
@@ -32,42 +36,140 @@ pub fn center_line(points: &[DVec2], width_m: Option<f64>) -> &[DVec2] {
     if width_m.is_some() { points } else { &points[..points.len() - 1] }
 }
 
+/// The parts of an axis of advance.
+struct AxisPlan {
+    /// The center line from the tip backward.
+    center: Vec<DVec2>,
+    /// From the rear to the tip, of length 1.
+    toward: DVec2,
+    /// The middle of the head's base.
+    base: DVec2,
+    /// The foremost point of the head.
+    apex: DVec2,
+    /// The half width of the head.
+    half_m: f64,
+}
+
+impl AxisPlan {
+    fn new(kind: &GraphicKind, input: &GraphicInput<'_>) -> Self {
+        let center = center_line(input.points, input.width_m).to_vec();
+        let [length_m, half_m] = head_m(input.points, input.width_m);
+        let (tip, toward) = (center[0], direction(center[1], center[0]));
+        // By fire: the head keeps clear of the arrow before it.
+        let reach_m = BY_FIRE_EM.map(|em| (em * input.em_m).min(0.5 * tip.distance(center[1])));
+        let [head, apex] =
+            if kind.code == "340700" { [length_m.max(reach_m[1]), reach_m[0]] } else { [length_m, 0.0] };
+        Self { base: tip - toward * head, apex: tip - toward * apex, toward, half_m, center }
+    }
+
+    fn tip(&self) -> DVec2 {
+        self.center[0]
+    }
+
+    /// A place at a distance along the axis from another, and to the left of it.
+    fn from(&self, at: DVec2, far: f64, aside: f64) -> DVec2 {
+        at + self.toward * far + self.toward.perp() * aside
+    }
+}
+
 /// An axis of advance.
 pub fn axis(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
-    let center = center_line(input.points, input.width_m);
-    let [length_m, half_m] = head_m(input.points, input.width_m);
-    let (tip, toward) = (center[0], direction(center[1], center[0]));
-    let base = tip - toward * length_m;
+    let plan = AxisPlan::new(kind, input);
+    let AxisPlan { base, apex, toward, half_m, .. } = plan;
     // From the base of the head backward, so that its left is on the left of the attack's rear.
-    let shaft: Vec<DVec2> = std::iter::once(base).chain(center[1..].iter().copied()).collect();
+    let shaft: Vec<DVec2> = std::iter::once(base).chain(plan.center[1..].iter().copied()).collect();
     let mut sides = [1.0, -1.0].map(|side: f64| offset(&shaft, -side * SHAFT * half_m));
     let wings = [1.0, -1.0].map(|side| base + toward.perp() * (side * half_m));
     let is_crossed = matches!(kind.code, "151401" | "151402");
+    let is_dashed = matches!(kind.code, "340600" | "340700");
+    let mut line = |points: Vec<DVec2>| if is_dashed { drawing.dashed(points) } else { drawing.line(points) };
     if is_crossed {
         let ends = [sides[0][0], sides[1][0]];
         (sides[0][0], sides[1][0]) = (ends[1], ends[0]);
         let [left, right] = ends;
-        drawing.line([left, wings[0], tip, wings[1], right]);
+        line(vec![left, wings[0], apex, wings[1], right]);
     } else if kind.code == "151403" {
-        drawing.ring([tip, wings[0], wings[1]]);
+        line(vec![apex, wings[0], wings[1], apex]);
     } else {
-        drawing.line([sides[0][0], wings[0], tip, wings[1], sides[1][0]]);
+        line(vec![sides[0][0], wings[0], apex, wings[1], sides[1][0]]);
     }
-    let is_feint = kind.code == "151406";
-    sides.iter().for_each(|side| drawing.line(side.clone()));
-    if is_feint {
-        let ahead = tip + toward * (0.5 * length_m);
-        let wing = |side: f64| base + toward.perp() * (side * 1.5 * half_m);
-        drawing.dashed([wing(1.0), ahead, wing(-1.0)]);
-    }
-    if kind.code == "151402" {
-        let middle = base.midpoint(center[1]);
-        rotor(middle, toward, half_m, drawing);
+    sides.iter().for_each(|side| line(side.clone()));
+    match kind.code {
+        "151406" => {
+            let ahead = plan.from(plan.tip(), 0.5 * plan.tip().distance(base), 0.0);
+            let wing = |side: f64| plan.from(base, 0.0, side * 1.5 * half_m);
+            drawing.dashed([wing(1.0), ahead, wing(-1.0)]);
+        }
+        "151402" => rotor(base.midpoint(plan.center[1]), toward, half_m, drawing),
+        "340700" => by_fire(&plan, input, drawing),
+        "152700" => frontal(&plan, drawing),
+        "152900" => turning(&plan, drawing),
+        "342900" => contact(&plan, drawing),
+        _ => {}
     }
     // Inside the shaft.
-    if let Some(line) = Polyline::new(center.iter().copied(), 0.0) {
+    if let Some(line) = Polyline::new(plan.center.iter().copied(), 0.0) {
         let station = line.length() * if is_crossed { 0.75 } else { 0.55 };
         drawing.text(input.fields.labeled(kind.label), line.at(station));
+    }
+}
+
+/// Counterattack by fire: a position of fire before the head, and its arrow.
+fn by_fire(plan: &AxisPlan, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
+    let tip = plan.tip();
+    let unit_m = plan.apex.distance(tip) / BY_FIRE_EM[0];
+    let half_m = SHAFT * plan.half_m + 0.42 * unit_m;
+    let bar = |far: f64, aside: f64| plan.from(tip, far * unit_m, aside);
+    drawing.dashed([
+        bar(-3.33, half_m + 0.83 * unit_m),
+        bar(-2.5, half_m),
+        bar(-2.5, -half_m),
+        bar(-3.33, -half_m - 0.83 * unit_m),
+    ]);
+    drawing.dashed([bar(-2.5, 0.0), tip]);
+    drawing.line(arrowhead(tip, plan.toward, 1.25 * unit_m.min(input.em_m), 0.625 * unit_m.min(input.em_m)));
+}
+
+/// A frontal attack: a bar across the tip, and an A in the head.
+fn frontal(plan: &AxisPlan, drawing: &mut GraphicDrawing) {
+    let bar = |side: f64| plan.from(plan.tip(), 0.0, side * plan.half_m);
+    drawing.line([bar(1.0), bar(-1.0)]);
+    head_letter("A", plan, drawing);
+}
+
+/// A turning movement: a bar across the last leg, and a T in the head.
+fn turning(plan: &AxisPlan, drawing: &mut GraphicDrawing) {
+    let last = plan.center.len() - 1;
+    let [rear, before] = [plan.center[last], plan.center[last - 1]];
+    let across = direction(rear, before).perp() * plan.half_m;
+    let middle = rear.midpoint(before);
+    drawing.line([middle + across, middle - across]);
+    head_letter("T", plan, drawing);
+}
+
+/// A letter in the head, upright as seen from the right of the attack, as high as the shaft is wide.
+fn head_letter(letter: &str, plan: &AxisPlan, drawing: &mut GraphicDrawing) {
+    let middle = plan.base.lerp(plan.apex, 0.25);
+    let high_m = 2.0 * SHAFT * plan.half_m;
+    let wide = (0.5 * plan.base.distance(plan.apex) / high_m).min(0.8);
+    for line in letter_lines(letter, high_m / CAPITAL) {
+        let turned = line.into_iter().map(|at| plan.from(middle, at.x * wide, at.y));
+        drawing.line(turned.collect::<Vec<_>>());
+    }
+}
+
+/// A movement to contact: two lightning arrows that spread from the head.
+fn contact(plan: &AxisPlan, drawing: &mut GraphicDrawing) {
+    /// Corners of an arrow ahead of the tip and aside, and a leg of its head, in half widths.
+    const CORNERS: [[f64; 2]; 4] = [[-0.02, 0.6], [0.917, 1.204], [0.818, 0.908], [1.76, 1.507]];
+    const HEAD: f64 = 0.155;
+    for side in [1.0, -1.0] {
+        let arrow =
+            CORNERS.map(|[far, aside]| plan.from(plan.tip(), far * plan.half_m, side * aside * plan.half_m));
+        let toward = direction(arrow[2], arrow[3]);
+        let length_m = HEAD * plan.half_m;
+        drawing.filled(arrowhead(arrow[3], toward, length_m, 0.6 * length_m));
+        drawing.line(arrow);
     }
 }
 

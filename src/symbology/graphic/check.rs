@@ -5,6 +5,7 @@ use glam::DVec2;
 use crate::graphic::axis::{center_line, head_m};
 use crate::graphic::fields::GraphicFields;
 use crate::graphic::kind::{GraphicKind, GraphicShape, MOST_POINTS};
+use crate::graphic::rules::points_of;
 use sandtable_geom::segment::crossing;
 
 /// The length in meters below which a graphic cannot be distinguished from a point.
@@ -29,11 +30,15 @@ pub struct PlacedGraphic<'a> {
 #[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum GraphicError {
     #[error("{kind} has {found} points and needs {needed}")]
-    PointCount { kind: &'static str, found: usize, needed: String },
+    PointCount { kind: &'static str, found: usize, needed: String, rule: &'static str },
     #[error("points {0} and {1} of the graphic are less than {SHORTEST_M} m apart")]
     SamePoints(usize, usize),
     #[error("the line crosses itself between points {} and {}, and {} and {}", .0 + 1, .0 + 2, .1 + 1, .1 + 2)]
     CrossesItself(usize, usize),
+    #[error(
+        "the last point gives the arrowhead its width, and lies beside point {before} and not beside point 1, the tip"
+    )]
+    AxisBackward { before: usize },
     #[error("the arrowhead is {length_m:.0} m long, and the first leg of the axis {leg_m:.0} m")]
     HeadTooLong { length_m: f64, leg_m: f64 },
     #[error("the last point gives the {what} no width")]
@@ -50,8 +55,13 @@ impl GraphicError {
     /// The remedy.
     pub fn help(&self) -> String {
         match self {
-            Self::PointCount { .. } => {
-                "the points are in the order of the draw rule, see scenes/SYMBOLS.md".into()
+            Self::PointCount { rule, .. } => {
+                format!("its points are: {rule} (scenes/SYMBOLS.md lists all rules)")
+            }
+            Self::AxisBackward { .. } => {
+                "give the tip first, then the line back from it, then a corner of the arrowhead; or state `order = \"drawn\"` for \
+                 a line from start to tip, or the `width` in place of the last point"
+                    .into()
             }
             Self::SamePoints(..) => "remove one of them, or move it away".into(),
             Self::CrossesItself(..) => "give the points in the order in which they follow each other".into(),
@@ -81,7 +91,8 @@ pub fn check(kind: &GraphicKind, graphic: &PlacedGraphic<'_>) -> Result<(), Grap
             (least, most) if most + 1 >= MOST_POINTS => format!("at least {least}, and no more than {most}"),
             (least, most) => format!("{least} to {most}"),
         };
-        return Err(GraphicError::PointCount { kind: kind.word, found: points.len(), needed });
+        let rule = points_of(kind);
+        return Err(GraphicError::PointCount { kind: kind.word, found: points.len(), needed, rule });
     }
     if let Some(index) = points.windows(2).position(|pair| pair[0].distance(pair[1]) < SHORTEST_M) {
         return Err(GraphicError::SamePoints(index + 1, index + 2));
@@ -122,6 +133,12 @@ fn check_width(kind: &GraphicKind, graphic: &PlacedGraphic<'_>) -> Result<(), Gr
     let (points, width_m) = (graphic.points, graphic.width_m);
     match kind.shape {
         GraphicShape::Axis => {
+            let center = center_line(points, width_m);
+            let [tip, rear] = [center[0], center[center.len() - 1]];
+            let corner = points[points.len() - 1];
+            if width_m.is_none() && corner.distance(rear) < corner.distance(tip) {
+                return Err(GraphicError::AxisBackward { before: center.len() });
+            }
             let [length_m, half_m] = head_m(points, width_m);
             let leg_m = points[0].distance(points[1]);
             if half_m < SHORTEST_M || length_m <= 0.0 {
@@ -147,14 +164,19 @@ fn check_width(kind: &GraphicKind, graphic: &PlacedGraphic<'_>) -> Result<(), Gr
 
 fn check_numbers(kind: &GraphicKind, graphic: &PlacedGraphic<'_>) -> Result<(), GraphicError> {
     let fields = graphic.fields;
-    let needs_distance = matches!(kind.shape, GraphicShape::Circle | GraphicShape::Sector);
+    let needs_distance =
+        matches!(kind.shape, GraphicShape::Circle | GraphicShape::Sector | GraphicShape::Ellipse);
     if needs_distance && fields.distances_m.is_empty() {
         return Err(GraphicError::Missing { kind: kind.word, what: "`distances`" });
+    }
+    if kind.shape == GraphicShape::Ellipse {
+        return Ok(());
     }
     if let Some(pair) = fields.distances_m.windows(2).find(|pair| pair[0] >= pair[1]) {
         return Err(GraphicError::FallingDistances(pair[1], pair[0]));
     }
-    let needed = fields.distances_m.len();
+    // The ground of a radar's search lies between two ranges and one pair of azimuths.
+    let needed = if kind.rule == "POINT18" { 1 } else { fields.distances_m.len() };
     if kind.shape == GraphicShape::Sector && fields.azimuths_deg.len() != 2 * needed {
         return Err(GraphicError::AzimuthPairs { found: fields.azimuths_deg.len(), needed });
     }
@@ -176,6 +198,11 @@ mod tests {
     fn too_few_too_many_and_too_near_points_are_named() {
         let error = checked("block", &[[0.0, 0.0], [100.0, 0.0]], None).expect_err("a T has three points");
         assert_eq!(error.to_string(), "block has 2 points and needs 3");
+        assert!(
+            error.help().contains("1 and 2 the ends of the bar, 3 the end of the stem"),
+            "{}",
+            error.help()
+        );
         let error = checked("seize", &[[0.0, 0.0], [100.0, 0.0]], None).expect_err("three or four");
         assert_eq!(error.to_string(), "seize has 2 points and needs 3 to 4");
         let error = checked("phase_line", &[[0.0, 0.0], [100.0, 0.0], [100.5, 0.0]], None);
@@ -198,8 +225,12 @@ mod tests {
         let axis = [[1000.0, 0.0], [0.0, 0.0], [800.0, 200.0]];
         assert_eq!(checked("axis_main_attack", &axis, None), Ok(()));
         assert_eq!(checked("axis_main_attack", &axis[..2], Some(300.0)), Ok(()));
-        let long = [[1000.0, 0.0], [0.0, 0.0], [-200.0, 200.0]];
+        let long = [[1000.0, 0.0], [900.0, 0.0], [0.0, 0.0], [850.0, 200.0]];
         assert!(matches!(checked("axis_main_attack", &long, None), Err(GraphicError::HeadTooLong { .. })));
+        let backward = [[0.0, 0.0], [1000.0, 0.0], [800.0, 200.0]];
+        let error = checked("axis_main_attack", &backward, None).expect_err("the tip comes first");
+        assert!(error.to_string().contains("beside point 2 and not beside point 1, the tip"), "{error}");
+        assert!(error.help().contains("tip first") && error.help().contains("order"), "{}", error.help());
         let thin = [[1000.0, 0.0], [0.0, 0.0], [800.0, 0.0]];
         assert!(matches!(checked("axis_main_attack", &thin, None), Err(GraphicError::NoWidth { .. })));
     }

@@ -21,11 +21,32 @@ pub fn air_corridor(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut 
     for &point in input.points {
         drawing.ring(circle(point, half_m));
     }
-    let mut text = input.fields.labeled(kind.label);
-    if !input.fields.heights.is_empty() {
-        text = format!("{text}\n{}", input.fields.heights.join("\u{2013}"));
-    }
-    drawing.text_on(text.replace('\n', " "), TextCourse::Once(input.points.to_vec()));
+    drawing.text_on(input.fields.named(kind.label), TextCourse::Once(input.points.to_vec()));
+    let [from, to] = [input.points[0], input.points[1]];
+    let aside = direction(from, to).perp();
+    let over = if aside.dot(input.up) < 0.0 { -aside } else { aside };
+    drawing.text_beside(
+        box_text(input, width_m),
+        from.midpoint(to) + over * (half_m + 0.3 * input.em_m),
+        over,
+    );
+}
+
+/// The text in the box of a corridor: its name, width, elevations and times, as far as they are stated.
+fn box_text(input: &GraphicInput<'_>, width_m: f64) -> String {
+    let fields = input.fields;
+    let titled = |title: &str, text: Option<&String>| {
+        text.filter(|text| !text.is_empty()).map(|text| format!("{title}: {text}"))
+    };
+    let lines = [
+        titled("Name", Some(&fields.designation)),
+        Some(format!("Width: {width_m:.0} m")),
+        titled("Min alt", fields.heights.first()),
+        titled("Max alt", fields.heights.get(1)),
+        titled("DTG start", Some(&fields.from)),
+        titled("DTG end", Some(&fields.until)),
+    ];
+    lines.into_iter().flatten().collect::<Vec<_>>().join("\n")
 }
 
 /// The width of a corridor in meters: stated as `width` or as the first distance.

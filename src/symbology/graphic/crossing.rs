@@ -1,4 +1,4 @@
-//! Crossing sites: draw rules LINE11, LINE16, LINE17 and LINE18; fighting positions, abatis.
+//! Crossing sites: draw rules LINE11, LINE12, LINE16, LINE17 and LINE18; fighting positions, abatis.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use crate::graphic::drawing::{GraphicDrawing, GraphicInput};
 use crate::graphic::kind::GraphicKind;
-use crate::graphic::plane::{direction, text_m};
+use crate::graphic::plane::{direction, text_m, turned};
 use sandtable_geom::polyline::Polyline;
 
 /// Flanges at the ends of a bridge, in text heights.
@@ -77,10 +77,39 @@ pub fn abatis(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDr
     let Some(line) = Polyline::new(input.points.iter().copied(), 0.0) else { return };
     let base_m = (NOTCH_EM[0] * input.em_m).min(line.length() / 2.0);
     let [from, to] = [line.at(0.0), line.at(base_m)];
-    let apex = from.midpoint(to) + direction(from, to).perp() * (NOTCH_EM[1] * input.em_m);
+    // The notch is on the upper side on the picture.
+    let aside = direction(from, to).perp();
+    let over = if aside.dot(input.up) < 0.0 { -aside } else { aside };
+    let apex = from.midpoint(to) + over * (NOTCH_EM[1] * input.em_m);
     let mut points = vec![from, apex];
     points.extend(line.between(base_m, line.length()));
     drawing.line(points);
+}
+
+/// A roadblock (LINE12): lines as far off the one between points 1 and 2 as point 3 is, on both sides. Those of a planned one are
+/// dashed; that of one that is safe on the side away from point 3. One that is complete is crossed by two lines.
+pub fn roadblock(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
+    let [from, to, side] = [input.points[0], input.points[1], input.points[2]];
+    let along = direction(from, to);
+    let aside = along.perp() * along.perp().dot(side - from);
+    let [near, far] = [[from + aside, to + aside], [from - aside, to - aside]];
+    match kind.code {
+        "271201" => [near, far].into_iter().for_each(|line| drawing.dashed(line)),
+        "271202" => {
+            drawing.line(near);
+            drawing.dashed(far);
+        }
+        _ => [near, far].into_iter().for_each(|line| drawing.line(line)),
+    }
+    if kind.code == "271204" {
+        /// The angle of the crossing lines to those of the block.
+        const CROSSING_RAD: f64 = 75.0 * std::f64::consts::PI / 180.0;
+        let half = turned(along, CROSSING_RAD) * (from.distance(to) / 2.0);
+        for way in [1.0, -1.0] {
+            let middle = from.midpoint(to) + along * (aside.length() * way);
+            drawing.line([middle - half, middle + half]);
+        }
+    }
 }
 
 /// A convoy (LINE9, LINE20): a box that points the way it moves; of a halted one the point is turned inward.
@@ -88,8 +117,10 @@ pub fn convoy(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graphi
     let [rear, front] = [input.points[1], input.points[0]];
     let (along, length_m) = (direction(rear, front), rear.distance(front));
     /// The head's length and half width, and the box's half width, in lengths.
-    const CONVOY: [f64; 3] = [0.12, 0.06, 0.04];
-    let [head_m, wide_m, half_m] = CONVOY.map(|share| share * length_m);
+    const MOVING: [f64; 3] = [0.12, 0.06, 0.04];
+    const HALTED: [f64; 3] = [0.08, 0.04, 0.04];
+    let sizes = if kind.code == "330100" { MOVING } else { HALTED };
+    let [head_m, wide_m, half_m] = sizes.map(|share| share * length_m);
     let at = |far: f64, aside: f64| rear + along * far + along.perp() * aside;
     let neck = length_m - head_m;
     if kind.code == "330100" {

@@ -25,8 +25,8 @@ pub struct GraphicInput<'a> {
 pub struct GraphicDrawing {
     /// Lines of one width.
     pub strokes: Vec<GraphicStroke>,
-    /// Rings to fill, without repeating the first point.
-    pub fills: Vec<Vec<DVec2>>,
+    /// Rings to fill.
+    pub fills: Vec<GraphicFill>,
     /// Texts.
     pub texts: Vec<GraphicText>,
 }
@@ -42,6 +42,26 @@ pub struct GraphicStroke {
     pub side: StrokeSide,
 }
 
+/// A filled ring of a graphic.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GraphicFill {
+    /// Its corners, without repeating the first.
+    pub ring: Vec<DVec2>,
+    /// What it is filled with.
+    pub ink: FillInk,
+}
+
+/// What a ring is filled with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FillInk {
+    /// The color of the graphic's lines, as teeth are.
+    Own,
+    /// The color of the other side's lines.
+    Opposing,
+    /// A color - red, green, blue - through which the ground shows.
+    Ground([u8; 3]),
+}
+
 /// Whether the draw rule itself dashes a line; planned graphics are dashed besides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StrokeDash {
@@ -49,6 +69,8 @@ pub enum StrokeDash {
     Status,
     /// Dashed whatever the status is.
     Dashed,
+    /// Hatching of an area: solid whatever the status is, and no outline.
+    Hatch,
 }
 
 /// Whose line it is.
@@ -112,8 +134,20 @@ impl GraphicDrawing {
     /// Adds a closed line and fills it.
     pub(super) fn filled(&mut self, points: impl Into<Vec<DVec2>>) {
         let points = points.into();
-        self.fills.push(points.clone());
+        self.fill(points.clone(), FillInk::Own);
         self.ring(points);
+    }
+
+    /// Fills a ring without a line around it.
+    pub(super) fn fill(&mut self, ring: Vec<DVec2>, ink: FillInk) {
+        if ring.len() > 2 {
+            self.fills.push(GraphicFill { ring, ink });
+        }
+    }
+
+    /// Adds a line of an area's hatching.
+    pub(super) fn hatch(&mut self, points: impl Into<Vec<DVec2>>) {
+        self.stroke(points.into(), StrokeDash::Hatch, StrokeSide::Own);
     }
 
     /// Adds a text centered on a point; nothing for an empty one.
@@ -141,7 +175,7 @@ impl GraphicDrawing {
         }
     }
 
-    fn stroke(&mut self, points: Vec<DVec2>, dash: StrokeDash, side: StrokeSide) {
+    pub(super) fn stroke(&mut self, points: Vec<DVec2>, dash: StrokeDash, side: StrokeSide) {
         if points.len() > 1 {
             self.strokes.push(GraphicStroke { points, dash, side });
         }

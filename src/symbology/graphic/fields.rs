@@ -40,10 +40,15 @@ impl GraphicFields {
         }
     }
 
-    /// `label` with `{}` replaced by the designation, and the times under it.
+    /// `label` with `{}` replaced by the designation and `{H}` by further text.
+    pub(super) fn named(&self, label: &str) -> String {
+        let text = label.replace("{H}", &self.further).replace("{}", &self.designation);
+        text.trim().trim_end_matches([' ', '-']).to_owned()
+    }
+
+    /// `label` with its texts in place, and the times under it.
     pub(super) fn labeled(&self, label: &str) -> String {
-        let first = label.replace("{}", &self.designation);
-        let lines = [first.trim().to_owned(), self.times()];
+        let lines = [self.named(label), self.times()];
         lines.into_iter().filter(|line| !line.is_empty()).collect::<Vec<_>>().join("\n")
     }
 }

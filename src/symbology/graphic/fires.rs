@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use crate::graphic::area::{hatch, inner_text, is_hatched};
 use crate::graphic::drawing::{GraphicDrawing, GraphicInput};
 use crate::graphic::kind::GraphicKind;
 use crate::graphic::plane::{arc, arrowhead, circle, direction};
@@ -12,15 +13,19 @@ const BAR_EM: f64 = 1.04;
 /// How much longer than the greatest range the arrow of a sector is.
 const ARROW: f64 = 1.2;
 
-/// A linear target (LINE5): a line between bars, its number over it.
+/// A linear target (LINE5): a line with bars at its ends, its number over it.
 pub fn linear_target(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
-    let [from, to] = [input.points[0], input.points[1]];
-    let aside = direction(from, to).perp();
-    drawing.line([from, to]);
-    for end in [from, to] {
-        let bar = aside * (BAR_EM * input.em_m);
-        drawing.line([end - bar, end + bar]);
+    let points = input.points;
+    drawing.line(points);
+    let last = points.len() - 1;
+    for leg in [[0, 1], [last, last - 1]] {
+        let bar = direction(points[leg[0]], points[leg[1]]).perp() * (BAR_EM * input.em_m);
+        drawing.line([points[leg[0]] - bar, points[leg[0]] + bar]);
     }
+    // The texts stand in the middle of its middle leg.
+    let middle_leg = last.div_ceil(2);
+    let [from, to] = [points[middle_leg - 1], points[middle_leg]];
+    let aside = direction(from, to).perp();
     let above = if aside.dot(input.up) < 0.0 { -aside } else { aside };
     let middle = from.midpoint(to);
     let beside = above * (0.3 * input.em_m);
@@ -32,12 +37,20 @@ pub fn linear_target(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut
 /// A circle of a stated radius with a name inside (CIRCULAR1).
 pub fn circular(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     let Some(&radius_m) = input.fields.distances_m.first() else { return };
-    drawing.ring(circle(input.points[0], radius_m));
-    let mut text = input.fields.labeled(kind.label);
-    if !input.fields.target.is_empty() {
-        text = input.fields.target.clone();
+    let center = input.points[0];
+    let ring = circle(center, radius_m);
+    if is_hatched(kind) {
+        hatch(&ring, input, drawing);
     }
-    drawing.text(text, input.points[0]);
+    drawing.ring(ring);
+    if kind.code == "240502" {
+        // The letters stand on four sides, the name inside.
+        let up = input.up.normalize_or(DVec2::Y) * radius_m;
+        [up, up.perp(), -up, -up.perp()].into_iter().for_each(|side| drawing.text("PAA", center + side));
+        drawing.text(input.fields.labeled("{}"), center);
+    } else {
+        drawing.text(inner_text(kind, input), center);
+    }
 }
 
 /// Rings of range about a weapon or sensor (CIRCULAR2), each with its distance and height.
@@ -79,7 +92,7 @@ pub fn range_sector(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Gra
     {
         let middle = heading(pair[0] + (pair[1] - pair[0]).rem_euclid(360.0) / 2.0);
         let tip = center + middle * farthest_m * ARROW;
-        drawing.line([center + middle * farthest_m, tip]);
+        drawing.line([center, tip]);
         drawing.line(arrowhead(tip, middle, input.em_m, 0.6 * input.em_m));
     }
 }

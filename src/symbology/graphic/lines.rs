@@ -7,16 +7,100 @@ use crate::graphic::kind::GraphicKind;
 use crate::graphic::plane::{arrowhead, direction, gapped, text_m};
 use sandtable_geom::polyline::Polyline;
 
-/// From arrow to arrow of traffic, in widths of the route's name.
-const ARROW_EVERY: f64 = 6.0;
+/// How far the arrows of traffic are from the line in text heights: of one way, and of the other.
+const BESIDE_EM: [f64; 2] = [0.83, 2.08];
+
+/// The shortest leg with arrows of traffic in text heights.
+const SHORTEST_EM: f64 = 6.0;
 
 /// Sides of an arrowhead of traffic, in text heights.
-const TRAFFIC_EM: [f64; 2] = [0.8, 0.5];
+const TRAFFIC_EM: [f64; 2] = [0.83, 0.42];
 
 /// A line with its name at both ends (LINE2).
 pub fn end_labeled(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
+    let points = input.points;
+    if kind.code == "141200" {
+        drawing.dashed(points);
+    } else {
+        drawing.line(points);
+    }
+    drawing.text_on(input.fields.named(kind.label), TextCourse::Ends(points.to_vec()));
+    // The times stand under the line, near both ends.
+    let times = input.fields.times();
+    let half_m = text_m(&times, input.em_m) / 2.0;
+    let last = points.len() - 1;
+    for [end, inner] in [[0, 1], [last, last - 1]] {
+        let inward = direction(points[end], points[inner]);
+        let under = below(inward, input);
+        let at = points[end] + inward * half_m.min(points[end].distance(points[inner]) / 2.0);
+        drawing.text_beside(times.clone(), at + under * (0.5 * input.em_m), under);
+    }
+}
+
+/// The normal of a direction that points down on the picture.
+fn below(along: DVec2, input: &GraphicInput<'_>) -> DVec2 {
+    let aside = along.perp();
+    if aside.dot(input.up) > 0.0 { -aside } else { aside }
+}
+
+/// A navigational line (LINE4): a barb over its start and one under its end.
+pub fn navigational(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
+    /// How far a barb reaches along the line and aside, in text heights.
+    const BARB_EM: f64 = 0.83;
+    let [from, to] = [input.points[0], input.points[1]];
+    let along = direction(from, to);
+    let barb = (along - below(along, input)) * (BARB_EM * input.em_m);
+    drawing.line([from + barb, from, to, to - barb]);
+}
+
+/// A bearing line (LINE5): its letters in the middle, further text over it; of an ambiguous one dashed.
+pub fn bearing(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
+    if kind.code == "220104" {
+        drawing.dashed(input.points);
+    } else {
+        drawing.line(input.points);
+    }
+    let Some(line) = Polyline::new(input.points.iter().copied(), 0.0) else { return };
+    let middle = line.length() / 2.0;
+    drawing.text(kind.label, line.at(middle));
+    let points = input.points;
+    let last = points.len() - 1;
+    let outward = direction(points[last - 1], points[last]);
+    drawing.text_beside(input.fields.further.clone(), points[last] + outward * (0.4 * input.em_m), outward);
+}
+
+/// A line with its letters in the middle of every leg.
+pub fn segment_labeled(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     drawing.line(input.points);
-    drawing.text_on(input.fields.labeled(kind.label), TextCourse::Ends(input.points.to_vec()));
+    for leg in input.points.windows(2) {
+        let under = below(direction(leg[0], leg[1]), input);
+        drawing.text_beside(kind.label, leg[0].midpoint(leg[1]) - under * (0.4 * input.em_m), -under);
+    }
+}
+
+/// An overhead wire: a pylon at each of its points.
+pub fn overhead_wire(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
+    let up = input.up * input.em_m;
+    let right = -input.up.normalize_or(DVec2::Y).perp() * input.em_m;
+    /// A pylon's parts in text heights.
+    const FRAME: [[f64; 2]; 5] = [[0.0, 0.42], [-0.42, 0.0], [0.0, 1.67], [0.42, 0.0], [0.0, 0.42]];
+    const BAR: [[f64; 2]; 2] = [[-0.17, 0.83], [0.17, 0.83]];
+    const ARMS: [[f64; 2]; 4] = [[-0.58, 1.42], [-0.42, 1.67], [0.42, 1.67], [0.58, 1.42]];
+    const WIRE: [[f64; 2]; 2] = [[0.0, 1.67], [0.67, 1.0]];
+    for &foot in input.points {
+        let place = |[x, y]: [f64; 2]| foot + right * x + up * y;
+        drawing.line(FRAME.map(place));
+        drawing.line(BAR.map(place));
+        drawing.line(ARMS.map(place));
+        drawing.line(WIRE.map(place));
+    }
+    drawing.line(input.points);
+    let [first, second] = [input.points[0], input.points[1]];
+    drawing.text_beside(
+        input.fields.heights.join("\u{2013}"),
+        first.midpoint(second) + up * 0.4,
+        up.normalize_or_zero(),
+    );
 }
 
 /// The texts of LINE2, beyond the ends of a line that they cannot lie on.
@@ -32,58 +116,81 @@ pub fn label_ends(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Gr
 
 /// A line with its name once, near its middle (LINE7).
 pub fn middle_labeled(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
-    drawing.line(input.points);
+    if kind.code == "260200" {
+        drawing.dashed(input.points);
+    } else {
+        drawing.line(input.points);
+    }
     drawing.text_on(input.fields.labeled(kind.label), TextCourse::Once(input.points.to_vec()));
 }
 
 /// A line with its name along it again and again (LINE21), and arrows of one-way traffic or both ways'.
 pub fn route(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     drawing.line(input.points);
-    let Some(line) = Polyline::new(input.points.iter().copied(), 0.0) else { return };
     let text = input.fields.labeled(kind.label);
-    let every_m = (ARROW_EVERY * text_m(&text, input.em_m)).max(line.length() / 64.0);
     drawing.text_on(text, TextCourse::Repeated(input.points.to_vec()));
     let ways: &[f64] = match kind.code {
-        "330301" | "330401" => &[1.0],
+        "330301" | "330401" | "330501" => &[1.0],
         "330302" | "330402" => &[1.0, -1.0],
+        "330303" | "330403" | "330502" => &[1.0],
         _ => return,
     };
-    let count = (line.length() / every_m).floor().max(1.0);
-    let half_m = 2.5 * input.em_m;
-    for number in 0..count as u32 {
-        let station = line.length() * (f64::from(number) + 0.5) / count;
-        if !(half_m..=line.length() - half_m).contains(&station) {
-            continue;
-        }
-        for (place, &way) in ways.iter().enumerate() {
-            let along = direction(line.at(station - half_m), line.at(station + half_m)) * way;
-            let aside = -(along * way).perp() * input.em_m * (0.9 + 0.7 * place as f64);
-            let tip = line.at(station + way * half_m) + aside;
-            drawing.line([line.at(station - way * half_m) + aside, tip]);
-            let [length, half] = TRAFFIC_EM.map(|size| size * input.em_m);
-            drawing.line(arrowhead(tip, along, length, half));
+    let alternates = matches!(kind.code, "330303" | "330403" | "330502");
+    let [length, half] = TRAFFIC_EM.map(|size| size * input.em_m);
+    // More arrows of one route would crowd a sheet: they are left out of its shortest legs.
+    for leg in input.points.windows(2).filter(|leg| leg[0].distance(leg[1]) > SHORTEST_EM * input.em_m) {
+        let (quarter, left) = ((leg[1] - leg[0]) / 4.0, direction(leg[0], leg[1]).perp() * input.em_m);
+        for (beside, &way) in BESIDE_EM.into_iter().zip(ways) {
+            let middle = leg[0].midpoint(leg[1]) + left * beside;
+            let [tail, tip] = [middle - quarter * way, middle + quarter * way];
+            drawing.line([tail, tip]);
+            drawing.line(arrowhead(tip, direction(tail, tip), length, half));
+            if alternates {
+                drawing.line(arrowhead(tail, direction(tip, tail), length, half));
+                drawing.text("ALT", middle + left * 0.7);
+            }
         }
     }
 }
 
-/// A boundary (LINE7): the echelon in a gap of the line, and the texts on either side.
+/// A boundary (LINE7): the echelon in a gap of the line and the texts on either side, on every leg that has the length for
+/// them, at least on the longest.
 pub fn boundary(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
+    /// The least length of a leg with texts of its own, in widths of the longest of them.
+    const LEAST_WIDTHS: f64 = 3.0;
     let Some(line) = Polyline::new(input.points.iter().copied(), 0.0) else { return };
-    let (fields, em_m, middle) = (input.fields, input.em_m, line.length() / 2.0);
-    let gap_m =
-        if fields.echelon.is_empty() { 0.0 } else { text_m(&fields.echelon, em_m) / 2.0 + 0.4 * em_m };
-    gapped(&line, &[(middle, gap_m)]).into_iter().for_each(|piece| drawing.line(piece));
-    drawing.text(fields.echelon.clone(), line.at(middle));
-    let along = direction(line.at(middle - em_m), line.at(middle + em_m));
-    let sides = [(&fields.designation, along.perp()), (&fields.designation_2, -along.perp())];
-    for (name, aside) in sides {
-        let text = if fields.country.is_empty() || name.is_empty() {
+    let (fields, em_m) = (input.fields, input.em_m);
+    let named = |name: &String| {
+        if fields.country.is_empty() || name.is_empty() {
             name.clone()
         } else {
             format!("{name} ({})", fields.country)
-        };
-        drawing.text_beside(text, line.at(middle) + aside * (0.6 * em_m), aside);
+        }
+    };
+    let names = [named(&fields.designation), named(&fields.designation_2)];
+    let texts = [&names[0], &names[1], &fields.echelon];
+    let widest_m = texts.iter().map(|text| text_m(text, em_m)).fold(4.0 * em_m, f64::max);
+    let middles = labeled_legs(&line, LEAST_WIDTHS * widest_m);
+    let gap_m =
+        if fields.echelon.is_empty() { 0.0 } else { text_m(&fields.echelon, em_m) / 2.0 + 0.4 * em_m };
+    let gaps: Vec<(f64, f64)> = middles.iter().map(|&middle| (middle, gap_m)).collect();
+    gapped(&line, &gaps).into_iter().for_each(|piece| drawing.line(piece));
+    for middle in middles {
+        drawing.text(fields.echelon.clone(), line.at(middle));
+        let along = direction(line.at(middle - em_m), line.at(middle + em_m));
+        for (name, aside) in names.iter().zip([along.perp(), -along.perp()]) {
+            drawing.text_beside(name.clone(), line.at(middle) + aside * (0.6 * em_m), aside);
+        }
     }
+}
+
+/// The stations of the middles of legs at least so long, no nearer to each other; of a line without such a leg its middle.
+fn labeled_legs(line: &Polyline, least_m: f64) -> Vec<f64> {
+    /// More texts of one line would crowd a sheet.
+    const MOST_LABELS: usize = 64;
+    let legs = line.stations().windows(2).filter(|leg| leg[1] - leg[0] >= least_m);
+    let middles: Vec<f64> = legs.map(|leg| leg[0].midpoint(leg[1])).take(MOST_LABELS).collect();
+    if middles.is_empty() { vec![line.length() / 2.0] } else { middles }
 }
 
 /// The direction of attack (LINE1, from its tip): supporting, main, aviation and feint.

@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 
-use crate::graphic::drawing::{GraphicDrawing, GraphicInput};
+use crate::graphic::drawing::{GraphicDrawing, GraphicInput, GraphicStroke, StrokeDash};
 use crate::graphic::fields::GraphicFields;
 use crate::graphic::kind::GraphicKind;
 use sandtable_geom::segment;
@@ -16,20 +16,25 @@ const EM_M: f64 = 120.0;
 /// Lines sampled this densely, meters.
 const STEP_M: f64 = 10.0;
 
+/// Lines that stand for one place: the renderer's rounding of it, meters.
+const LEAST_M: f64 = 25.0;
+
 /// Kinds whose teeth both renderers space as they choose: their number is compared, not their places.
-const TOOTHED: [(&str, ToothCount); 11] = [
-    ("forward_line_of_troops", ToothCount::Bumps),
-    ("fortified_line", ToothCount::Bumps),
-    ("fortified_area", ToothCount::Bumps),
-    ("strong_point", ToothCount::Bumps),
-    ("obstacle_line", ToothCount::Bumps),
-    ("obstacle_belt", ToothCount::Bumps),
-    ("obstacle_free_zone", ToothCount::Bumps),
-    ("ditch_under_construction", ToothCount::Bumps),
-    ("wire", ToothCount::ShortLines),
-    ("single_fence", ToothCount::ShortLines),
-    ("double_apron_fence", ToothCount::ShortLines),
-];
+fn tooth_count(kind: &GraphicKind) -> Option<ToothCount> {
+    const BUMPS: &str = "forward_line_of_troops fortified_line fortified_area strong_point obstacle_line obstacle_belt \
+        obstacle_zone obstacle_free_zone obstacle_restricted_zone encirclement ditch_under_construction upper_cold_front \
+        upper_warm_front upper_occluded_front upper_stationary_front undercast_limit anchorage_line";
+    const MARKS: &str = "cold_front cold_frontogenesis cold_frontolysis warm_front warm_frontogenesis warm_frontolysis \
+        occluded_front occluded_frontolysis stationary_front stationary_frontogenesis stationary_frontolysis";
+    const SHORT: &str = "wire single_fence double_apron_fence";
+    let names = |list: &str| list.split_whitespace().any(|word| word == kind.word);
+    match () {
+        () if names(BUMPS) => Some(ToothCount::Bumps),
+        () if names(MARKS) => Some(ToothCount::Marks),
+        () if names(SHORT) => Some(ToothCount::ShortLines),
+        () => None,
+    }
+}
 
 #[derive(Clone, Copy, PartialEq)]
 enum ToothCount {
@@ -37,6 +42,8 @@ enum ToothCount {
     Bumps,
     /// Crosses of two short lines.
     ShortLines,
+    /// Filled figures larger than a dot.
+    Marks,
 }
 
 /// A recorded graphic.
@@ -44,40 +51,64 @@ struct Recorded {
     kind: &'static GraphicKind,
     points: Vec<DVec2>,
     lines: Vec<Vec<DVec2>>,
+    rings: Vec<Vec<DVec2>>,
+    texts: Vec<(DVec2, &'static str)>,
+}
+
+fn point(pair: &str) -> DVec2 {
+    let mut numbers = pair.split_whitespace().map(|number| number.parse().expect("a number"));
+    DVec2::new(numbers.next().expect("x"), numbers.next().expect("y"))
 }
 
 fn recorded() -> Vec<Recorded> {
-    let points = |text: &str| -> Vec<DVec2> {
-        let point = |pair: &str| {
-            let numbers: Vec<f64> =
-                pair.split_whitespace().map(|number| number.parse().expect("a number")).collect();
-            DVec2::new(numbers[0], numbers[1])
-        };
-        text.split(',').map(point).collect()
-    };
     let mut found: Vec<Recorded> = Vec::new();
     for line in TABLE.lines().filter(|line| !line.starts_with('#')) {
         let (what, rest) = line.split_once(' ').expect("a word and values");
+        if what == "graphic" {
+            let words: Vec<&str> = rest.split(' ').collect();
+            let kind = GraphicKind::of_code(words[0].parse().expect("a set"), words[1]);
+            let kind = kind.unwrap_or_else(|| panic!("{rest} is drawn"));
+            found.push(Recorded {
+                kind,
+                points: Vec::new(),
+                lines: Vec::new(),
+                rings: Vec::new(),
+                texts: Vec::new(),
+            });
+            continue;
+        }
+        let graphic = found.last_mut().expect("a graphic");
         match what {
-            "graphic" => {
-                let word = rest.split(' ').next().expect("a word");
-                let kind = GraphicKind::of_word(word).unwrap_or_else(|| panic!("{word} is drawn"));
-                found.push(Recorded { kind, points: Vec::new(), lines: Vec::new() });
+            "points" => graphic.points = rest.split(',').map(point).collect(),
+            "text" => {
+                let place = rest.match_indices(' ').nth(1).expect("x, y and a text").0;
+                graphic.texts.push((point(&rest[..place]), &rest[place + 1..]));
             }
-            "points" => found.last_mut().expect("a graphic").points = points(rest),
-            _ => found.last_mut().expect("a graphic").lines.push(points(rest)),
+            "ring" => {
+                let ring: Vec<DVec2> = rest.split(',').map(point).collect();
+                graphic.rings.push(ring.clone());
+                graphic.lines.push(ring);
+            }
+            _ => graphic.lines.push(rest.split(',').map(point).collect()),
         }
     }
     found
 }
 
 fn drawn(recorded: &Recorded) -> GraphicDrawing {
-    let distances_m = match recorded.kind.word {
-        "air_corridor" => vec![800.0],
-        "range_fan_circular" => vec![500.0, 1000.0, 2000.0],
-        _ => vec![1000.0],
+    let (distances_m, azimuths_deg) = match recorded.kind.rule {
+        "CORRIDOR1" => (vec![800.0], vec![]),
+        "RECTANGULAR1" | "RECTANGULAR3" => (vec![1200.0], vec![]),
+        "RECTANGULAR2" => (vec![2400.0, 1200.0], vec![30.0]),
+        "ELLIPSE1" => (vec![1500.0, 700.0], vec![60.0]),
+        "POINT17" => (vec![600.0, 1500.0], vec![40.0]),
+        "POINT18" => (vec![600.0, 1500.0], vec![40.0, 90.0]),
+        "ARC1" => (vec![1000.0, 2000.0], vec![20.0, 90.0, 30.0, 80.0]),
+        "CIRCULAR2" => (vec![500.0, 1000.0, 2000.0], vec![]),
+        _ => (vec![1000.0], vec![]),
     };
-    let fields = GraphicFields { distances_m, ..GraphicFields::default() };
+    let fields =
+        GraphicFields { distances_m, azimuths_deg, designation: "RED".into(), ..GraphicFields::default() };
     let points = &recorded.points;
     let input = GraphicInput { points, em_m: EM_M, up: DVec2::Y, width_m: None, fields: &fields };
     recorded.kind.draw(&input)
@@ -112,7 +143,18 @@ fn farthest_m(from: &[Vec<DVec2>], to: &[Vec<DVec2>], ignored: &[DVec2]) -> f64 
 }
 
 fn strokes(drawing: &GraphicDrawing) -> Vec<Vec<DVec2>> {
-    drawing.strokes.iter().map(|stroke| stroke.points.clone()).collect()
+    let lines = drawing.strokes.iter().filter(|stroke| !is_hatching(stroke));
+    lines.map(|stroke| stroke.points.clone()).collect()
+}
+
+/// Hatching is a matter of the pen: the other renderer fills areas with a pattern.
+fn is_hatching(stroke: &GraphicStroke) -> bool {
+    stroke.dash == StrokeDash::Hatch && stroke.points.len() == 2
+}
+
+/// Filled figures that are longer around than a dot.
+fn marks<'a>(rings: impl Iterator<Item = &'a [DVec2]>) -> usize {
+    rings.filter(|ring| length_m(ring) > 2.2 * EM_M).count()
 }
 
 /// Teeth on lines: runs of places that are off the line through the graphic's points.
@@ -148,12 +190,13 @@ fn teeth(lines: &[Vec<DVec2>], recorded: &Recorded, count: ToothCount) -> usize 
 #[test]
 fn lines_without_teeth_lie_within_two_percent_of_the_graphic_of_another_renderer() {
     let (mut wrong, mut compared, mut worst) = (Vec::new(), 0, (0.0, ""));
-    for recorded in recorded() {
+    for recorded in recorded().iter().filter(|recorded| tooth_count(recorded.kind).is_none()) {
         let word = recorded.kind.word;
-        if TOOTHED.iter().any(|(toothed, _)| *toothed == word) {
+        if word == "leading_line" && recorded.lines.len() == 1 {
+            // The other renderer leaves out its second half where it turns up.
             continue;
         }
-        let drawing = drawn(&recorded);
+        let drawing = drawn(recorded);
         let ours = strokes(&drawing);
         let gaps: Vec<DVec2> = drawing.texts.iter().map(|text| text.at).collect();
         // The length of a graphic is that of its lines in the other renderer.
@@ -164,29 +207,68 @@ fn lines_without_teeth_lie_within_two_percent_of_the_graphic_of_another_renderer
         if share > worst.0 {
             worst = (share, word);
         }
-        println!("{word:32} {off_m:6.0} m of {length_m:6.0} m: {:.2} %", 100.0 * share);
-        if share > 0.02 {
-            wrong.push(format!("{word}: {off_m:.0} m of {length_m:.0} m"));
+        if share > 0.02 && off_m > LEAST_M {
+            wrong.push(format!("{} {word}: {off_m:.0} m of {length_m:.0} m", recorded.kind.code));
         }
     }
     println!("{compared} graphics, worst {:.2} % ({})", 100.0 * worst.0, worst.1);
     assert!(wrong.is_empty(), "{wrong:#?}");
-    assert!(compared >= 55, "{compared}");
+    assert!(compared >= 1220, "{compared}");
 }
 
 #[test]
 fn lines_with_teeth_have_as_many_as_those_of_another_renderer_but_one() {
-    let mut wrong = Vec::new();
+    let (mut wrong, mut compared) = (Vec::new(), 0);
     for recorded in recorded() {
-        let Some(&(word, how)) = TOOTHED.iter().find(|(word, _)| *word == recorded.kind.word) else {
-            continue;
+        let Some(how) = tooth_count(recorded.kind) else { continue };
+        let word = recorded.kind.word;
+        let drawing = drawn(&recorded);
+        let [ours, theirs] = if how == ToothCount::Marks {
+            let fills = drawing.fills.iter().map(|fill| fill.ring.as_slice());
+            [marks(fills), marks(recorded.rings.iter().map(Vec::as_slice))]
+        } else {
+            [strokes(&drawing), recorded.lines.clone()].map(|lines| teeth(&lines, &recorded, how))
         };
-        let ours = teeth(&strokes(&drawn(&recorded)), &recorded, how);
-        let theirs = teeth(&recorded.lines, &recorded, how);
-        println!("{word:32} {ours} teeth, {theirs} in the table");
+        compared += 1;
+        // The other renderer leaves the last pair out of an occluded front's last leg, and where the marks of an upper front
+        // touch it counts several as one.
+        let theirs = if word == "occluded_front" { theirs + 2 } else { theirs };
+        if matches!(word, "upper_occluded_front" | "upper_stationary_front") {
+            continue;
+        }
         if ours.abs_diff(theirs) > 1 {
             wrong.push(format!("{word}: {ours} for {theirs}"));
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
+    assert!(compared >= 75, "{compared}");
+}
+
+#[test]
+fn graphics_show_the_letters_that_those_of_another_renderer_show() {
+    let (mut wrong, mut compared) = (Vec::new(), 0);
+    for recorded in recorded() {
+        let drawing = drawn(&recorded);
+        let ours: Vec<&str> =
+            drawing.texts.iter().flat_map(|text| text.text.split([' ', '-', '\n'])).collect();
+        for (_, text) in &recorded.texts {
+            // Titles of numbers are a matter of wording; 2525E writes BL for the B of a bridgehead line.
+            const TITLES: [&str; 5] = [":", "RG", "ALT", "GRID", "EFF"];
+            let is_azimuth = recorded.kind.rule == "ARC1";
+            let is_titled = is_azimuth || TITLES.iter().any(|title| text.contains(title));
+            let words = text.split([' ', '-']).filter(|word| !word.is_empty() && !is_titled && *word != "B");
+            for word in words {
+                compared += 1;
+                if !ours.contains(&word) {
+                    wrong.push(format!(
+                        "{} {}: {word} of {text}; ours {ours:?}",
+                        recorded.kind.code, recorded.kind.word
+                    ));
+                }
+            }
+        }
+    }
+    wrong.dedup();
+    assert!(wrong.is_empty(), "{compared}: {wrong:#?}");
+    assert!(compared > 500, "{compared}");
 }

@@ -21,7 +21,7 @@ fn head(tip: DVec2, toward: DVec2, input: &GraphicInput<'_>, drawing: &mut Graph
 }
 
 /// Adds a line with the letter of a kind in a gap at a share of its length.
-fn lettered(
+pub fn lettered(
     points: &[DVec2],
     share: f64,
     kind: &GraphicKind,
@@ -65,7 +65,19 @@ pub fn bracket(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graph
     let depth = back - a.midpoint(b);
     drawing.line([b, b + depth]);
     drawing.line([a, a + depth]);
-    lettered(&[b + depth, a + depth], 0.5, kind, input, drawing);
+    match kind.code {
+        "270602" => drawing.line(zigzag(b + depth, a + depth, input)),
+        "270603" => {
+            // Two bars across a gap of the back.
+            let (middle, along) = (back, direction(b, a) * (0.69 * input.em_m));
+            let bar = depth.normalize_or_zero() * (0.69 * input.em_m);
+            for (end, side) in [(b + depth, -1.0), (a + depth, 1.0)] {
+                drawing.line([end, middle + along * side]);
+                drawing.line([middle + along * side - bar, middle + along * side + bar]);
+            }
+        }
+        _ => lettered(&[b + depth, a + depth], 0.5, kind, input, drawing),
+    }
     let inward = depth.normalize_or_zero() * (BARB_EM * input.em_m);
     // Which way point 1 lies as seen along the depth.
     let side = depth.perp_dot(a - b).signum();
@@ -77,6 +89,22 @@ pub fn bracket(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graph
             _ => drawing.line([end + slash(FRAC_PI_4), end, end + slash(-FRAC_PI_4)]),
         }
     }
+}
+
+/// A zigzag along a line.
+fn zigzag(from: DVec2, to: DVec2, input: &GraphicInput<'_>) -> Vec<DVec2> {
+    /// From corner to corner, and how far they are aside, in text heights.
+    const ZIGZAG_EM: [f64; 2] = [0.74, 1.11];
+    let count = (from.distance(to) / (ZIGZAG_EM[0] * input.em_m)).floor().clamp(2.0, 400.0);
+    let aside = direction(from, to).perp() * (ZIGZAG_EM[1] * input.em_m);
+    let corner = |step: u32| {
+        let side = if step.is_multiple_of(2) { 1.0 } else { -1.0 };
+        from.lerp(to, (f64::from(step) + 0.5) / count) + aside * side
+    };
+    let mut line = vec![from];
+    line.extend((0..count as u32).map(corner));
+    line.push(to);
+    line
 }
 
 /// Disrupt as an obstacle's effect (AREA12) and as a task (AREA25): two ends of the back line and the tip of the longest of
@@ -103,7 +131,7 @@ pub fn disrupt(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graph
 }
 
 /// Turn (LINE10): a quarter of a circle from the rear to the tip, on the side of point 3.
-pub fn turn(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
+pub fn turn(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     let [tip, rear, side] = [input.points[0], input.points[1], input.points[2]];
     /// The sagitta of a quarter of a circle in chords.
     const QUARTER: f64 = 0.207_106_781_186_547_5;
@@ -112,12 +140,15 @@ pub fn turn(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDraw
     let toward = direction(curve[curve.len() - 2], tip);
     let [length, half] = [1.2 * input.em_m, 0.7 * input.em_m];
     drawing.filled(arrowhead(tip, toward, length, half));
-    drawing.line(curve);
+    lettered(&curve, 0.5, kind, input, drawing);
 }
 
 /// Delay, withdraw and retire (LINE24): an arrow with its tip at point 1 and a half circle from point 2 to point 3.
 pub fn delay(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
-    let [tip, turn, end] = [input.points[0], input.points[1], input.points[2]];
+    let [tip, turn] = [input.points[0], input.points[1]];
+    /// The half circle's width in lengths of the arrow where no point 3 says it (2525E), on the arrow's left.
+    const BOW: f64 = 0.3;
+    let end = input.points.get(2).copied().unwrap_or(turn + (tip - turn).perp() * BOW);
     lettered(&[turn, tip], 0.5, kind, input, drawing);
     let toward = direction(turn, tip);
     drawing.line(arrowhead(tip, toward, 1.5 * input.em_m, 1.2 * input.em_m));
@@ -129,14 +160,15 @@ pub fn delay(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graphic
     drawing.text_beside(input.fields.times(), turn.lerp(tip, 0.3) + below * input.em_m, below);
 }
 
-/// Isolate (AREA15), occupy (AREA16), retain (AREA6) and secure (AREA19): a circle about point 1 that begins at point 2 and
+/// Isolate, area defense and cordons (AREA15), occupy (AREA16), retain (AREA6) and secure (AREA19): a circle about point 1 that begins at point 2 and
 /// runs clockwise almost to itself.
 pub fn circle_task(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     let [center, start] = [input.points[0], input.points[1]];
     let radius = start - center;
     /// What is left of the circle, in radians: as much as the arrowhead needs.
     const OPEN_RAD: f64 = 0.384;
-    let open = if kind.code == "341500" { PI / 6.0 } else { OPEN_RAD };
+    let is_toothed = matches!(kind.code, "341500" | "152600" | "342600" | "342700");
+    let open = if is_toothed { PI / 6.0 } else { OPEN_RAD };
     let curve = arc(center, radius, open - 2.0 * PI);
     let end = curve[curve.len() - 1];
     // Clockwise: to the right of the radius.
@@ -151,15 +183,17 @@ pub fn circle_task(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut G
         }
         _ => head(end, toward, input, drawing),
     }
-    if matches!(kind.code, "341500" | "151205") {
+    if is_toothed || kind.code == "151205" {
         /// The parts of the circle: of isolate every third has a tooth inward, of retain each a tick outward.
         const PARTS: u32 = 25;
         const TOOTH: f64 = 0.2;
+        const DEFENSE_TOOTH: f64 = 0.25;
         let at = |part: u32| turned(radius, (open - 2.0 * PI) * f64::from(part) / f64::from(PARTS));
         for part in 1..PARTS - 1 {
-            if kind.code == "341500" && part.is_multiple_of(3) {
-                let apex = center + at(part) * (1.0 - TOOTH);
-                drawing.line([center + at(part - 1), apex, center + at(part + 1)]);
+            if is_toothed && part.is_multiple_of(3) {
+                let share = if kind.code == "152600" { 1.0 + DEFENSE_TOOTH } else { 1.0 - TOOTH };
+                let tooth = [center + at(part - 1), center + at(part) * share, center + at(part + 1)];
+                if kind.code == "152600" { drawing.filled(tooth) } else { drawing.line(tooth) }
             } else if kind.code == "151205" {
                 let tick = at(part).normalize_or_zero() * (BARB_EM * input.em_m);
                 drawing.line([center + at(part), center + at(part) + tick]);
@@ -169,23 +203,30 @@ pub fn circle_task(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut G
     lettered(&curve, 0.5, kind, input, drawing);
 }
 
-/// Cover, guard and screen (LINE26): two lightning arrows from point 1 to points 2 and 3.
+/// Cover, guard and screen (LINE26): two lightning arrows from point 1 to points 2 and 3, or from points 2 and 3 to 1 and 4.
 pub fn screen(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
-    let center = input.points[0];
-    let tips = [input.points[1], input.points[2]];
-    /// The gap at the center, and half of the jag, in text heights.
+    // Two arrows from one place, or (2525E) each from a place of its own.
+    let arrows = match *input.points {
+        [first, from, other, last] => [[from, first], [other, last]],
+        [center, first, last, ..] => [[center, first], [center, last]],
+        _ => return,
+    };
+    let is_split = input.points.len() > 3;
+    let tips = arrows.map(|[_, tip]| tip);
+    let middle = arrows[0][0].midpoint(arrows[1][0]);
+    /// The gap at the center in text heights, and half of the jag as a share of the first arrow.
     const GAP_EM: f64 = 2.5;
-    const JAG_EM: f64 = 0.88;
-    let away = center - tips[0].midpoint(tips[1]);
-    for tip in tips {
+    const JAG: f64 = 0.0472;
+    let away = middle - tips[0].midpoint(tips[1]);
+    let jag_m = JAG * arrows[0][0].distance(tips[0]);
+    for [center, tip] in arrows {
         let (along, length_m) = (direction(center, tip), center.distance(tip));
-        let gap_m = (GAP_EM * input.em_m).min(length_m / 4.0);
-        let jag_m = (JAG_EM * input.em_m).min(length_m / 8.0);
+        let gap_m = if is_split { 0.0 } else { (GAP_EM * input.em_m).min(length_m / 4.0) };
         let side = if along.perp().dot(away) < 0.0 { -along.perp() } else { along.perp() };
         let middle = center + along * (length_m + gap_m) / 2.0;
         let jag = |way: f64| middle + (along * way + side * way) * jag_m;
         drawing.line([center + along * gap_m, jag(1.0), jag(-1.0), tip]);
-        head(tip, along, input, drawing);
+        drawing.line(arrowhead(tip, along, jag_m, jag_m));
         drawing.text(kind.label, center + along * (gap_m - 0.75 * input.em_m));
     }
 }
@@ -288,5 +329,7 @@ pub fn contain(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graph
         drawing.line([center + radius, center + radius / 2.0]);
     }
     lettered(&[rear, center], 0.5, kind, input, drawing);
+    // What is contained is the enemy, whoever contains it.
+    drawing.text("ENY", center + direction(rear, center) * (0.3 * a.distance(center)));
     head(center, direction(rear, center), input, drawing);
 }

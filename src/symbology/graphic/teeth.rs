@@ -6,7 +6,7 @@
 
 use glam::DVec2;
 
-use crate::graphic::area::label_area;
+use crate::graphic::area::{hatch, is_hatched, label_area};
 use crate::graphic::drawing::{GraphicDrawing, GraphicInput};
 use crate::graphic::kind::GraphicKind;
 use crate::graphic::lines::label_ends;
@@ -20,7 +20,10 @@ const MOST_TEETH: f64 = 2000.0;
 /// From tooth to tooth, of arcs, squares and triangles, in text heights.
 const PITCH_EM: f64 = 1.72;
 /// Of ditches.
-const DITCH_PITCH_EM: f64 = 1.0;
+const DITCH_PITCH_EM: f64 = 1.02;
+
+/// Of an encirclement.
+const ENCIRCLEMENT_EM: f64 = 1.72;
 
 /// The height of squares, ticks and triangles.
 const TOOTH_EM: f64 = 0.833;
@@ -28,7 +31,8 @@ const TOOTH_EM: f64 = 0.833;
 const DITCH_TOOTH_EM: f64 = 1.25;
 
 /// A stretch of a line with one tooth.
-struct ToothBase<'a> {
+#[derive(Clone, Copy)]
+pub(super) struct ToothBase<'a> {
     line: &'a Polyline,
     from_m: f64,
     to_m: f64,
@@ -36,28 +40,34 @@ struct ToothBase<'a> {
 
 impl ToothBase<'_> {
     /// A place on the stretch.
-    fn at(&self, share: f64) -> DVec2 {
+    pub(super) fn at(&self, share: f64) -> DVec2 {
         self.line.at(self.from_m + (self.to_m - self.from_m) * share)
     }
 
     /// The line between two places.
-    fn between(&self, from: f64, to: f64) -> Vec<DVec2> {
+    pub(super) fn between(&self, from: f64, to: f64) -> Vec<DVec2> {
         let station = |share: f64| self.from_m + (self.to_m - self.from_m) * share;
         self.line.between(station(from), station(to))
     }
 
+    /// Its halves, a tooth each.
+    pub(super) fn halves(&self) -> [Self; 2] {
+        let middle_m = self.from_m.midpoint(self.to_m);
+        [Self { to_m: middle_m, ..*self }, Self { from_m: middle_m, ..*self }]
+    }
+
     /// To the left, of length 1.
-    fn left(&self) -> DVec2 {
+    pub(super) fn left(&self) -> DVec2 {
         (self.at(1.0) - self.at(0.0)).normalize_or_zero().perp()
     }
 
-    fn length_m(&self) -> f64 {
+    pub(super) fn length_m(&self) -> f64 {
         self.to_m - self.from_m
     }
 }
 
 /// The stretches of a line with one tooth each, about `pitch_m` long.
-fn bases(line: &Polyline, pitch_m: f64) -> impl Iterator<Item = ToothBase<'_>> {
+pub(super) fn bases(line: &Polyline, pitch_m: f64) -> impl Iterator<Item = ToothBase<'_>> {
     let count = (line.length() / pitch_m).floor().clamp(1.0, MOST_TEETH);
     let step_m = line.length() / count;
     (0..count as u32).map(move |index| ToothBase {
@@ -68,7 +78,7 @@ fn bases(line: &Polyline, pitch_m: f64) -> impl Iterator<Item = ToothBase<'_>> {
 }
 
 /// A line, or the outline of an area with its outside on the left.
-fn base_line(kind: &GraphicKind, input: &GraphicInput<'_>) -> Option<Polyline> {
+pub(super) fn base_line(kind: &GraphicKind, input: &GraphicInput<'_>) -> Option<Polyline> {
     if !kind.is_area() {
         return Polyline::new(input.points.iter().copied(), 0.0);
     }
@@ -81,6 +91,27 @@ pub fn flot(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicD
     let Some(line) = base_line(kind, input) else { return };
     drawing.line(arcs(&line, input.em_m));
     label_ends(kind, input, drawing);
+    hostile_ends(input, drawing);
+}
+
+/// Adds the mark of the enemy over both ends of a line.
+fn hostile_ends(input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
+    let points = input.points;
+    let up = input.up.normalize_or(DVec2::Y);
+    for end in [points[0], points[points.len() - 1]] {
+        drawing.text_beside(input.fields.hostile.clone(), end + up * (1.2 * input.em_m), up);
+    }
+}
+
+/// An encirclement: triangles on the outside of its outline.
+pub fn encirclement(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
+    let Some(line) = base_line(kind, input) else { return };
+    drawing.ring(input.points);
+    for base in bases(&line, ENCIRCLEMENT_EM * input.em_m) {
+        let apex = base.at(0.5) + base.left() * TOOTH_EM * input.em_m;
+        drawing.line([base.at(0.25), apex, base.at(0.75)]);
+    }
+    label_area(kind, input, drawing);
 }
 
 /// The line of contact: the forward lines of both sides, face to face.
@@ -96,6 +127,7 @@ pub fn contact(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graph
     }
     drawing.opposing(facing);
     label_ends(kind, input, drawing);
+    hostile_ends(input, drawing);
 }
 
 fn arcs(line: &Polyline, em_m: f64) -> Vec<DVec2> {
@@ -128,7 +160,7 @@ pub fn strong_point(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut 
 /// An obstacle line, belt or zone: triangles with a flat stretch between; those of an obstacle-free zone point inward.
 pub fn obstacle(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     let Some(line) = base_line(kind, input) else { return };
-    let side = if kind.code == "270300" { -1.0 } else { 1.0 };
+    let side = if matches!(kind.code, "270300" | "270400") { -1.0 } else { 1.0 };
     let mut outline = vec![line.at(0.0)];
     for base in bases(&line, PITCH_EM * input.em_m) {
         outline.extend(base.between(0.0, 0.5));
@@ -136,6 +168,9 @@ pub fn obstacle(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Grap
         outline.extend([base.at(1.0)]);
     }
     drawing.line(outline);
+    if is_hatched(kind) {
+        hatch(input.points, input, drawing);
+    }
     if kind.is_area() {
         label_area(kind, input, drawing);
     } else {
@@ -188,7 +223,7 @@ pub fn mine_line(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Gra
     drawing.line(line.points());
     let radius_m = 0.4 * input.em_m;
     for base in bases(&line, 2.0 * PITCH_EM * input.em_m) {
-        drawing.filled(circle(base.at(0.5) + base.left() * 1.6 * radius_m, radius_m));
+        drawing.filled(circle(base.at(0.5), radius_m));
     }
     let middle = line.at(line.length() / 2.0);
     drawing.text(input.fields.hostile.clone(), middle - line_left(&line) * input.em_m);

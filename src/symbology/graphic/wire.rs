@@ -10,6 +10,9 @@ use sandtable_geom::polyline::Polyline;
 /// From cross to cross in text heights.
 const PITCH_EM: f64 = 1.667;
 
+/// From cross to cross of a fence around an area.
+const FENCE_EM: f64 = 0.833;
+
 /// Half of a cross's arms, and the half height and half width of a loop, in text heights.
 const ARM_EM: f64 = 0.62;
 const LOOP_EM: [f64; 2] = [0.6, 0.34];
@@ -19,6 +22,26 @@ const MOST_MARKS: f64 = 2000.0;
 
 /// Sides of a loop.
 const LOOP_SIDES: u32 = 16;
+
+/// Adds the crosses of a fence along a line.
+pub fn crosses(line: &Polyline, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
+    let em_m = input.em_m;
+    let count = (line.length() / (FENCE_EM * em_m)).floor().clamp(1.0, MOST_MARKS);
+    let pitch_m = line.length() / count;
+    for number in 0..count as u32 {
+        let (station, half) = ((f64::from(number) + 0.5) * pitch_m, 0.25 * em_m);
+        let along = (line.at(station + half) - line.at(station - half)).normalize_or_zero();
+        cross(line.at(station), along, em_m, drawing);
+    }
+}
+
+/// Adds one cross.
+fn cross(at: DVec2, along: DVec2, em_m: f64, drawing: &mut GraphicDrawing) {
+    let [rising, falling] = [along + along.perp(), along - along.perp()];
+    for arm in [rising, falling].map(|arm| arm * (ARM_EM * em_m)) {
+        drawing.line([at - arm, at + arm]);
+    }
+}
 
 /// A fence or a roll of wire: which lines run along it, which marks it has, and where they are.
 pub fn wire(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
@@ -56,10 +79,7 @@ pub fn wire(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicD
             };
             drawing.ring((0..LOOP_SIDES).map(corner).collect::<Vec<_>>());
         } else {
-            let [rising, falling] = [along + along.perp(), along - along.perp()];
-            for arm in [rising, falling].map(|arm| arm * (ARM_EM * em_m)) {
-                drawing.line([at - arm, at + arm]);
-            }
+            cross(at, along, em_m, drawing);
         }
     }
 }

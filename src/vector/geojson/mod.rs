@@ -5,7 +5,7 @@
 //! (longitude, latitude) or (easting, northing) whatever axis order the named system prescribes, as all writers have
 //! it. `serde_json` limits nesting to 128 levels. Where it refuses a text, [`record`] reads the features one by one.
 
-mod record;
+pub(crate) mod record;
 
 use geojson::{Feature, GeoJson, GeometryValue, JsonObject, Position};
 use serde::Deserialize;

@@ -82,7 +82,11 @@ fn feature(value: Value) -> Result<(FeatureParts, Properties), OddFeature> {
     Ok((parts, properties))
 }
 
-fn add_shape(parts: &mut FeatureParts, geometry: &Value) -> Result<(), OddFeature> {
+/// Adds the shape of a geometry; nothing for null.
+///
+/// # Errors
+/// What is odd about it.
+pub(crate) fn add_shape(parts: &mut FeatureParts, geometry: &Value) -> Result<(), OddFeature> {
     let members = match geometry {
         Value::Null => return Ok(()),
         Value::Object(members) if members.is_empty() => return Ok(()),

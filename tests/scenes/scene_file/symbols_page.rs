@@ -25,8 +25,8 @@ The key `sidc` of `[[symbol]]` is a symbol code: 20 or 30 digits as MIL-STD-2525
 modifier (2); of a code of 30 digits, common modifiers (2), frame shape (1), 4 that are not read, and country (3, not read).
 So `10031000161211020000` is a friendly armored infantry battalion.
 
-An entity or a modifier that is not drawn leaves the frame, and a note that names it. Of codes of 15 letters those functions
-are known whose entity is drawn. `tests/pictures/symbols.rs` holds the drawings to those of npm milsymbol 3.0.4: boxes
+An entity or a modifier that is not drawn leaves the frame, and a note that names it. Of codes of 15 letters
+all functions are known but those of the weather. `tests/pictures/symbols.rs` holds the drawings to those of npm milsymbol 3.0.4: boxes
 within 2 of 200 units, anchors within 1, and dark pixels at 128 pixels, blurred by 2, overlapping by 0.8 at least.
 ";
 
@@ -111,7 +111,7 @@ fn add_missing(page: &mut String) {
         without.join(", ")
     );
     page.push_str(
-        "Modifiers of other sets than land units, the common modifiers of 2525E, country codes, signature and installation\n\
+        "Modifiers of sets outside the land, the common modifiers of 2525E, country codes, signature and installation\n\
          composition fields, and engagement bars are not drawn.\n",
     );
     let mut missing: BTreeMap<u8, Vec<String>> = BTreeMap::new();
@@ -126,7 +126,7 @@ fn add_missing(page: &mut String) {
         }
     }
     for set in SETS {
-        let names = missing.remove(&set.number()).unwrap_or_default();
+        let Some(names) = missing.remove(&set.number()) else { continue };
         let _ = writeln!(
             page,
             "\n{} ({:02}), {} entities: {}.",
