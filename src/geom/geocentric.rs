@@ -37,9 +37,8 @@ pub fn place_of(at: DVec3) -> Option<GeodeticPlace> {
     if !at.is_finite() || (from_center - EQUATORIAL_M).abs() > MOST_HEIGHT_M {
         return None;
     }
-    let reduced_tan = |numerator: f64, denominator: f64| libm::atan2(numerator, denominator);
     let reduced =
-        reduced_tan(polar_m * at.z * (1.0 + second * polar_m / from_center), EQUATORIAL_M * from_axis);
+        libm::atan2(polar_m * at.z * (1.0 + second * polar_m / from_center), EQUATORIAL_M * from_axis);
     let (sin, cos) = (libm::sin(reduced), libm::cos(reduced));
     let latitude = libm::atan2(
         at.z + second * polar_m * sin.powi(3),

@@ -33,11 +33,6 @@ impl Geodesic {
         Some(Self::between(place(one)?, place(other)?))
     }
 
-    /// The line of `length_m` meters from `start` whose bearing there is `bearing_deg`, degrees clockwise from north.
-    pub fn toward(start: DVec2, bearing_deg: f64, length_m: f64) -> Self {
-        Self { start, bearing_deg, length_m }
-    }
-
     /// Its bearing at its start, degrees clockwise from north.
     pub fn bearing_deg(&self) -> f64 {
         self.bearing_deg

@@ -2,11 +2,8 @@
 
 mod broken_records;
 mod builder;
-<<<<<<< HEAD
-mod cot;
-=======
 pub mod cityjson;
->>>>>>> design
+mod cot;
 mod encoding;
 pub mod error;
 pub mod feature;
@@ -16,18 +13,14 @@ mod geojson;
 #[cfg(feature = "vector-db")]
 mod geopackage;
 mod gpx;
-mod ground_shape;
 pub mod hints;
 mod kml;
-<<<<<<< HEAD
+mod landxml;
 mod milx;
 pub mod moment;
 mod msdl;
 mod nvg;
 mod orbat;
-=======
-mod landxml;
->>>>>>> design
 mod osm;
 pub mod overlay_schema;
 pub mod read;
