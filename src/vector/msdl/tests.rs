@@ -85,7 +85,7 @@ fn places_in_all_four_systems_are_one() {
             "MGRS",
             &[
                 ("MGRSGridZone", "33V"),
-                ("MGRSGridSquare", "WF"),
+                ("MGRSGridSquare", "WE"),
                 ("MGRSEasting", "0"),
                 ("MGRSNorthing", "84378"),
             ],
