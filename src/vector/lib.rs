@@ -13,7 +13,6 @@ mod geojson;
 #[cfg(feature = "vector-db")]
 mod geopackage;
 mod gpx;
-mod ground_shape;
 pub mod hints;
 mod kml;
 mod landxml;

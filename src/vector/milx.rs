@@ -1,8 +1,9 @@
 //! MilX layers (`.milxly`, and zipped `.milxlyz`), as map.army and the MSS library of gs-soft write them: symbols and tactical
 //! graphics of MIL-STD-2525C or APP-6 with their points.
 //!
-//! A graphic's `MssStringXML` holds an escaped `<Symbol ID="…">` with an `<Attribute ID="T">` for each field. Points are in the
-//! system that the layer names, WGS 84 unless it is that of Switzerland.
+//! A graphic's `MssStringXML` holds an escaped `<Symbol ID="…">` with an `<Attribute ID="T">` for each field, `XO` for its color
+//! and `XM` for the style of a free graphic. Points are in the system that the layer names, WGS 84 unless it is that of
+//! Switzerland. Location attributes are in meters and, `Attitude`, in degrees.
 
 use glam::DVec2;
 
@@ -10,7 +11,11 @@ use crate::builder::{FeatureParts, LayerBuilder, Vertices};
 use crate::error::{VectorError, shorten};
 use crate::feature::{Properties, VectorLayer};
 use crate::hints::VectorHints;
-use crate::overlay_schema::{LAYER, SIDC, bare_code, field_property, set};
+use crate::overlay_schema::{
+    AZIMUTHS, DISTANCES, FILL, LAYER, MARKER_COLOR, NAME, STROKE, STROKE_WIDTH, WIDTH, bare_code, set,
+    set_code, set_field, set_number, shared_name,
+};
+use crate::svg_style::{delphi_color, hex_color};
 use crate::xml::{self, DecodedXml, XmlElement, XmlReader};
 use sandtable_geom::crs::Crs;
 
@@ -23,11 +28,15 @@ const FORMAT: &str = "MilX layer";
 pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
     let DecodedXml { text, fault } = xml::decode(bytes, FORMAT)?;
     let mut xml = XmlReader::new(&text, FORMAT);
-    let mut builder = LayerBuilder::new(hints.crs.cloned().unwrap_or_else(Crs::wgs84));
+    let mut builder = LayerBuilder::new(Crs::wgs84());
+    if hints.crs.is_some_and(|crs| *crs != Crs::wgs84()) {
+        builder.note("its layers name their systems: `crs` has no effect on them");
+    }
     let root = xml.root()?;
     let mut names = Vec::new();
     let mut add = |layer: &XmlElement<'_>, xml: &XmlReader<'_>| {
         let name = child_text(layer, "Name").unwrap_or_else(|| "layer".to_owned());
+        let name = shared_name(&name);
         if hints.layer.is_none_or(|wanted| wanted == name) {
             add_layer(layer, &name, xml, &mut builder);
         }
@@ -105,6 +114,8 @@ fn read_graphic(
         VectorError::Broken { source, .. } => format!("its symbol is broken: {source}"),
         error => error.to_string(),
     })?;
+    child_text(graphic, "Name").into_iter().for_each(|name| set(&mut properties, NAME, name));
+    add_location(graphic, &mut properties)?;
     let lists = graphic.children_named("PointList");
     let points = lists.flat_map(|list| list.children_named("Point")).map(|point| {
         let number = |name| child_text(point, name).and_then(|text| text.parse::<f64>().ok());
@@ -132,14 +143,54 @@ fn read_symbol(text: &str, properties: &mut Properties) -> Result<(), VectorErro
     let root = xml.root()?;
     let symbol = xml.read(root)?;
     let id = symbol.attribute("ID").unwrap_or_default();
-    let Some(code) = bare_code(&id) else {
+    if bare_code(&id).is_none() {
         return Err(xml.broken(format!("'{}' is no symbol code", shorten(&id))));
-    };
-    set(properties, SIDC, code);
+    }
+    set_code(properties, &id);
     for attribute in symbol.children_named("Attribute") {
-        if let Some(property) = attribute.attribute("ID").and_then(|id| field_property(&id)) {
-            set(properties, property, attribute.text());
+        let Some(letters) = attribute.attribute("ID") else { continue };
+        match &*letters {
+            "XO" => delphi_color(&attribute.text())
+                .into_iter()
+                .for_each(|color| set(properties, MARKER_COLOR, hex_color(color))),
+            "XM" => add_style(attribute, properties),
+            letters => {
+                set_field(properties, letters, &attribute.text());
+            }
         }
+    }
+    Ok(())
+}
+
+/// The style of a free graphic: `<Line Color="clRed" Width="2"/><Fill Color="…"/>`.
+fn add_style(attribute: &XmlElement<'_>, properties: &mut Properties) {
+    for (name, property) in [("Line", STROKE), ("Fill", FILL)] {
+        let colors =
+            attribute.children_named(name).filter_map(|part| delphi_color(&part.attribute("Color")?));
+        colors.for_each(|color| set(properties, property, hex_color(color)));
+    }
+    let widths = attribute.children_named("Line").filter_map(|line| line.number::<f64>("Width"));
+    set_number(properties, STROKE_WIDTH, widths.last().filter(|width| (0.0..=100.0).contains(width)));
+}
+
+/// The distances and the direction that a graphic has besides its points.
+fn add_location(graphic: &XmlElement<'_>, properties: &mut Properties) -> Result<(), String> {
+    let mut distances = Vec::new();
+    let lists = graphic.children_named("LocationAttributeList");
+    for attribute in lists.flat_map(|list| list.children_named("LocationAttribute")) {
+        let Some(kind) = child_text(attribute, "AttrType") else { continue };
+        let text = child_text(attribute, "Value").unwrap_or_default();
+        let value: f64 = text.parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(|| {
+            format!("the {} '{}' of the graphic is no number", shorten(&kind), shorten(&text))
+        })?;
+        match kind.as_str() {
+            "Width" => set_number(properties, WIDTH, Some(value).filter(|width| *width > 0.0)),
+            "Attitude" => set(properties, AZIMUTHS, value.to_string()),
+            _ => distances.push(value.to_string()),
+        }
+    }
+    if !distances.is_empty() {
+        set(properties, DISTANCES, distances.join(" "));
     }
     Ok(())
 }
@@ -206,5 +257,34 @@ mod tests {
             .expect_err("unknown")
             .to_string();
         assert!(error.contains("'Mars' is not known"), "{error}");
+    }
+
+    #[test]
+    fn graphics_have_their_name_colors_and_sizes() {
+        let symbol = "&lt;Symbol ID=\"G*F*ACSC--****X\"&gt;&lt;Attribute ID=\"XO\"&gt;$000080FF&lt;/Attribute&gt;\
+            &lt;Attribute ID=\"F\"&gt;R&lt;/Attribute&gt;&lt;Attribute ID=\"XM\"&gt;&lt;Line Color=\"clRed\" Width=\"3\"/&gt;\
+            &lt;Fill Color=\"$00FF0000\"/&gt;&lt;/Attribute&gt;&lt;/Symbol&gt;";
+        let located = |kind: &str, value: &str| {
+            format!(
+                "<LocationAttribute><AttrType>{kind}</AttrType><Value>{value}</Value></LocationAttribute>"
+            )
+        };
+        let with = |locations: String| {
+            let list = format!(
+                "<Name>FSA</Name><LocationAttributeList>{locations}</LocationAttributeList></MilXGraphic>"
+            );
+            graphic(symbol, &[[8.0, 47.0]]).replace("</MilXGraphic>", &list)
+        };
+        let text = document(
+            &(with(located("Radius", "500") + &located("Attitude", "45")) + &with(located("Width", "x"))),
+            "WGS84",
+        );
+        let layer = read::read("a.milxly", text.as_bytes(), &VectorHints::default()).expect("one is sound");
+        let expected = serde_json::json!({
+            "sidc": "GFFPACSC--****X", "name": "FSA", "layer": "Friend", "marker-color": "#ff8000", "reinforced": "(+)",
+            "stroke": "#ff0000", "stroke-width": 3.0, "fill": "#0000ff", "distances": "500", "azimuths": "45",
+        });
+        assert_eq!(serde_json::to_value(&layer.features[0].properties).expect("texts"), expected);
+        assert!(layer.faults[0].contains("the Width 'x' of the graphic is no number"), "{:?}", layer.faults);
     }
 }

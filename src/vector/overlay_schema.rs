@@ -20,18 +20,7 @@ use crate::feature::Properties;
 pub const SIDC: &str = "sidc";
 /// The names that files have for the property of a symbol code, the most usual first.
 pub const SIDC_SPELLINGS: [&str; 12] = [
-    SIDC,
-    "SIDC",
-    "Sidc",
-    "symbolCode",
-    "symbol_code",
-    "symbolcode",
-    "SymbolCode",
-    "symbolID",
-    "sic",
-    "SIC",
-    "app6",
-    "milsym",
+    SIDC, "SIDC", "Sidc", "symbolCode", "symbol_code", "symbolcode", "SymbolCode", "symbolID", "sic", "SIC", "app6", "milsym",
 ];
 /// The word of a tactical graphic, where there is no code.
 pub const KIND: &str = "kind";
@@ -132,6 +121,80 @@ pub(crate) fn set(properties: &mut Properties, name: &str, text: impl Into<Strin
     }
 }
 
+/// Sets a number that is one.
+pub(crate) fn set_number(properties: &mut Properties, name: &str, number: Option<f64>) {
+    let number = number.and_then(serde_json::Number::from_f64);
+    number.into_iter().for_each(|number| drop(properties.insert(name.to_owned(), number.into())));
+}
+
+/// Sets the text field of letters such as `T1`, or of an option of milsymbol; returns whether the standard has it. Field F
+/// becomes its mark.
+pub(crate) fn set_field(properties: &mut Properties, letters: &str, text: &str) -> bool {
+    let Some(property) = field_property(letters.trim()) else { return false };
+    match property {
+        REINFORCED => set(properties, property, reinforced_mark(text)),
+        _ => set(properties, property, text),
+    }
+    true
+}
+
+/// Sets the code of a text in the form that symbols are drawn from; returns `false` where it is none.
+///
+/// A code of letters may be a template that leaves the standard identity open: then a tactical graphic is a friend's, and a
+/// symbol is unknown.
+pub(crate) fn set_code(properties: &mut Properties, text: &str) -> bool {
+    let Some(code) = bare_code(text) else { return false };
+    let identity = match code.as_bytes() {
+        [b'G', b'-' | b'*', ..] => Some('F'),
+        [b'S' | b'O' | b'E' | b'I', b'-' | b'*', ..] => Some('U'),
+        _ => None,
+    };
+    set(properties, SIDC, with_identity(code, identity));
+    true
+}
+
+/// A code with the standard identity of a letter of MIL-STD-2525C, where one is given.
+pub(crate) fn with_identity(mut code: String, letter: Option<char>) -> String {
+    let Some(letter) = letter else { return code };
+    if code.len() == 15 {
+        code.replace_range(1..2, letter.encode_utf8(&mut [0; 4]));
+        return code;
+    }
+    let digit = match letter {
+        'P' => "0",
+        'A' => "2",
+        'F' => "3",
+        'N' => "4",
+        'S' | 'J' => "5",
+        'H' | 'K' => "6",
+        _ => "1",
+    };
+    // Jokers and fakers are of exercises.
+    if matches!(letter, 'J' | 'K') {
+        code.replace_range(2..3, "1");
+    }
+    code.replace_range(3..4, digit);
+    code
+}
+
+/// The mark of field F for the letters and words that files have for it; else the text.
+pub(crate) fn reinforced_mark(text: &str) -> &str {
+    let word = text.chars().filter(|letter| letter.is_alphanumeric() || "+-±".contains(*letter));
+    match word.collect::<String>().to_ascii_uppercase().as_str() {
+        "R" | "+" | "REINFORCED" => "(+)",
+        "D" | "-" | "REDUCED" | "DETACHED" => "(-)",
+        "RD" | "±" | "+-" | "REINFORCEDANDREDUCED" | "REINFORCEDREDUCED" | "REINFORCEDDETACHED" => "(±)",
+        _ => text,
+    }
+}
+
+/// A name that many features have in common, such as that of their layer, as long as a name may be: a long one would be
+/// kept once for each.
+pub(crate) fn shared_name(name: &str) -> String {
+    const MOST_LETTERS: usize = 200;
+    name.trim().chars().take(MOST_LETTERS).collect()
+}
+
 /// The fields of MIL-STD-2525D: letters, the names of their options in milsymbol, properties.
 const FIELDS: [(&str, &str, &str); 26] = [
     ("T", "uniqueDesignation", UNIQUE_DESIGNATION),
@@ -171,14 +234,18 @@ pub fn field_property(name: &str) -> Option<&'static str> {
     found.map(|(.., property)| *property)
 }
 
-/// A symbol code without what programs write around it: a scheme such as `app6b:` or `2525d:`, options behind the code, spaces.
-/// `None` where what remains is no code by its length and characters.
+/// A symbol code without what programs write around it: a scheme such as `app6b:` or `2525d:`, options behind the code after
+/// a comma, semicolon or bar, spaces. `None` where what remains is no code by its length and characters.
+///
+/// A status that a code of letters leaves open is present. Maneuver graphics of MIL-STD-2525A and APP-6A, `G*C*M…`, are those of
+/// 2525C, `G*G*…`, which has no category C.
 pub fn bare_code(text: &str) -> Option<String> {
     let text = text.trim();
     let code = match text.rsplit_once(':') {
         Some((scheme, code)) if scheme.len() <= 40 => code,
         _ => text,
     };
+    let code = code.split([',', ';', '|']).next().unwrap_or_default();
     let code: String = code.chars().filter(|letter| !letter.is_whitespace()).collect();
     let is_digits = code.bytes().all(|byte| byte.is_ascii_digit()) && matches!(code.len(), 20 | 30);
     let is_letters = matches!(code.len(), 10..=15)
@@ -186,23 +253,24 @@ pub fn bare_code(text: &str) -> Option<String> {
         && code.starts_with(|first: char| first.is_ascii_alphabetic());
     match (is_digits, is_letters) {
         (true, _) => Some(code),
-        (_, true) => Some(of_letters(&code)),
+        (_, true) => Some(settled(&format!("{:-<15}", code.to_ascii_uppercase().replace('_', "-")))),
         _ => None,
     }
 }
 
-/// A code of 15 letters as MIL-STD-2525C has it: templates leave the identity and the status open, and APP-6A has command and
-/// general maneuver in a category of its own.
-fn of_letters(code: &str) -> String {
-    let padded = format!("{code:-<15}").to_ascii_uppercase().replace(['_', '*'], "-");
-    let (scheme, category) = (&padded[..1], &padded[2..3]);
-    let identity = if padded[1..].starts_with('-') { "U" } else { &padded[1..2] };
-    let status = if padded[3..].starts_with('-') { "P" } else { &padded[3..4] };
-    let (function, rest) = padded[4..].split_at(6);
-    match function.strip_prefix('M').filter(|_| scheme == "G" && category == "C") {
-        Some(function) => format!("{scheme}{identity}G{status}{function:-<6}{rest}"),
-        None => format!("{scheme}{identity}{category}{status}{function}{rest}"),
+/// A code of 15 letters in the words of 2525C, with a status.
+fn settled(code: &str) -> String {
+    let mut letters = code.as_bytes().to_vec();
+    // The second and fourth letter of weather are part of its kind.
+    if letters[0] != b'W' && matches!(letters[3], b'-' | b'*') {
+        letters[3] = b'P';
     }
+    if letters[0] == b'G' && letters[2] == b'C' && letters[4] == b'M' {
+        letters[2] = b'G';
+        letters.copy_within(5..10, 4);
+        letters[9] = b'-';
+    }
+    String::from_utf8_lossy(&letters).into_owned()
 }
 
 #[cfg(test)]
@@ -222,10 +290,41 @@ mod tests {
         assert_eq!(bare_code("2525d:10031000161211000000").as_deref(), Some("10031000161211000000"));
         assert_eq!(bare_code(" 1003 1000161211 000000").as_deref(), Some("10031000161211000000"));
         assert_eq!(bare_code("sfgpuci---").as_deref(), Some("SFGPUCI--------"));
-        assert_eq!(bare_code("S*G*UCI---*****").as_deref(), Some("SUGPUCI--------"));
-        assert_eq!(bare_code("app6a:GHC*MGLP--*****").as_deref(), Some("GHGPGLP--------"));
+        assert_eq!(bare_code("SFGPUCIA---F--G;XO").as_deref(), Some("SFGPUCIA---F--G"));
         for other in ["", "infantry", "1003100016121100000", "http://a.b/c", "SFGPUCI---------"] {
             assert_eq!(bare_code(other), None, "{other}");
+        }
+    }
+
+    #[test]
+    fn open_letters_of_a_code_are_settled() {
+        let code = |text: &str| {
+            let mut properties = Properties::new();
+            assert!(set_code(&mut properties, text), "{text}");
+            properties[SIDC].as_str().map(str::to_owned).expect("a text")
+        };
+        assert_eq!(code("S-G-UCI----F--G"), "SUGPUCI----F--G");
+        assert_eq!(code("SHG*UCI---*****"), "SHGPUCI---*****");
+        assert_eq!(code("app6a:G*C*MALC--*****"), "GFGPALC---*****");
+        assert_eq!(code("GHC*MGLP--****X"), "GHGPGLP---****X");
+        assert_eq!(code("WAS-WSTSS-P----"), "WAS-WSTSS-P----");
+        assert!(!set_code(&mut Properties::new(), "icon.png"));
+    }
+
+    #[test]
+    fn identities_replace_those_of_letters_and_digits() {
+        let code = |code: &str, letter| with_identity(code.to_owned(), Some(letter));
+        assert_eq!(code("SUGPUCI--------", 'H'), "SHGPUCI--------");
+        assert_eq!(code("10031000141211000000", 'N'), "10041000141211000000");
+        assert_eq!(code("10031000141211000000", 'K'), "10161000141211000000");
+    }
+
+    #[test]
+    fn field_f_becomes_its_mark() {
+        for (text, mark) in
+            [("R", "(+)"), ("reduced", "(-)"), ("REINFORCED_AND_REDUCED", "(±)"), ("(+)", "(+)")]
+        {
+            assert_eq!(reinforced_mark(text), mark, "{text}");
         }
     }
 }

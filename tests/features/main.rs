@@ -16,6 +16,7 @@ mod earthworks;
 mod fences;
 mod left_out;
 mod level_ground;
+mod overlay_files;
 mod roads;
 mod vector_files;
 mod water;

@@ -148,11 +148,14 @@ limits! {
         OSM_AREA_VERTICES = 1 << 25 => COUNT, "vertices",
             "of all areas of an OpenStreetMap extract, whose relations may name the same ways again and again",
             "cut it with osmium extract";
+        OVERLAY_VERTICES = 1 << 24 => COUNT, "vertices",
+            "of all circles, arcs and racetracks of an NVG file, each of which a few letters state",
+            "leave some of them out";
         RING_STEPS = 1 << 31 => STEPS, "steps",
             "that sort the rings of one file into polygons and holes: seconds, and a hundred times what real layers take",
             "mend the file: ogr2ogr -makevalid";
         XML_DEPTH = 64 => Fixed, "levels",
-            "of elements in KML, GPX and OpenStreetMap XML",
+            "of elements in XML: KML, GPX, OpenStreetMap, overlays and scenarios",
             "flatten its folders";
         CITY_VERTICES = 1 << 23 => COUNT, "vertices",
             "of all surfaces of a CityJSON file with its templates wherever they are placed: some five hundred megabytes",
