@@ -113,6 +113,7 @@ fn drawn(graphic: &SceneGraphic, view: &GraphicView<'_>) -> Option<(GraphicPen, 
             text: text.text,
             color: own,
             feature: graphic.feature,
+            is_repeat: text.is_repeat,
         })
         .collect();
     Some((pen, texts))
