@@ -3,6 +3,7 @@
 mod broken_records;
 mod builder;
 pub mod cityjson;
+mod dxf;
 mod encoding;
 pub mod error;
 pub mod feature;
