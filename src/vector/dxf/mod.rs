@@ -8,7 +8,7 @@
 //! | POINT, TEXT, MTEXT, ATTRIB | points |
 //! | INSERT, DIMENSION | what the block draws there; of INSERT a point as well |
 //!
-//! Properties are `layer`, `type`, `handle`, `stroke` (its color as drawn), `linetype`, `text`, `text_height`, `rotation`;
+//! Properties are `Layer` (as GDAL names it, since `layer` is OpenStreetMap's for what passes over what), `type`, `handle`, `stroke` (its color as drawn), `linetype`, `text`, `text_height`, `rotation`;
 //! of an inserted block also `block` and its attributes by their tags. Layers are those of the drawing; all where none is
 //! requested, but for those that are off or frozen. What lies on paper and what is invisible is left out, and so are solids
 //! of ACIS, regions, images and rays, with their counts.
@@ -410,7 +410,7 @@ impl<'a> Drawn<'a> {
 
     fn properties(&self, entity: &Entity, layer: &str, color: DxfColor) -> Properties {
         let mut properties = Properties::new();
-        properties.insert("layer".into(), layer.into());
+        properties.insert("Layer".into(), layer.into());
         properties.insert("type".into(), entity.kind.clone().into());
         for (name, text) in [("handle", &entity.handle), ("linetype", &entity.line_type)] {
             if !text.is_empty() {
@@ -435,23 +435,11 @@ impl<'a> Drawn<'a> {
             self.nested += 1;
             return;
         }
-        let placed = reference.placed * insert.placed;
-        if entity.kind == "INSERT" && self.is_wanted(layer) && self.take(FEATURE_WEIGHT) {
-            let mut properties = self.properties(entity, layer, color);
-            for (tag, value) in &insert.attributes {
-                properties.entry(tag.clone()).or_insert_with(|| value.clone().into());
-            }
-            properties.insert("block".into(), insert.block.clone().into());
-            insert_number(&mut properties, "rotation", insert.rotation_deg);
-            insert_number(&mut properties, "scale", insert.scale.x);
-            let points = vec![placed.transform_point3(DVec3::ZERO)];
-            let (lines, polygons) = (Vec::new(), Vec::new());
-            self.features.push(DrawnFeature { lines, points, polygons, properties, entity });
-        }
-        let Some(block) = self.drawing.blocks.get(&insert.block) else {
+        let block = self.drawing.blocks.get(&insert.block);
+        if block.is_none() {
             self.missing_blocks.insert(&insert.block);
-            return;
-        };
+        }
+        let is_point = entity.kind == "INSERT" && self.is_wanted(layer);
         for row in 0..insert.rows {
             for column in 0..insert.columns {
                 if !self.take(1) {
@@ -461,10 +449,12 @@ impl<'a> Drawn<'a> {
                 let off =
                     DVec3::new(f64::from(column) * insert.spacing.x, f64::from(row) * insert.spacing.y, 0.0);
                 let off = DAffine3::from_rotation_z(insert.rotation_deg.to_radians()).transform_vector3(off);
-                let placed = reference.placed
-                    * DAffine3::from_translation(off)
-                    * insert.placed
-                    * DAffine3::from_translation(-block.base);
+                let placed = reference.placed * DAffine3::from_translation(off) * insert.placed;
+                if is_point && self.take(FEATURE_WEIGHT) {
+                    self.add_place(entity, insert, (layer, color), placed);
+                }
+                let Some(block) = block else { continue };
+                let placed = placed * DAffine3::from_translation(-block.base);
                 let inner = BlockReference { placed, by: Some((layer, color)), block: Some(&insert.block) };
                 for entity in &block.entities {
                     if self.is_too_large {
@@ -474,6 +464,26 @@ impl<'a> Drawn<'a> {
                 }
             }
         }
+    }
+
+    /// Adds the place of a block as a point.
+    fn add_place(
+        &mut self,
+        entity: &'a Entity,
+        insert: &BlockInsert,
+        (layer, color): (&str, DxfColor),
+        placed: DAffine3,
+    ) {
+        let mut properties = self.properties(entity, layer, color);
+        for (tag, value) in &insert.attributes {
+            properties.entry(tag.clone()).or_insert_with(|| value.clone().into());
+        }
+        properties.insert("block".into(), insert.block.clone().into());
+        insert_number(&mut properties, "rotation", insert.rotation_deg);
+        insert_number(&mut properties, "scale", insert.scale.x);
+        let points = vec![placed.transform_point3(DVec3::ZERO)];
+        let (lines, polygons) = (Vec::new(), Vec::new());
+        self.features.push(DrawnFeature { lines, points, polygons, properties, entity });
     }
 
     fn finish(self, mut layer: LayerBuilder) -> Result<VectorLayer, VectorError> {

@@ -37,7 +37,7 @@ fn entities_have_their_layer_color_and_handle() {
     let stroke: Vec<_> =
         all.iter().map(|feature| feature.properties["stroke"].as_str().expect("text")).collect();
     assert_eq!(stroke, ["#ff0000", "#0000ff", "#123456"]);
-    assert_eq!((&all[0].properties["layer"], &all[0].properties["handle"]), (&"ROADS".into(), &"1F".into()));
+    assert_eq!((&all[0].properties["Layer"], &all[0].properties["handle"]), (&"ROADS".into(), &"1F".into()));
     assert_eq!(all[0].lines()[0], [DVec2::new(1.0, 2.0), DVec2::new(3.0, 4.0)]);
     assert!(all[0].elevations.is_none(), "a drawing in the plane");
 }
@@ -73,12 +73,12 @@ fn blocks_are_drawn_where_they_are_inserted_turned_scaled_and_in_rows() {
     assert_eq!(place.points(), [DVec2::new(100.0, 50.0)]);
     assert_eq!((&place.properties["SPECIES"], &place.properties["block"]), (&"oak".into(), &"TREE".into()));
     assert!(line.lines()[0][1].distance(DVec2::new(100.0, 52.0)) < 1e-9, "{line:?}");
-    assert_eq!((&line.properties["layer"], &line.properties["stroke"]), (&"ROADS".into(), &"#ff0000".into()));
+    assert_eq!((&line.properties["Layer"], &line.properties["stroke"]), (&"ROADS".into(), &"#ff0000".into()));
     assert!(mark.points()[0].distance(DVec2::new(98.0, 50.0)) < 1e-9, "{mark:?}");
-    assert_eq!(mark.properties["layer"], "MARKS");
-    let marks: Vec<DVec2> = all[4..].iter().flat_map(|feature| feature.points().to_vec()).collect();
-    assert_eq!(marks.len(), 6);
-    assert!(marks.contains(&DVec2::new(20.0, 21.0)), "{marks:?}");
+    assert_eq!(mark.properties["Layer"], "MARKS");
+    let marks: Vec<DVec2> = all[3..].iter().flat_map(|feature| feature.points().to_vec()).collect();
+    assert_eq!(marks.len(), 12, "the place and the mark of each");
+    assert!(marks.contains(&DVec2::new(20.0, 20.0)) && marks.contains(&DVec2::new(20.0, 21.0)), "{marks:?}");
 }
 
 #[test]
