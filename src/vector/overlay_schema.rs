@@ -20,7 +20,18 @@ use crate::feature::Properties;
 pub const SIDC: &str = "sidc";
 /// The names that files have for the property of a symbol code, the most usual first.
 pub const SIDC_SPELLINGS: [&str; 12] = [
-    SIDC, "SIDC", "Sidc", "symbolCode", "symbol_code", "symbolcode", "SymbolCode", "symbolID", "sic", "SIC", "app6", "milsym",
+    SIDC,
+    "SIDC",
+    "Sidc",
+    "symbolCode",
+    "symbol_code",
+    "symbolcode",
+    "SymbolCode",
+    "symbolID",
+    "sic",
+    "SIC",
+    "app6",
+    "milsym",
 ];
 /// The word of a tactical graphic, where there is no code.
 pub const KIND: &str = "kind";
