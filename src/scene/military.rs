@@ -33,6 +33,8 @@ pub struct SceneSymbol {
     pub symbol: MilitarySymbol,
     /// The lines of text round it.
     pub texts: Vec<SymbolNote>,
+    /// Its texts by field.
+    pub fields: Vec<(SymbolText, String)>,
     /// What reports call it: its designation, else its code.
     pub name: String,
     /// The position on the ground, world space, displayed height.
@@ -99,7 +101,8 @@ fn symbol_at(
     let world = frame.point(at, table.crs.as_ref())?;
     let ground = frame.on_ground(lattice, at, world)?;
     let text = |field| stated_text(table, field).map(|text| text.as_str());
-    let found = FoundSymbol { code, symbol, texts: placed(text), name: name(text, &table.sidc), ground };
+    let fields = TEXT_FIELDS.iter().filter_map(|row| Some((row.field, text(row.field)?.to_owned()))).collect();
+    let found = FoundSymbol { code, symbol, texts: placed(text), fields, name: name(text, &table.sidc), ground };
     Ok(found.finished(table, &Attributes::default(), findings))
 }
 
@@ -141,7 +144,8 @@ fn read_features(
             .filter_map(|(field, text)| Some((*field, written(&attributes.evaluated(text)?)?)))
             .collect();
         let text = |field| texts.iter().find(|text| text.0 == field).map(|text| text.1.as_str());
-        let found = FoundSymbol { code, symbol, texts: placed(text), name: name(text, &stated), ground };
+        let (notes, name) = (placed(text), name(text, &stated));
+        let found = FoundSymbol { code, symbol, texts: notes, fields: texts, name, ground };
         symbols.push(found.finished(table, &attributes, findings));
         if symbols.len() > SCENE_SYMBOLS.count() {
             break;
@@ -187,6 +191,7 @@ pub(super) struct FoundSymbol {
     pub code: SymbolCode,
     pub symbol: MilitarySymbol,
     pub texts: Vec<SymbolNote>,
+    pub fields: Vec<(SymbolText, String)>,
     pub name: String,
     pub ground: Vec3,
 }
@@ -218,7 +223,7 @@ impl FoundSymbol {
 
     /// The symbol of the scene; what its code has that is not drawn is told at the bytes `span` of the scene file.
     pub fn looking(self, look: SymbolLook, span: &Range<usize>, findings: &mut SceneFindings) -> SceneSymbol {
-        let Self { code, symbol, texts, name, ground } = self;
+        let Self { code, symbol, texts, fields, name, ground } = self;
         for note in &symbol.notes {
             let message = format!("symbol {name}: {note}");
             if !findings.state(&message) {
@@ -227,7 +232,7 @@ impl FoundSymbol {
         }
         let SymbolLook { direction_deg, size, rank } = look;
         let direction_rad = direction_deg.map(|degrees| degrees.to_radians() as f32);
-        SceneSymbol { code, symbol, texts, name, ground, direction_rad, size, rank }
+        SceneSymbol { code, symbol, texts, fields, name, ground, direction_rad, size, rank }
     }
 }
 
