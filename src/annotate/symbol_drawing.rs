@@ -118,6 +118,12 @@ fn draw_texts(
                 let top = (symbol.symbol.bounds.min.y - 100.0) * unit_px;
                 Vec2::new(-line.advance * 0.5, top - gap)
             }
+            // The bar is a mark of the symbol.
+            TextPlace::Bar => continue,
+            TextPlace::Below => {
+                let bottom = (symbol.symbol.bounds.max.y - 100.0) * unit_px;
+                Vec2::new(-line.advance * 0.5, bottom + gap + style.cap_px())
+            }
             TextPlace::Inside => Vec2::new(-line.advance * 0.5, middle + style.cap_px() * 0.5),
         };
         drawing.record_text(text, line.missing, line.shortened);

@@ -6,7 +6,9 @@
 
 mod amplifiers;
 pub mod code;
+pub mod country;
 pub mod drawing;
+mod engagement;
 pub mod entities;
 pub mod fields;
 pub mod frame;
