@@ -60,6 +60,7 @@ mod sheet;
 pub mod sheet_frame;
 pub mod svg;
 mod symbol_drawing;
+pub mod symbol_picture;
 mod symbols;
 mod text;
 mod title;

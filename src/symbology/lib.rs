@@ -14,10 +14,12 @@ pub mod fields;
 pub mod frame;
 mod frame_marks;
 pub mod graphic;
+pub mod labeled;
 mod letter_code;
 mod letter_functions;
 pub mod modifiers;
 mod pieces;
+mod svg;
 pub mod symbol;
 pub mod texts;
 

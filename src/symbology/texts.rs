@@ -17,6 +17,13 @@ use crate::code::SymbolCode;
 use crate::country;
 use crate::fields::SymbolSet;
 
+/// Size of the text round a frame, in units of the symbol's box: five rows are little higher than a frame.
+pub const TEXT_SIZE: f32 = 36.0;
+/// From one row of text to the next, in sizes of the text.
+pub const ROW_PITCH: f32 = 1.08;
+/// Between frame and text, in units.
+pub const TEXT_GAP: f32 = 9.0;
+
 /// A field of text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum SymbolText {
