@@ -21,7 +21,7 @@ use sandtable_geom::crs::Crs;
 use sandtable_geom::position::Position;
 use sandtable_symbology::code::SymbolCode;
 use sandtable_symbology::symbol::MilitarySymbol;
-use sandtable_symbology::texts::{SymbolNote, SymbolText, TEXT_FIELDS, placed};
+use sandtable_symbology::texts::{SymbolNote, SymbolText, TEXT_FIELDS, placed_for};
 use sandtable_terrain::lattice::Lattice;
 
 /// A symbol at its place.
@@ -101,8 +101,11 @@ fn symbol_at(
     let world = frame.point(at, table.crs.as_ref())?;
     let ground = frame.on_ground(lattice, at, world)?;
     let text = |field| stated_text(table, field).map(|text| text.as_str());
-    let fields = TEXT_FIELDS.iter().filter_map(|row| Some((row.field, text(row.field)?.to_owned()))).collect();
-    let found = FoundSymbol { code, symbol, texts: placed(text), fields, name: name(text, &table.sidc), ground };
+    let symbol = engaged(symbol, &code, text);
+    let texts = placed_for(&code, text);
+    let fields =
+        TEXT_FIELDS.iter().filter_map(|row| Some((row.field, text(row.field)?.to_owned()))).collect();
+    let found = FoundSymbol { code, symbol, texts, fields, name: name(text, &table.sidc), ground };
     Ok(found.finished(table, &Attributes::default(), findings))
 }
 
@@ -144,8 +147,9 @@ fn read_features(
             .filter_map(|(field, text)| Some((*field, written(&attributes.evaluated(text)?)?)))
             .collect();
         let text = |field| texts.iter().find(|text| text.0 == field).map(|text| text.1.as_str());
-        let (notes, name) = (placed(text), name(text, &stated));
-        let found = FoundSymbol { code, symbol, texts: notes, fields: texts, name, ground };
+        let symbol = engaged(symbol, &code, text);
+        let (lines, name) = (placed_for(&code, text), name(text, &stated));
+        let found = FoundSymbol { code, symbol, texts: lines, fields: texts, name, ground };
         symbols.push(found.finished(table, &attributes, findings));
         if symbols.len() > SCENE_SYMBOLS.count() {
             break;
@@ -175,6 +179,18 @@ pub(super) fn frameless(code: &SymbolCode) -> String {
 fn stated_text(table: &SymbolTable, field: SymbolText) -> Option<&Stated<String>> {
     let key = TEXT_FIELDS.iter().find(|row| row.field == field)?.key;
     table.texts().into_iter().find(|(name, _)| *name == key)?.1.as_ref()
+}
+
+/// The symbol with its engagement bar, if it has one.
+pub(super) fn engaged<'a>(
+    symbol: MilitarySymbol,
+    code: &SymbolCode,
+    text: impl Fn(SymbolText) -> Option<&'a str>,
+) -> MilitarySymbol {
+    match text(SymbolText::EngagementBar).filter(|text| !text.trim().is_empty()) {
+        Some(bar) => symbol.with_engagement_bar(code, bar, text(SymbolText::Engagement)),
+        None => symbol,
+    }
 }
 
 /// What reports call a symbol.

@@ -139,6 +139,7 @@ pub(super) fn parse(code: &str) -> Result<SymbolCode, SymbolCodeError> {
         entity,
         modifiers,
         frame_shape: 0,
+        country: 0,
         unknown_function: (known.is_none() && unknown != [b'-'; 6]).then_some(unknown),
     })
 }
