@@ -66,7 +66,7 @@ pub fn cell_outlines(
 fn next_ring(edges: &mut BTreeMap<(i32, i32), Vec<(IVec2, usize)>>) -> Option<(Vec<IVec2>, usize)> {
     let (&(y, x), leaving) = edges.iter().next()?;
     let start = IVec2::new(x, y);
-    let (mut along, part) = *leaving.first()?;
+    let (_, part) = *leaving.first()?;
     let mut at = start;
     let mut corners: Vec<IVec2> = Vec::new();
     let mut before = IVec2::ZERO;
@@ -78,7 +78,7 @@ fn next_ring(edges: &mut BTreeMap<(i32, i32), Vec<(IVec2, usize)>>) -> Option<(V
         let index = (0..leaving.len())
             .filter(|&index| leaving[index].1 == part)
             .min_by_key(|&index| if before == IVec2::ZERO { 0 } else { turn(leaving[index].0) })?;
-        (along, _) = leaving.swap_remove(index);
+        let (along, _) = leaving.swap_remove(index);
         if leaving.is_empty() {
             edges.remove(&key);
         }

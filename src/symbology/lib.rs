@@ -19,7 +19,7 @@ mod letter_code;
 mod letter_functions;
 pub mod modifiers;
 mod pieces;
-mod svg;
+pub mod svg;
 pub mod symbol;
 pub mod texts;
 

@@ -19,7 +19,7 @@ const CAPITAL: f32 = 0.714;
 const LETTER_WIDTH: f32 = 0.72;
 const IDEOGRAPH_WIDTH: f32 = 1.0;
 /// Round all: half the widest line, and a little.
-const MARGIN: f32 = 4.0;
+pub const MARGIN: f32 = 4.0;
 
 impl LabeledSymbol {
     /// The text of an SVG picture, in which the frame of a friendly unit is `frame_px` high, on nothing.
@@ -44,6 +44,21 @@ impl LabeledSymbol {
             size.x,
             size.y,
             escaped(&self.description())
+        )
+    }
+}
+
+impl MilitarySymbol {
+    /// The text of an SVG picture without texts round the frame, in which the frame of a friendly unit is `frame_px` high.
+    pub fn svg(&self, frame_px: f32) -> String {
+        let mut body = String::new();
+        self.marks.iter().for_each(|mark| write_mark(mark, &mut body));
+        let (min, size) = (self.bounds.min - MARGIN, self.bounds.max - self.bounds.min + 2.0 * MARGIN);
+        let pixels = size * frame_px / 100.0;
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.2}\" height=\"{:.2}\" \
+             viewBox=\"{:.2} {:.2} {:.2} {:.2}\">\n{body}</svg>\n",
+            pixels.x, pixels.y, min.x, min.y, size.x, size.y
         )
     }
 }

@@ -236,6 +236,11 @@ const FIELDS: [(&str, &str, &str); 26] = [
     ("AN", "azimuth", AZIMUTHS),
 ];
 
+/// The letters of the field that a property is, in MIL-STD-2525D; `None` where it is none.
+pub fn field_letters(property: &str) -> Option<&'static str> {
+    FIELDS.iter().find(|row| row.2 == property).map(|row| row.0)
+}
+
 /// The property of a text field: its letters in MIL-STD-2525D, such as `T1`, or its option in milsymbol, such as
 /// `uniqueDesignation`; `None` where it is neither.
 pub fn field_property(name: &str) -> Option<&'static str> {
