@@ -150,7 +150,9 @@ fn placemark(xml: &mut XmlText, layer: &ExportLayer, feature: &ExportFeature, ic
         Some(other) => other.to_string(),
     };
     let name = [layer.label, "name", "text"].into_iter().map(text).find(|name| !name.is_empty());
-    name.iter().for_each(|name| drop(xml.element("name", name)));
+    if let Some(name) = name {
+        xml.element("name", &name);
+    }
     let style = icon.map_or_else(|| format!("#{}", layer.name), |number| format!("#symbol-{number}"));
     xml.element("styleUrl", &style);
     if !feature.properties.is_empty() {

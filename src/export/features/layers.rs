@@ -224,10 +224,13 @@ fn contours(places: &MapPlaces<'_>) -> Vec<ExportFeature> {
     let grid = ValueGrid { columns, values: lattice.heights() };
     let line = |line: sandtable_geom::isolines::Isoline| {
         let elevation = line.level as f64 * f64::from(interval);
-        let points = line.points.iter().map(|at| (first + *at * frame.cell).extend(elevation)).collect();
+        let mut points: Vec<DVec3> =
+            line.points.iter().map(|at| (first + *at * frame.cell).extend(elevation)).collect();
+        points.dedup();
         feature(ExportShape::Line(points), properties([("elevation", meters(elevation))]))
     };
-    isolines(&grid, interval, MOST_IN_CELL, |_, _| true).into_iter().map(line).collect()
+    let lines = isolines(&grid, interval, MOST_IN_CELL, |_, _| true).into_iter().map(line);
+    lines.filter(|line| line.shape.vertices().nth(1).is_some()).collect()
 }
 
 /// 1, 2 or 5 times a power of ten, not below a length.
