@@ -3,7 +3,6 @@
 pub mod aabb;
 pub mod axis;
 pub mod chebyshev;
-pub mod compound_crs;
 pub mod convex;
 pub mod crs;
 pub mod crs_fault;

@@ -149,7 +149,7 @@ fn surfaces_with_pictures_show_them() {
     scratch.write("hamlet.city.json", textured(text));
     let scene =
         "[terrain]\ndem = \"valley.asc\"\ncrs = \"EPSG:32616\"\n[[building]]\nfile = \"hamlet.city.json\"\n";
-    let shown = load(&scratch.write("scene.toml", scene.to_owned()), &[]).expect("built");
+    let shown = load(&scratch.write("scene.toml", scene), &[]).expect("built");
     assert_eq!(shown.pictures.len(), 1);
     let solid = shown.solids.iter().find(|solid| solid.coat == Coat::Picture(0)).expect("with a picture");
     assert!(solid.mesh.vertices.iter().any(|vertex| vertex.uv == [1.0, 0.0]), "V runs downward");
@@ -174,7 +174,7 @@ fn real_cities_have_all_their_objects_and_the_area_of_their_surfaces() {
         let value: serde_json::Value = serde_json::from_str(&text).expect("JSON");
         let number = |pointer: &str| value.pointer(pointer).and_then(serde_json::Value::as_f64);
         let [scale, x, y] =
-            ["/transform/scale/0", "/transform/translate/0", "/transform/translate/1"].map(|at| number(at));
+            ["/transform/scale/0", "/transform/translate/0", "/transform/translate/1"].map(number);
         let (scale, x, y) = (scale.unwrap_or(1.0), x.unwrap_or(0.0), y.unwrap_or(0.0));
         let least = |axis: usize| {
             let vertices = value["vertices"].as_array().expect("vertices").iter();

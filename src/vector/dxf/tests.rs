@@ -1,3 +1,5 @@
+//! Drawings in pairs of a code and a value.
+
 use super::*;
 use crate::feature::Feature;
 use glam::DVec2;
