@@ -106,10 +106,14 @@ fn heights_from_another_zero_are_set_on_the_ground_and_told() {
 #[test]
 fn a_level_of_detail_and_colors_are_taken_by_keys() {
     let fine = hamlet("", |text| text).expect("built");
-    let coarse = hamlet("lod = \"1.2\"\nroof_color = \"#102030\"\n", |text| text).expect("built");
+    let coarse = hamlet("lod = \"1.2\"\nheight = 7\nroof_color = \"#102030\"\n", |text| text).expect("built");
     let triangles = |scene: &SceneModel| sheets(scene).map(|solid| solid.mesh.triangles.len()).sum::<usize>();
     assert_eq!(triangles(&coarse), 15 * 12, "boxes");
     assert!(triangles(&fine) > 1000);
+    assert!(
+        told(&coarse, "default-taken")[0]
+            .contains("without effect on CityJSON, whose own surfaces are drawn: `height`")
+    );
     let vertices = sheets(&coarse).flat_map(|solid| &solid.mesh.vertices);
     let roofs: Vec<_> = vertices.filter(|vertex| vertex.normal[2] > 0.9).collect();
     assert_eq!(roofs.len(), 15 * 4);
