@@ -45,6 +45,9 @@ const FORMAT: &str = "DXF file";
 /// As many blocks in blocks as are drawn.
 const MOST_NESTED: usize = 16;
 
+/// The most groups of one entity: a line of a million vertices.
+const MOST_GROUPS: usize = 1 << 22;
+
 /// As many vertices as an entity of a block weighs at least.
 const FEATURE_WEIGHT: usize = 8;
 
@@ -74,6 +77,7 @@ pub(super) fn is_dxf(bytes: &[u8]) -> bool {
 /// # Errors
 /// [`VectorError`], also where no entity is sound.
 pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
+    VectorError::check_design_size(FORMAT, bytes)?;
     let reason = "names no coordinate system, as all of its kind";
     let crs = hints.crs.cloned().ok_or(VectorError::NoCrs { format: FORMAT, reason })?;
     let drawing = if groups::is_binary(bytes) {
@@ -165,6 +169,13 @@ impl<'a> RecordReader<'a> {
                 }
                 // Extended data belongs to other programs; hatches repeat its codes nowhere.
                 Ok(Some(group)) if group.code >= 1000 || group.code == 999 => {}
+                Ok(Some(_)) if record.groups.len() == MOST_GROUPS => {
+                    self.fault = Some(format!(
+                        "{}: one entity has more than {MOST_GROUPS} groups",
+                        self.groups.place()
+                    ));
+                    return Some(record);
+                }
                 Ok(Some(group)) => record.groups.push(group),
                 Ok(None) => return Some(record),
                 Err(reason) => {
