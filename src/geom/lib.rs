@@ -4,7 +4,6 @@ pub mod aabb;
 pub mod axis;
 pub mod cell_outlines;
 pub mod chebyshev;
-pub mod compound_crs;
 pub mod convex;
 pub mod crs;
 pub mod crs_fault;

@@ -229,7 +229,10 @@ mod tests {
         assert!((area(&[hole.clone(), far]) - whole * 8.0 / 9.0).abs() < 1e-6);
         let mut broken = ring.clone();
         broken[7].x = f64::NAN;
-        assert!(triangulate(&broken, &[hole.clone()]).is_empty() && triangulate_ring(&broken).is_empty());
+        assert!(
+            triangulate(&broken, std::slice::from_ref(&hole)).is_empty()
+                && triangulate_ring(&broken).is_empty()
+        );
         let lost = [DVec2::new(f64::INFINITY, 0.0), DVec2::ZERO, DVec2::ONE];
         assert!((area(&[lost.to_vec()]) - whole).abs() < 1e-6);
     }

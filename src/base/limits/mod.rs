@@ -157,6 +157,9 @@ limits! {
         XML_DEPTH = 64 => Fixed, "levels",
             "of elements in XML: KML, GPX, OpenStreetMap, overlays and scenarios",
             "flatten its folders";
+        DESIGN_BYTES = 128 << 20 => COUNT, "bytes",
+            "of a DXF or LandXML file that is read for its lines: a hostile one takes thirty bytes of memory for each of its own",
+            "part it by its layers";
         DESIGN_VERTICES = 1 << 23 => COUNT, "vertices",
             "of a CityJSON, LandXML or DXF file with the chords of its curves, its templates and its blocks wherever they are placed: some five hundred megabytes",
             "cut it, for example with: cjio IN subset --bbox";

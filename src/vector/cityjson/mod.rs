@@ -22,8 +22,8 @@ use glam::DVec3;
 use serde_json::Value;
 
 use crate::builder::{FeatureParts, LayerBuilder};
-use crate::cityjson::body::{CityBody, Referred, ShapeTally, Shapes, Templates};
-use crate::cityjson::text::{Appearance, CityText, GeometryText, ObjectText, VertexTransform};
+use crate::cityjson::body::{CityBody, CityShapes, Referred, ShapeTally, Templates};
+use crate::cityjson::text::{CityAppearance, CityText, GeometryText, ObjectText, VertexTransform};
 use crate::error::{VectorError, shorten};
 use crate::feature::{Properties, VectorLayer};
 use crate::hints::VectorHints;
@@ -198,7 +198,7 @@ impl ModelReader {
     fn add(&mut self, text: &CityText<'_>, head: &CityText<'_>, line: usize) {
         let scaled = scaled(&text.vertices, text.transform.or(head.transform));
         let own = !text.appearance.textures.is_empty() || !text.appearance.materials.is_empty();
-        let appearance: &Appearance = if own { &text.appearance } else { &head.appearance };
+        let appearance: &CityAppearance = if own { &text.appearance } else { &head.appearance };
         let first_image = self.images.len();
         self.images.extend(appearance.textures.iter().map(|texture| texture.image.clone()));
         let mut objects = TextObjects { objects: BTreeMap::new(), parents: BTreeSet::new() };
@@ -241,7 +241,7 @@ impl ModelReader {
             }
             return Ok(());
         }
-        let mut by_lod: Vec<(String, Shapes)> = Vec::new();
+        let mut by_lod: Vec<(String, CityShapes)> = Vec::new();
         for text in texts {
             let geometry: GeometryText =
                 serde_json::from_str(text.get()).map_err(|error| json_reason(&error))?;

@@ -4,7 +4,7 @@ use glam::{DAffine3, DMat3, DVec2, DVec3};
 
 use crate::dxf::colors::DxfColor;
 use crate::dxf::curves::{Spline, arc, bulge, ellipse, sweep_deg};
-use crate::dxf::groups::Group;
+use crate::dxf::groups::DxfGroup;
 use crate::dxf::hatch;
 use crate::dxf::text;
 
@@ -13,15 +13,15 @@ const MOST_MESH_SIDE: i64 = 1 << 15;
 
 /// A record of a file: its kind and its groups.
 #[derive(Debug, Default)]
-pub(super) struct Record<'a> {
+pub(super) struct DxfRecord<'a> {
     pub kind: String,
-    pub groups: Vec<Group<'a>>,
+    pub groups: Vec<DxfGroup<'a>>,
     pub place: String,
 }
 
 /// An entity as it is drawn, in the coordinates of its block or of the drawing.
 #[derive(Clone, Debug)]
-pub(super) struct Entity {
+pub(super) struct DxfEntity {
     /// Its kind, such as `LWPOLYLINE`.
     pub kind: String,
     pub layer: String,
@@ -30,12 +30,12 @@ pub(super) struct Entity {
     pub color: DxfColor,
     pub is_on_paper: bool,
     pub is_hidden: bool,
-    pub shape: Shape,
+    pub shape: DxfShape,
     pub place: String,
 }
 
 #[derive(Clone, Debug)]
-pub(super) enum Shape {
+pub(super) enum DxfShape {
     Point(DVec3),
     Line(Vec<DVec3>),
     /// Polygons, each its rings; of hatches all rings of one.
@@ -72,21 +72,21 @@ pub(super) struct BlockInsert {
     pub attributes: Vec<(String, String)>,
 }
 
-impl Record<'_> {
+impl DxfRecord<'_> {
     pub fn number(&self, code: i32) -> Option<f64> {
-        self.groups.iter().filter(|group| group.code == code).find_map(Group::number)
+        self.groups.iter().filter(|group| group.code == code).find_map(DxfGroup::number)
     }
 
     pub fn integer(&self, code: i32) -> Option<i64> {
-        self.groups.iter().filter(|group| group.code == code).find_map(Group::integer)
+        self.groups.iter().filter(|group| group.code == code).find_map(DxfGroup::integer)
     }
 
     pub fn text(&self, code: i32) -> Option<&str> {
-        self.groups.iter().find(|group| group.code == code).map(Group::text)
+        self.groups.iter().find(|group| group.code == code).map(DxfGroup::text)
     }
 
     fn numbers(&self, code: i32) -> Vec<f64> {
-        self.groups.iter().filter(|group| group.code == code).filter_map(Group::number).collect()
+        self.groups.iter().filter(|group| group.code == code).filter_map(DxfGroup::number).collect()
     }
 
     /// The point whose x has a code; `None` without x and y.
@@ -124,14 +124,14 @@ impl Record<'_> {
 
     /// The entity of a record, with the records that follow one up to its `SEQEND`; `None` of a kind that is not read or
     /// an entity without its points.
-    pub fn entity(&self, parts: &[Record<'_>]) -> Option<Entity> {
+    pub fn entity(&self, parts: &[DxfRecord<'_>]) -> Option<DxfEntity> {
         let shape = self.shape(parts)?;
         let color = match (self.integer(420), self.integer(62)) {
             (Some(color), _) => DxfColor::of_true_color(color),
             (None, Some(index)) => DxfColor::of_index(index),
             (None, None) => DxfColor::ByLayer,
         };
-        Some(Entity {
+        Some(DxfEntity {
             kind: self.kind.clone(),
             layer: text::plain(self.text(8).unwrap_or("0")),
             handle: self.text(5).unwrap_or_default().to_owned(),
@@ -144,30 +144,30 @@ impl Record<'_> {
         })
     }
 
-    fn shape(&self, parts: &[Record<'_>]) -> Option<Shape> {
+    fn shape(&self, parts: &[DxfRecord<'_>]) -> Option<DxfShape> {
         let plane = self.plane();
         let in_drawing = |points: Vec<DVec3>| points.into_iter().map(|at| plane * at).collect::<Vec<_>>();
         Some(match self.kind.as_str() {
-            "LINE" => Shape::Line(vec![self.point(10)?, self.point(11)?]),
-            "POINT" => Shape::Point(self.point(10)?),
-            "LWPOLYLINE" => Shape::Line(in_drawing(self.light_polyline()?)),
+            "LINE" => DxfShape::Line(vec![self.point(10)?, self.point(11)?]),
+            "POINT" => DxfShape::Point(self.point(10)?),
+            "LWPOLYLINE" => DxfShape::Line(in_drawing(self.light_polyline()?)),
             "POLYLINE" => self.polyline(parts)?,
             "CIRCLE" => {
                 let (center, radius) = (self.point(10)?, self.number(40)?);
-                Shape::Line(in_drawing(closed(arc(center, radius, 0.0, std::f64::consts::TAU).collect())))
+                DxfShape::Line(in_drawing(closed(arc(center, radius, 0.0, std::f64::consts::TAU).collect())))
             }
             "ARC" => {
                 let (center, radius) = (self.point(10)?, self.number(40)?);
                 let (from, to) = (self.number(50)?, self.number(51)?);
                 let vertices = arc(center, radius, from.to_radians(), sweep_deg(from, to));
-                Shape::Line(in_drawing(vertices.collect()))
+                DxfShape::Line(in_drawing(vertices.collect()))
             }
             "ELLIPSE" => {
                 let (center, major) = (self.point(10)?, self.point(11)?);
                 let normal = self.point(210).and_then(DVec3::try_normalize).unwrap_or(DVec3::Z);
                 let minor = normal.cross(major) * self.number(40)?;
                 let to = self.number(42).unwrap_or(std::f64::consts::TAU);
-                Shape::Line(ellipse(center, major, minor, self.number(41).unwrap_or(0.0), to))
+                DxfShape::Line(ellipse(center, major, minor, self.number(41).unwrap_or(0.0), to))
             }
             "SPLINE" => {
                 let spline = Spline {
@@ -177,23 +177,23 @@ impl Record<'_> {
                     control: self.points(10),
                     fit: self.points(11),
                 };
-                Shape::Line(spline.vertices())
+                DxfShape::Line(spline.vertices())
             }
-            "LEADER" => Shape::Line(self.points(10)),
-            "3DFACE" => Shape::Faces(vec![vec![self.corners([10, 11, 12, 13])?]]),
-            "SOLID" | "TRACE" => Shape::Faces(vec![vec![in_drawing(self.corners([10, 11, 13, 12])?)]]),
+            "LEADER" => DxfShape::Line(self.points(10)),
+            "3DFACE" => DxfShape::Faces(vec![vec![self.corners([10, 11, 12, 13])?]]),
+            "SOLID" | "TRACE" => DxfShape::Faces(vec![vec![in_drawing(self.corners([10, 11, 13, 12])?)]]),
             "HATCH" => {
                 let rings = hatch::rings(&self.groups);
                 let elevation = self.number(30).unwrap_or(0.0);
                 let lifted =
                     |ring: Vec<DVec3>| in_drawing(ring.into_iter().map(|at| at.with_z(elevation)).collect());
-                Shape::Rings(rings.into_iter().map(lifted).collect())
+                DxfShape::Rings(rings.into_iter().map(lifted).collect())
             }
             "TEXT" | "ATTRIB" => {
                 // Aligned in any other way than at its left, it stands at its second point.
                 let is_aligned = self.integer(72).unwrap_or(0) != 0 || self.integer(73).unwrap_or(0) != 0;
                 let at = self.point(11).filter(|_| is_aligned).or_else(|| self.point(10))?;
-                Shape::Text(DrawingText {
+                DxfShape::Text(DrawingText {
                     at: plane * at,
                     text: text::plain(self.text(1)?),
                     height: self.number(40).unwrap_or(0.0),
@@ -202,11 +202,12 @@ impl Record<'_> {
                 })
             }
             "MTEXT" => {
-                let pieces = self.groups.iter().filter(|group| matches!(group.code, 1 | 3)).map(Group::text);
+                let pieces =
+                    self.groups.iter().filter(|group| matches!(group.code, 1 | 3)).map(DxfGroup::text);
                 let direction = self.point(11).filter(|way| way.truncate() != DVec2::ZERO);
                 let rotation =
                     direction.map(|way| libm::atan2(way.y, way.x).to_degrees()).or(self.number(50));
-                Shape::Text(DrawingText {
+                DxfShape::Text(DrawingText {
                     at: self.point(10)?,
                     text: text::without_formats(&pieces.collect::<String>()),
                     height: self.number(40).unwrap_or(0.0),
@@ -214,9 +215,9 @@ impl Record<'_> {
                     tag: None,
                 })
             }
-            "INSERT" => Shape::Insert(Box::new(self.insert(parts)?)),
+            "INSERT" => DxfShape::Insert(Box::new(self.insert(parts)?)),
             // Its picture is a block of its own, in the drawing's coordinates.
-            "DIMENSION" => Shape::Insert(Box::new(BlockInsert {
+            "DIMENSION" => DxfShape::Insert(Box::new(BlockInsert {
                 block: self.text(2)?.to_owned(),
                 placed: DAffine3::IDENTITY,
                 columns: 1,
@@ -253,10 +254,10 @@ impl Record<'_> {
         bent(&vertices, self.integer(70).unwrap_or(0) & 1 != 0)
     }
 
-    fn polyline(&self, parts: &[Record<'_>]) -> Option<Shape> {
+    fn polyline(&self, parts: &[DxfRecord<'_>]) -> Option<DxfShape> {
         let flags = self.integer(70).unwrap_or(0);
         let is_closed = flags & 1 != 0;
-        let vertices: Vec<&Record<'_>> = parts.iter().filter(|part| part.kind == "VERTEX").collect();
+        let vertices: Vec<&DxfRecord<'_>> = parts.iter().filter(|part| part.kind == "VERTEX").collect();
         if flags & 64 != 0 {
             return polyface(&vertices);
         }
@@ -271,7 +272,7 @@ impl Record<'_> {
             if is_closed {
                 line = closed(line);
             }
-            return Some(Shape::Line(line));
+            return Some(DxfShape::Line(line));
         }
         let elevation = self.number(30).unwrap_or(0.0);
         let bulges: Vec<(DVec3, f64)> = drawn
@@ -280,11 +281,11 @@ impl Record<'_> {
             })
             .collect();
         let plane = self.plane();
-        Some(Shape::Line(bent(&bulges, is_closed)?.into_iter().map(|at| plane * at).collect()))
+        Some(DxfShape::Line(bent(&bulges, is_closed)?.into_iter().map(|at| plane * at).collect()))
     }
 
     /// The faces of a mesh of rows and columns of points.
-    fn mesh(&self, points: &[DVec3], is_closed: [bool; 2]) -> Option<Shape> {
+    fn mesh(&self, points: &[DVec3], is_closed: [bool; 2]) -> Option<DxfShape> {
         let side = |code: i32| self.integer(code).filter(|side| (2..=MOST_MESH_SIDE).contains(side));
         let (rows, columns) = (side(71)? as usize, side(72)? as usize);
         if points.len() < rows * columns {
@@ -297,10 +298,10 @@ impl Record<'_> {
         };
         let all = (0..steps(rows, is_closed[0]))
             .flat_map(|row| (0..steps(columns, is_closed[1])).map(move |column| (row, column)));
-        Some(Shape::Faces(all.map(|(row, column)| face(row, column)).collect()))
+        Some(DxfShape::Faces(all.map(|(row, column)| face(row, column)).collect()))
     }
 
-    fn insert(&self, parts: &[Record<'_>]) -> Option<BlockInsert> {
+    fn insert(&self, parts: &[DxfRecord<'_>]) -> Option<BlockInsert> {
         let scale = [41, 42, 43].map(|code| self.number(code).unwrap_or(1.0));
         let rotation_deg = self.number(50).unwrap_or(0.0);
         let count = |code: i32| u32::try_from(self.integer(code).unwrap_or(1)).unwrap_or(1).max(1);
@@ -309,7 +310,7 @@ impl Record<'_> {
             * DAffine3::from_translation(self.point(10)?)
             * DAffine3::from_rotation_z(rotation_deg.to_radians())
             * DAffine3::from_scale(DVec3::from_array(scale));
-        let attribute = |part: &Record<'_>| Some((part.text(2)?.to_owned(), text::plain(part.text(1)?)));
+        let attribute = |part: &DxfRecord<'_>| Some((part.text(2)?.to_owned(), text::plain(part.text(1)?)));
         let [wide, high] = [44, 45].map(|code| self.number(code).unwrap_or(0.0));
         Some(BlockInsert {
             block: self.text(2)?.to_owned(),
@@ -347,15 +348,15 @@ fn closed(mut line: Vec<DVec3>) -> Vec<DVec3> {
 }
 
 /// The faces of a polyface mesh: vertices, then faces that name up to four of them, negative where an edge is invisible.
-fn polyface(vertices: &[&Record<'_>]) -> Option<Shape> {
-    let flags = |vertex: &&&Record<'_>| vertex.integer(70).unwrap_or(0);
+fn polyface(vertices: &[&DxfRecord<'_>]) -> Option<DxfShape> {
+    let flags = |vertex: &&&DxfRecord<'_>| vertex.integer(70).unwrap_or(0);
     let points: Vec<DVec3> = vertices
         .iter()
         .filter(|vertex| flags(vertex) & 64 != 0)
         .filter_map(|vertex| vertex.point(10))
         .collect();
     let faces = vertices.iter().filter(|vertex| flags(vertex) & 192 == 128);
-    let face = |face: &&Record<'_>| {
+    let face = |face: &&DxfRecord<'_>| {
         let corner = |code: i32| {
             let number = face.integer(code)?.unsigned_abs();
             points.get(usize::try_from(number).ok()?.checked_sub(1)?).copied()
@@ -364,5 +365,5 @@ fn polyface(vertices: &[&Record<'_>]) -> Option<Shape> {
         (ring.len() >= 3).then_some(vec![ring])
     };
     let faces: Vec<_> = faces.filter_map(face).collect();
-    (!faces.is_empty()).then_some(Shape::Faces(faces))
+    (!faces.is_empty()).then_some(DxfShape::Faces(faces))
 }

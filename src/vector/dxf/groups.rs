@@ -17,7 +17,7 @@ const HEAD_BYTES: usize = 1 << 16;
 
 /// A group: a code and a value.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Group<'a> {
+pub(super) struct DxfGroup<'a> {
     pub code: i32,
     value: GroupValue<'a>,
 }
@@ -28,7 +28,7 @@ enum GroupValue<'a> {
     Number(f64),
 }
 
-impl Group<'_> {
+impl DxfGroup<'_> {
     /// The value as text; empty of a number.
     pub fn text(&self) -> &str {
         match &self.value {
@@ -136,7 +136,7 @@ impl<'a> GroupReader<'a> {
     ///
     /// # Errors
     /// A sentence without the place.
-    pub fn next(&mut self) -> Result<Option<Group<'a>>, String> {
+    pub fn next(&mut self) -> Result<Option<DxfGroup<'a>>, String> {
         match self {
             Self::Text { lines, line } => {
                 let Some(code) = lines.next() else { return Ok(None) };
@@ -156,7 +156,7 @@ impl<'a> GroupReader<'a> {
                 *line += 1;
                 // Spaces at the end of a text may be meant; those of numbers are not read.
                 let value = if matches!(number, 1 | 3) { value } else { value.trim() };
-                Ok(Some(Group { code: number, value: GroupValue::Text(Cow::Borrowed(value)) }))
+                Ok(Some(DxfGroup { code: number, value: GroupValue::Text(Cow::Borrowed(value)) }))
             }
             Self::Binary { bytes, at, has_wide_codes, encoding } => {
                 if *at >= bytes.len() {
@@ -177,7 +177,7 @@ fn binary_group<'a>(
     at: usize,
     has_wide_codes: bool,
     encoding: &TextEncoding,
-) -> Option<(Group<'a>, usize)> {
+) -> Option<(DxfGroup<'a>, usize)> {
     let fields = ByteFields::little_endian(bytes);
     let (code, at) = match (has_wide_codes, *bytes.get(at)?) {
         (true, _) => (i32::from(fields.i16(at)?), at + 2),
@@ -212,5 +212,5 @@ fn binary_group<'a>(
             (GroupValue::Text(text), at + size + 1)
         }
     };
-    Some((Group { code, value }, next))
+    Some((DxfGroup { code, value }, next))
 }

@@ -4,11 +4,11 @@ use glam::{DVec2, DVec3};
 
 use crate::dxf::curves::{Spline, arc, ellipse, sweep_deg};
 use crate::dxf::entity::bent;
-use crate::dxf::groups::Group;
+use crate::dxf::groups::DxfGroup;
 
 /// Reads groups in order.
 struct HatchGroups<'a, 'b> {
-    groups: &'a [Group<'b>],
+    groups: &'a [DxfGroup<'b>],
     at: usize,
 }
 
@@ -33,7 +33,7 @@ impl HatchGroups<'_, '_> {
 }
 
 /// The rings of all boundaries that can be read.
-pub(super) fn rings(groups: &[Group<'_>]) -> Vec<Vec<DVec3>> {
+pub(super) fn rings(groups: &[DxfGroup<'_>]) -> Vec<Vec<DVec3>> {
     let mut reader = HatchGroups { groups, at: 0 };
     let mut rings = Vec::new();
     if !reader.seek(91) {
@@ -113,7 +113,7 @@ fn edge(reader: &mut HatchGroups<'_, '_>, kind: i64) -> Option<Vec<DVec3>> {
             }
             // Since 2010 the points that it was drawn through follow, which say no more.
             if let Some(fit) =
-                reader.groups.get(reader.at).filter(|group| group.code == 97).and_then(Group::number)
+                reader.groups.get(reader.at).filter(|group| group.code == 97).and_then(DxfGroup::number)
             {
                 let is_followed = reader.groups.get(reader.at + 1).is_some_and(|group| group.code == 11);
                 if is_followed || fit == 0.0 {

@@ -32,7 +32,7 @@ use serde_json::Number;
 
 use crate::builder::{FeatureParts, LayerBuilder};
 use crate::dxf::colors::DxfColor;
-use crate::dxf::entity::{BlockInsert, Entity, Record, Shape};
+use crate::dxf::entity::{BlockInsert, DxfEntity, DxfRecord, DxfShape};
 use crate::dxf::groups::GroupReader;
 use crate::error::{VectorError, shorten};
 use crate::feature::{Properties, VectorLayer};
@@ -44,6 +44,9 @@ const FORMAT: &str = "DXF file";
 
 /// As many blocks in blocks as are drawn.
 const MOST_NESTED: usize = 16;
+
+/// The most groups of one entity: a line of a million vertices.
+const MOST_GROUPS: usize = 1 << 22;
 
 /// As many vertices as an entity of a block weighs at least.
 const FEATURE_WEIGHT: usize = 8;
@@ -74,12 +77,13 @@ pub(super) fn is_dxf(bytes: &[u8]) -> bool {
 /// # Errors
 /// [`VectorError`], also where no entity is sound.
 pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
+    VectorError::check_design_size(FORMAT, bytes)?;
     let reason = "names no coordinate system, as all of its kind";
     let crs = hints.crs.cloned().ok_or(VectorError::NoCrs { format: FORMAT, reason })?;
     let drawing = if groups::is_binary(bytes) {
-        Drawing::read(GroupReader::of_binary(bytes))
+        DxfDrawing::read(GroupReader::of_binary(bytes))
     } else {
-        Drawing::read(GroupReader::of_text(&groups::decode(bytes)))
+        DxfDrawing::read(GroupReader::of_text(&groups::decode(bytes)))
     };
     let drawing = drawing?;
     let names: Vec<&str> = drawing.layer_names();
@@ -91,7 +95,7 @@ pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, Vec
     if let Some(cut) = &drawing.cut_short {
         layer.fault(cut.clone());
     }
-    let mut drawn = Drawn {
+    let mut drawn = DxfFeatures {
         drawing: &drawing,
         wanted: hints.layer,
         vertices_left: DESIGN_VERTICES.get(),
@@ -110,11 +114,11 @@ pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, Vec
 
 /// A drawing as read.
 #[derive(Default)]
-struct Drawing {
+struct DxfDrawing {
     unit: Option<i64>,
     layers: BTreeMap<String, DrawingLayer>,
-    blocks: BTreeMap<String, Block>,
-    entities: Vec<Entity>,
+    blocks: BTreeMap<String, DxfBlock>,
+    entities: Vec<DxfEntity>,
     /// How many entities of each kind are not read.
     unread: BTreeMap<String, usize>,
     /// A sentence where the file ends too early or is broken behind some entities.
@@ -127,9 +131,9 @@ struct DrawingLayer {
 }
 
 #[derive(Default)]
-struct Block {
+struct DxfBlock {
     base: DVec3,
-    entities: Vec<Entity>,
+    entities: Vec<DxfEntity>,
 }
 
 /// Reads records: a group of code 0 and those up to the next.
@@ -154,8 +158,9 @@ impl<'a> RecordReader<'a> {
     }
 
     /// The next record; what is broken ends the file.
-    fn record(&mut self) -> Option<Record<'a>> {
-        let mut record = Record { kind: self.next.take()?, groups: Vec::new(), place: self.groups.place() };
+    fn record(&mut self) -> Option<DxfRecord<'a>> {
+        let mut record =
+            DxfRecord { kind: self.next.take()?, groups: Vec::new(), place: self.groups.place() };
         loop {
             match self.groups.next() {
                 Ok(Some(group)) if group.code == 0 => {
@@ -164,6 +169,13 @@ impl<'a> RecordReader<'a> {
                 }
                 // Extended data belongs to other programs; hatches repeat its codes nowhere.
                 Ok(Some(group)) if group.code >= 1000 || group.code == 999 => {}
+                Ok(Some(_)) if record.groups.len() == MOST_GROUPS => {
+                    self.fault = Some(format!(
+                        "{}: one entity has more than {MOST_GROUPS} groups",
+                        self.groups.place()
+                    ));
+                    return Some(record);
+                }
                 Ok(Some(group)) => record.groups.push(group),
                 Ok(None) => return Some(record),
                 Err(reason) => {
@@ -175,13 +187,13 @@ impl<'a> RecordReader<'a> {
     }
 }
 
-impl Drawing {
+impl DxfDrawing {
     fn read(groups: GroupReader<'_>) -> Result<Self, VectorError> {
         let mut reader =
             RecordReader::new(groups).map_err(|reason| VectorError::broken(FORMAT, "its start", reason))?;
         let mut drawing = Self::default();
         let mut section = String::new();
-        let mut block: Option<(String, Block)> = None;
+        let mut block: Option<(String, DxfBlock)> = None;
         let mut is_ended = false;
         while let Some(record) = reader.record() {
             match (record.kind.as_str(), section.as_str()) {
@@ -196,7 +208,7 @@ impl Drawing {
                     let base = record.point(10).unwrap_or_default();
                     block = Some((
                         record.text(2).unwrap_or_default().to_owned(),
-                        Block { base, entities: Vec::new() },
+                        DxfBlock { base, entities: Vec::new() },
                     ));
                 }
                 ("ENDBLK", "BLOCKS") => drawing.blocks.extend(block.take()),
@@ -231,7 +243,7 @@ impl Drawing {
     }
 
     /// The vertices of a polyline and the attributes of a block's reference, which follow it.
-    fn parts<'a>(record: &Record<'a>, reader: &mut RecordReader<'a>) -> Vec<Record<'a>> {
+    fn parts<'a>(record: &DxfRecord<'a>, reader: &mut RecordReader<'a>) -> Vec<DxfRecord<'a>> {
         let mut parts = Vec::new();
         let has_parts =
             record.kind == "POLYLINE" || (record.kind == "INSERT" && record.integer(66) == Some(1));
@@ -248,14 +260,14 @@ impl Drawing {
     }
 
     /// The header is one record: names with values behind them.
-    fn read_header(&mut self, record: &Record<'_>) {
+    fn read_header(&mut self, record: &DxfRecord<'_>) {
         let mut groups = record.groups.iter();
         if groups.by_ref().any(|group| group.code == 9 && group.text() == "$INSUNITS") {
-            self.unit = groups.next().and_then(groups::Group::integer);
+            self.unit = groups.next().and_then(groups::DxfGroup::integer);
         }
     }
 
-    fn add_layer(&mut self, record: &Record<'_>) {
+    fn add_layer(&mut self, record: &DxfRecord<'_>) {
         let Some(name) = record.text(2) else { return };
         let index = record.integer(62).unwrap_or(7);
         let color = match record.integer(420) {
@@ -307,8 +319,8 @@ impl BlockReference<'_> {
 }
 
 /// The features of a drawing while they are collected.
-struct Drawn<'a> {
-    drawing: &'a Drawing,
+struct DxfFeatures<'a> {
+    drawing: &'a DxfDrawing,
     wanted: Option<&'a str>,
     /// How many more vertices and references there may be: blocks multiply them.
     vertices_left: u64,
@@ -325,10 +337,10 @@ struct DrawnFeature<'a> {
     points: Vec<DVec3>,
     polygons: Vec<Vec<Vec<DVec3>>>,
     properties: Properties,
-    entity: &'a Entity,
+    entity: &'a DxfEntity,
 }
 
-impl<'a> Drawn<'a> {
+impl<'a> DxfFeatures<'a> {
     fn take(&mut self, count: usize) -> bool {
         match self.vertices_left.checked_sub(count as u64) {
             Some(left) => self.vertices_left = left,
@@ -337,7 +349,7 @@ impl<'a> Drawn<'a> {
         !self.is_too_large
     }
 
-    fn add(&mut self, entity: &'a Entity, reference: &BlockReference<'a>, depth: usize) {
+    fn add(&mut self, entity: &'a DxfEntity, reference: &BlockReference<'a>, depth: usize) {
         if entity.is_on_paper || entity.is_hidden {
             self.on_paper += 1;
             return;
@@ -354,7 +366,7 @@ impl<'a> Drawn<'a> {
             (DxfColor::ByBlock, None) => DxfColor::Rgb([0; 3]),
             (color, _) => color,
         };
-        if let Shape::Insert(insert) = &entity.shape {
+        if let DxfShape::Insert(insert) = &entity.shape {
             self.insert(entity, insert, (layer, color), reference, depth);
             return;
         }
@@ -369,23 +381,23 @@ impl<'a> Drawn<'a> {
         }
         let (mut lines, mut points, mut polygons) = (Vec::new(), Vec::new(), Vec::new());
         match &entity.shape {
-            Shape::Point(at) => points.push(place(at)),
-            Shape::Line(line) => lines.push(ring(line)),
-            Shape::Faces(faces) => {
+            DxfShape::Point(at) => points.push(place(at)),
+            DxfShape::Line(line) => lines.push(ring(line)),
+            DxfShape::Faces(faces) => {
                 polygons.extend(faces.iter().map(|rings| rings.iter().map(ring).collect()))
             }
-            Shape::Rings(rings) => {
+            DxfShape::Rings(rings) => {
                 let sorted = RingSorter::new(HoleRule::Nesting).polygons(rings.iter().map(ring).collect());
                 polygons.extend(sorted.map(|sorted| sorted.polygons).unwrap_or_default());
             }
-            Shape::Text(text) => {
+            DxfShape::Text(text) => {
                 points.push(place(&text.at));
                 properties.insert("text".into(), text.text.clone().into());
                 insert_number(&mut properties, "text_height", text.height);
                 insert_number(&mut properties, "rotation", text.rotation_deg);
                 properties.extend(text.tag.as_ref().map(|tag| ("tag".to_owned(), tag.clone().into())));
             }
-            Shape::Insert(_) => {}
+            DxfShape::Insert(_) => {}
         }
         let count = points.len()
             + lines.iter().map(Vec::len).sum::<usize>()
@@ -408,7 +420,7 @@ impl<'a> Drawn<'a> {
         }
     }
 
-    fn properties(&self, entity: &Entity, layer: &str, color: DxfColor) -> Properties {
+    fn properties(&self, entity: &DxfEntity, layer: &str, color: DxfColor) -> Properties {
         let mut properties = Properties::new();
         properties.insert("Layer".into(), layer.into());
         properties.insert("type".into(), entity.kind.clone().into());
@@ -425,7 +437,7 @@ impl<'a> Drawn<'a> {
 
     fn insert(
         &mut self,
-        entity: &'a Entity,
+        entity: &'a DxfEntity,
         insert: &'a BlockInsert,
         (layer, color): (&'a str, DxfColor),
         reference: &BlockReference<'a>,
@@ -469,7 +481,7 @@ impl<'a> Drawn<'a> {
     /// Adds the place of a block as a point.
     fn add_place(
         &mut self,
-        entity: &'a Entity,
+        entity: &'a DxfEntity,
         insert: &BlockInsert,
         (layer, color): (&str, DxfColor),
         placed: DAffine3,

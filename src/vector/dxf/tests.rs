@@ -1,3 +1,5 @@
+//! Drawings in pairs of a code and a value.
+
 use super::*;
 use crate::feature::Feature;
 use glam::DVec2;
@@ -204,4 +206,15 @@ fn what_is_cut_short_is_read_as_far_as_it_goes_and_told() {
     assert!(read.faults[0].contains("not read to its end"), "{:?}", read.faults);
     let error = read_text("0\nSECTION\n2\nENTITIES\nxy\nLINE\n", None).expect_err("broken").to_string();
     assert!(error.contains("'xy' is no code"), "{error}");
+}
+
+#[test]
+fn an_entity_of_too_many_groups_ends_the_file() {
+    let text = format!(
+        "0\nSECTION\n2\nENTITIES\n0\nPOINT\n10\n1\n20\n1\n0\nLINE\n10\n0\n20\n0\n11\n1\n21\n1\n{}",
+        "40\n0\n".repeat(1 << 22)
+    );
+    let read = read_text(&text, None).expect("what precedes it");
+    assert_eq!(read.features.len(), 2);
+    assert!(read.faults[0].contains("more than 4194304 groups"), "{:?}", read.faults);
 }

@@ -52,6 +52,7 @@ const MOST_STATIONS: f64 = 2000.0;
 /// # Errors
 /// [`VectorError`], also where no feature of the layer is sound.
 pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
+    VectorError::check_design_size(FORMAT, bytes)?;
     let DecodedXml { text, fault } = xml::decode(bytes, FORMAT)?;
     let wanted = hints.layer.map(|_| hints.choose_layer(&LAYERS)).transpose()?;
     let mut xml = XmlReader::new(&text, FORMAT);
