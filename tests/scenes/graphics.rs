@@ -268,7 +268,7 @@ fn graphics_page() -> String {
          and 46 (lines and areas of weather and sea). `kind` takes\nthe word, or the code of set 25. The draw rule is that of \
          MIL-STD-2525D (2014), appendix H, or of 2525E, which is the source of\nevery row: it says where the points go, in \
          which order; the table of rules follows. Areas of the hostile side are marked `ENY`.\nFields: T `designation`, T1 `designation_2`, B `echelon`, AS `country`, N \
-         `hostile`, H `further`, AP `target`, W `from`, W1 `until`, X\n`elevations`, AM `distances`, AN `azimuths`.\n\n| code | \
+         `hostile`, H `further`, V `type`, C `quantity`, Y `location`, Q `direction`, AP `target`, W `from`, W1 `until`, X\n`elevations`, AM `distances`, AN `azimuths`.\n\n| code | \
          kind | name | rule | points | fields |\n|---|---|---|---|---|---|\n",
     );
     let mut set = 25;

@@ -11,6 +11,7 @@ use crate::graphic::drawing::{GraphicDrawing, GraphicInput};
 use crate::graphic::fields::GraphicFields;
 use crate::graphic::kind::GraphicKind;
 use crate::graphic::letters::letter_lines;
+use crate::graphic::plane::arrowhead;
 
 /// Units of an icon's box in a text height: a box of three letters is as wide as three letters beside it.
 const UNITS_PER_EM: f64 = 32.0;
@@ -82,6 +83,8 @@ const SUPPLY_TEXTS: &[IconText] = &[
 ];
 /// Of CBRN events (POINT7).
 const EVENT_TEXTS: &[IconText] = &[
+    ("C", [100.0, -16.0], ABOVE),
+    ("Y", [100.0, 112.0], BELOW),
     ("H", [165.0, 0.0], RIGHT),
     ("N", [150.0, 60.0], RIGHT),
     ("W", [35.0, 0.0], LEFT),
@@ -166,10 +169,25 @@ pub fn icon(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicD
             None => add(statement, &paper, drawing),
         }
     }
+    if let Some(direction_deg) = input.fields.direction_deg.filter(|_| kind.shows("Q")) {
+        movement(direction_deg, input, drawing);
+    }
     for &(letters, place, side) in texts_of(kind).iter().filter(|(letters, ..)| kind.shows(letters)) {
         let text = field_text(input.fields, letters);
         drawing.text_beside(text, paper.place(DVec2::from(place)), paper.way(side));
     }
+}
+
+/// The arrow of the direction in which an event moves, on the ground from its place.
+fn movement(direction_deg: f64, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
+    /// The length of the arrow, and its head, in text heights.
+    const ARROW_EM: [f64; 3] = [3.0, 0.8, 0.4];
+    let angle = direction_deg.to_radians();
+    let toward = DVec2::new(libm::sin(angle), libm::cos(angle));
+    let [length, head, half] = ARROW_EM.map(|size| size * input.em_m);
+    let tip = input.points[0] + toward * length;
+    drawing.line([input.points[0], tip]);
+    drawing.line(arrowhead(tip, toward, head, half));
 }
 
 fn part(name: &str) -> Option<&'static str> {
@@ -186,6 +204,9 @@ fn field_text(fields: &GraphicFields, letters: &str) -> String {
         "AP" => fields.target.clone(),
         "W" => fields.from.clone(),
         "W1" => fields.until.clone(),
+        "C" => fields.quantity.clone(),
+        "Y" => fields.location.clone(),
+        "V" => fields.equipment.clone(),
         "X" => fields.heights.join("\u{2013}"),
         _ => String::new(),
     }
