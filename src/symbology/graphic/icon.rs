@@ -320,4 +320,75 @@ mod tests {
         assert_eq!(drawing.texts[0].text, "7");
         assert!(drawing.texts[0].at.y < 500.0, "at the right of what is up");
     }
+
+    /// Icons as another library draws them, without letters, in the same box; `tests/tools/points_oracle.mjs` makes it.
+    const TABLE: &str = include_str!("../../../tests/symbology/points.txt");
+
+    /// The lines of an icon without its letters, in its box.
+    fn figure(icon: &str) -> Vec<Vec<DVec2>> {
+        let statements = icon.split(';').map(str::trim);
+        let whole = statements.flat_map(|statement| match statement.strip_prefix('@').and_then(part) {
+            Some(part) => part.split(';').map(str::trim).collect::<Vec<_>>(),
+            None => vec![statement],
+        });
+        let marks = whole.flat_map(|statement| {
+            parse(statement.strip_prefix("dash ").unwrap_or(statement), FrameShape::Rectangle)
+                .unwrap_or_default()
+        });
+        let lines = marks.flat_map(|mark| match mark {
+            SymbolMark::Shape { steps, .. } => flattened(&steps),
+            SymbolMark::Text { .. } => Vec::new(),
+        });
+        lines.collect()
+    }
+
+    /// How far a place on `from` is off `to` at most.
+    fn farthest(from: &[Vec<DVec2>], to: &[Vec<DVec2>]) -> f64 {
+        let legs: Vec<(DVec2, DVec2)> = to
+            .iter()
+            .flat_map(|line| line.windows(2).map(|leg| (leg[0], leg[1])))
+            .filter(|leg| leg.0 != leg.1)
+            .collect();
+        let places = from
+            .iter()
+            .flat_map(|line| line.windows(2))
+            .flat_map(|leg| (0..=8).map(move |step| leg[0].lerp(leg[1], f64::from(step) / 8.0)));
+        let off = |at: DVec2| {
+            let squares = legs.iter().map(|&leg| sandtable_geom::segment::distance_squared(leg, at));
+            squares.fold(f64::INFINITY, f64::min).sqrt()
+        };
+        places.map(off).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn icons_lie_within_three_percent_of_their_box_on_those_of_another_library() {
+        /// Of a box of 200 units.
+        const MOST: f64 = 6.0;
+        let (mut wrong, mut compared) = (Vec::new(), 0);
+        for block in TABLE.split("point ").skip(1) {
+            let mut lines = block.lines();
+            let code = lines.next().expect("a code");
+            let point = |pair: &str| {
+                let (x, y) = pair.split_once(' ').expect("x and y");
+                DVec2::new(x.parse().expect("a number"), y.parse().expect("a number"))
+            };
+            let theirs: Vec<Vec<DVec2>> = lines
+                .filter_map(|line| line.strip_prefix("line "))
+                .map(|line| line.split(',').map(point).collect())
+                .collect();
+            let kind = GraphicKind::of_code(25, code).expect("a kind");
+            // Its fish leaves the box, and its minefield is empty until a modifier says which mines.
+            if matches!(kind.word, "marine_life" | "static_minefield") {
+                continue;
+            }
+            let ours = figure(kind.icon);
+            let off = farthest(&ours, &theirs).max(farthest(&theirs, &ours));
+            compared += 1;
+            if off > MOST {
+                wrong.push(format!("{code} {}: {off:.1}", kind.word));
+            }
+        }
+        assert!(wrong.is_empty(), "{compared}: {wrong:#?}");
+        assert!(compared > 250, "{compared}");
+    }
 }
