@@ -23,7 +23,7 @@ table! {
         /// Name for messages and the feature list.
         name: Option<String> = key::text(), otherwise "the property `name`";
         /// What it is: one of the words of `scenes/SYMBOLS.md`, such as `phase_line`, or six digits of symbol
-        /// set 25.
+        /// set 25, or eight that begin with the set.
         kind: Option<Stated<String>> = key::filled_text(), otherwise "by `sidc`; with `file` the property `kind`";
         /// Symbol identification code of symbol set 25, 45 or 46, 20 or 30 digits: its kind, side, status and echelon.
         sidc: Option<Stated<String>> = key::filled_text(), otherwise "by `kind`; with `file` the property `sidc`";

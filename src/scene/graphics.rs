@@ -224,7 +224,12 @@ fn numbers_of(key: &str, text: &str) -> Result<Vec<f64>, (String, String)> {
 }
 
 fn kind_of_word(word: &str) -> Result<&'static GraphicKind, (String, String)> {
-    if let Some(kind) = GraphicKind::of_word(word).or_else(|| GraphicKind::of_code(25, word)) {
+    // Six digits are of symbol set 25; eight begin with the set.
+    let of_digits = || match word.split_at_checked(2) {
+        Some((set, entity)) if entity.len() == 6 => GraphicKind::of_code(set.parse().ok()?, entity),
+        _ => GraphicKind::of_code(25, word),
+    };
+    if let Some(kind) = GraphicKind::of_word(word).or_else(of_digits) {
         return Ok(kind);
     }
     let near = nearest(word, GRAPHIC_KINDS.iter().map(|kind| kind.word));

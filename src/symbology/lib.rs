@@ -6,6 +6,7 @@
 
 mod amplifiers;
 pub mod code;
+mod control_point;
 pub mod drawing;
 pub mod entities;
 pub mod fields;

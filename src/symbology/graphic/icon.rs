@@ -163,11 +163,8 @@ impl IconPaper {
 /// Draws the icon of a kind at its point, and its texts beside it.
 pub fn icon(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     let paper = IconPaper::new(input);
-    for statement in kind.icon.split(';').map(str::trim) {
-        match statement.strip_prefix('@').and_then(part) {
-            Some(part) => part.split(';').for_each(|statement| add(statement.trim(), &paper, drawing)),
-            None => add(statement, &paper, drawing),
-        }
+    for (statement, is_dashed) in statements(kind.icon) {
+        add(statement, is_dashed, &paper, drawing);
     }
     if let Some(direction_deg) = input.fields.direction_deg.filter(|_| kind.shows("Q")) {
         movement(direction_deg, input, drawing);
@@ -188,6 +185,17 @@ fn movement(direction_deg: f64, input: &GraphicInput<'_>, drawing: &mut GraphicD
     let tip = input.points[0] + toward * length;
     drawing.line([input.points[0], tip]);
     drawing.line(arrowhead(tip, toward, head, half));
+}
+
+/// The statements of an icon with those of its parts, and whether each is dashed.
+pub(crate) fn statements(icon: &'static str) -> impl Iterator<Item = (&'static str, bool)> {
+    let whole = icon.split(';').map(str::trim);
+    let parts = whole
+        .flat_map(|statement| statement.strip_prefix('@').and_then(part).unwrap_or(statement).split(';'));
+    parts.map(str::trim).map(|statement| match statement.strip_prefix("dash ") {
+        Some(rest) => (rest, true),
+        None => (statement, false),
+    })
 }
 
 fn part(name: &str) -> Option<&'static str> {
@@ -213,15 +221,11 @@ fn field_text(fields: &GraphicFields, letters: &str) -> String {
 }
 
 /// Adds one statement of an icon.
-fn add(statement: &str, paper: &IconPaper, drawing: &mut GraphicDrawing) {
-    let (is_dashed, statement) = match statement.strip_prefix("dash ") {
-        Some(rest) => (true, rest),
-        None => (false, statement),
-    };
+fn add(statement: &str, is_dashed: bool, paper: &IconPaper, drawing: &mut GraphicDrawing) {
     // The shape of a frame matters to no icon of this set: a test parses them all.
     for mark in parse(statement, FrameShape::Rectangle).unwrap_or_default() {
         match mark {
-            SymbolMark::Text { text, center, size } => {
+            SymbolMark::Text { text, center, size, .. } => {
                 let center = center.as_dvec2();
                 for line in letter_lines(&text, f64::from(size)) {
                     let flipped = line.into_iter().map(|at| paper.place(center + DVec2::new(at.x, -at.y)));
@@ -325,16 +329,9 @@ mod tests {
     const TABLE: &str = include_str!("../../../tests/symbology/points.txt");
 
     /// The lines of an icon without its letters, in its box.
-    fn figure(icon: &str) -> Vec<Vec<DVec2>> {
-        let statements = icon.split(';').map(str::trim);
-        let whole = statements.flat_map(|statement| match statement.strip_prefix('@').and_then(part) {
-            Some(part) => part.split(';').map(str::trim).collect::<Vec<_>>(),
-            None => vec![statement],
-        });
-        let marks = whole.flat_map(|statement| {
-            parse(statement.strip_prefix("dash ").unwrap_or(statement), FrameShape::Rectangle)
-                .unwrap_or_default()
-        });
+    fn figure(icon: &'static str) -> Vec<Vec<DVec2>> {
+        let parsed = |(statement, _)| parse(statement, FrameShape::Rectangle).unwrap_or_default();
+        let marks = statements(icon).flat_map(parsed);
         let lines = marks.flat_map(|mark| match mark {
             SymbolMark::Shape { steps, .. } => flattened(&steps),
             SymbolMark::Text { .. } => Vec::new(),

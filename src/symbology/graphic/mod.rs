@@ -21,7 +21,7 @@ mod crossing;
 pub mod drawing;
 pub mod fields;
 mod fires;
-mod icon;
+pub(crate) mod icon;
 pub mod kind;
 pub mod kind_table;
 mod letters;
