@@ -25,7 +25,16 @@ const CLEARANCE_M: f64 = 0.01;
 
 /// Rolling ground of 20 km by 20 km with the tables of `text` on it.
 fn scene(text: &str) -> Result<SceneModel, String> {
+    scene_with(text, "")
+}
+
+/// The same, with `features` in a file `graphics.geojson` beside the scene.
+fn scene_with(text: &str, features: &str) -> Result<SceneModel, String> {
     let folder = Scratch::new();
+    folder.write(
+        "graphics.geojson",
+        &format!("{{\"type\": \"FeatureCollection\", \"features\": [{features}]}}"),
+    );
     let mut grid = "ncols 101\nnrows 101\nxllcenter 0\nyllcenter 0\ncellsize 200\n".to_owned();
     for row in 0..101 {
         for column in 0..101 {
@@ -170,6 +179,43 @@ fn an_axis_is_taken_from_start_to_tip_with_a_width_or_by_the_standard() {
         let error = scene(&format!("[[graphic]]\n{table}\n")).map(|_| ()).expect_err(&table);
         assert!(error.contains(expected), "{table}: {error}");
     }
+}
+
+#[test]
+fn graphics_of_a_file_have_their_numbers_from_properties() {
+    let feature = |properties: &str, shape: &str, places: &str| {
+        format!(
+            "{{\"type\": \"Feature\", \"properties\": {{{properties}}}, \"geometry\": {{\"type\": \"{shape}\", \
+             \"coordinates\": {places}}}}}"
+        )
+    };
+    let text = "crs = \"EPSG:32616\"\n[[graphic]]\nfile = \"graphics.geojson\"\ncrs = \"EPSG:32616\"\n";
+    let features = [
+        feature(
+            "\"sidc\": \"10032500001514030000\", \"width\": 800, \"unique_designation\": \"IRON\"",
+            "LineString",
+            "[[2000, 2000], [6000, 3000], [9000, 7000]]",
+        ),
+        feature(
+            "\"kind\": \"launch_area\", \"distances\": \"800, 300\", \"azimuths\": 45",
+            "Point",
+            "[9000, 9000]",
+        ),
+        feature("\"kind\": \"45110301\"", "LineString", "[[2000, 9000], [6000, 9500]]"),
+    ];
+    let scene = scene_with(text, &features.join(",")).expect("three graphics");
+    let axis = &scene.graphics[0];
+    assert_eq!((axis.width_m, axis.fields.designation.as_str()), (Some(800.0), "IRON"));
+    assert_eq!(axis.points[0], DVec2::new(9000.0, 7000.0), "from start to tip");
+    let fields = &scene.graphics[1].fields;
+    assert_eq!(
+        (fields.distances_m.as_slice(), fields.azimuths_deg.as_slice()),
+        (&[800.0, 300.0][..], &[45.0][..])
+    );
+    assert_eq!(scene.graphics[2].kind.word, "cold_front");
+    let wrong = feature("\"kind\": \"launch_area\", \"distances\": \"wide\"", "Point", "[9000, 9000]");
+    let error = scene_with(text, &wrong).map(|_| ()).expect_err("no number");
+    assert!(error.contains("the property `distances` lists 'wide'"), "{error}");
 }
 
 #[test]

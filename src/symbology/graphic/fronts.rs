@@ -8,7 +8,7 @@ use glam::DVec2;
 
 use crate::graphic::drawing::{FillInk, GraphicDrawing, GraphicInput, StrokeDash, StrokeSide};
 use crate::graphic::kind::GraphicKind;
-use crate::graphic::plane::{bulge, circle};
+use crate::graphic::plane::{bulge, circle, leg_pitch_m};
 use crate::graphic::teeth::{ToothBase, bases};
 use crate::graphic::weather::label;
 use sandtable_geom::polyline::Polyline;
@@ -39,11 +39,12 @@ pub fn front(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graphic
         (2, 0 | 1) => (OCCLUDED_EM, true),
         _ => (FRONT_PITCH_EM, false),
     };
+    let pitch_m = leg_pitch_m(input.points, pitch_em * em_m);
     let legs: Vec<Polyline> =
         input.points.windows(2).filter_map(|leg| Polyline::new(leg.iter().copied(), 0.0)).collect();
     let marks: Vec<ToothBase<'_>> = legs
         .iter()
-        .flat_map(|leg| bases(leg, pitch_em * em_m))
+        .flat_map(|leg| bases(leg, pitch_m))
         .flat_map(|base| if in_pairs { base.halves().to_vec() } else { vec![base] })
         .collect();
     let is_arc = |index: usize| match family {

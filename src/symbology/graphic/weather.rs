@@ -10,16 +10,13 @@ use glam::DVec2;
 use crate::graphic::area::{hatch, label_area};
 use crate::graphic::drawing::{FillInk, GraphicDrawing, GraphicInput, TextCourse};
 use crate::graphic::kind::{GraphicKind, GraphicTint};
-use crate::graphic::plane::{arrowhead, bulge, circle, closed, offset, turned};
+use crate::graphic::plane::{arrowhead, bulge, circle, closed, leg_pitch_m, offset, turned};
 use crate::graphic::teeth::{ToothBase, base_line, bases};
 use sandtable_geom::polygon::{bounds, inner_point};
 use sandtable_geom::polyline::Polyline;
 
 /// Pieces of a curve between two points.
 const CURVE_STEPS: u32 = 12;
-
-/// The most waves or marks of a leg; they are farther apart on a longer one.
-const MOST_WAVES: f64 = 500.0;
 
 fn line_of(kind: &GraphicKind, input: &GraphicInput<'_>) -> Option<Polyline> {
     if kind.is_area() { closed(input.points) } else { Polyline::new(input.points.iter().copied(), 0.0) }
@@ -171,11 +168,12 @@ pub fn cable(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graphic
 /// A wave of a stated length and height on every leg; what is left of a leg is straight.
 fn waved(input: &GraphicInput<'_>, [length, height]: [f64; 2]) -> Vec<DVec2> {
     const STEPS: u32 = 16;
+    let wave_m = leg_pitch_m(input.points, length * input.em_m);
     let mut points = vec![input.points[0]];
     for leg in input.points.windows(2) {
         let leg_m = leg[0].distance(leg[1]);
         let along = (leg[1] - leg[0]) / leg_m;
-        let wave_m = (length * input.em_m).max(leg_m / MOST_WAVES);
+
         // The first bow is on the upper side on the picture.
         let aside = along.perp() * (height * input.em_m);
         let left = if aside.dot(input.up) < 0.0 { -aside } else { aside };
@@ -208,10 +206,11 @@ fn toothed(
     corners: &[[f64; 2]],
     drawing: &mut GraphicDrawing,
 ) {
+    let pitch_m = leg_pitch_m(input.points, pitch_em * input.em_m);
     let mut points = vec![input.points[0]];
     for leg in input.points.windows(2) {
         let Some(line) = Polyline::new(leg.iter().copied(), 0.0) else { continue };
-        for base in bases(&line, pitch_em * input.em_m) {
+        for base in bases(&line, pitch_m) {
             let left = base.left() * input.em_m;
             points.extend(corners.iter().map(|&[share, high]| base.at(share) + left * high));
         }
@@ -315,10 +314,9 @@ pub fn icing(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graphic
 pub fn ticked(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     let em_m = input.em_m;
     let is_radar = kind.code == "110503";
-    let pitch_em = if is_radar { 3.333 } else { 1.93 };
+    let pitch_m = leg_pitch_m(input.points, if is_radar { 3.333 } else { 1.93 } * em_m);
     let legs = input.points.windows(2).filter_map(|leg| Polyline::new(leg.iter().copied(), 0.0));
     for leg in legs {
-        let pitch_m = (pitch_em * em_m).max(leg.length() / MOST_WAVES);
         let along = (leg.at(leg.length()) - leg.at(0.0)).normalize_or_zero();
         for number in 0..=(leg.length() / pitch_m) as u32 {
             let from = leg.at(f64::from(number) * pitch_m);
