@@ -33,7 +33,7 @@ fn scene_with(text: &str, features: &str) -> Result<SceneModel, String> {
     let folder = Scratch::new();
     folder.write(
         "graphics.geojson",
-        &format!("{{\"type\": \"FeatureCollection\", \"features\": [{features}]}}"),
+        format!("{{\"type\": \"FeatureCollection\", \"features\": [{features}]}}"),
     );
     let mut grid = "ncols 101\nnrows 101\nxllcenter 0\nyllcenter 0\ncellsize 200\n".to_owned();
     for row in 0..101 {
