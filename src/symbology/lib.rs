@@ -7,6 +7,7 @@
 mod amplifiers;
 pub mod code;
 pub mod country;
+mod control_point;
 pub mod drawing;
 mod engagement;
 pub mod entities;

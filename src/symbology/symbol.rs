@@ -14,6 +14,8 @@ use glam::Vec2;
 use crate::amplifiers::{Amplification, staff_foot};
 use crate::code::SymbolCode;
 use crate::drawing::{BLACK, PALE, SymbolMark, SymbolPen, parse};
+use crate::control_point::control_point;
+use crate::drawing::{BLACK, PathStep, SymbolMark, SymbolPen, parse, path};
 use crate::entities;
 use crate::fields::{SymbolContext, SymbolIdentity, SymbolSet, SymbolStatus};
 use crate::frame::{FRAME_LINE, FrameInk, FrameShape, SymbolBox, fill};
@@ -54,9 +56,9 @@ pub struct MilitarySymbol {
 }
 
 impl MilitarySymbol {
-    /// The symbol of a code; `None` for a set whose symbols have no frames, such as control measures.
+    /// The symbol of a code; `None` for lines and areas, and for sets whose symbols have no frames, such as weather.
     pub fn new(code: &SymbolCode) -> Option<Self> {
-        let shape = FrameShape::of(code)?;
+        let Some(shape) = FrameShape::of(code) else { return control_point(code) };
         let (frame, mut notes) = (shape.bounds(), Vec::new());
         let outline = shape.outline();
         let drawn = icon(code, shape, &mut notes);

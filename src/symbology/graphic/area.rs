@@ -73,6 +73,7 @@ pub fn inner_text(kind: &GraphicKind, input: &GraphicInput<'_>) -> String {
         fields.named(kind.label),
         shown("T1", fields.designation_2.clone()),
         fields.heights.join("\u{2013}"),
+        shown("Y", fields.location.clone()),
         further,
         fields.times(),
     ];

@@ -153,6 +153,30 @@ pub fn route(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graphic
     }
 }
 
+/// An engineer work line: its letters at both ends, the units on both sides of its middle.
+pub fn work_line(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
+    drawing.line(input.points);
+    drawing.text_on(kind.label, TextCourse::Ends(input.points.to_vec()));
+    let Some(line) = Polyline::new(input.points.iter().copied(), 0.0) else { return };
+    let (em_m, middle) = (input.em_m, line.length() / 2.0);
+    let along = direction(line.at(middle - em_m), line.at(middle + em_m));
+    for (name, aside) in unit_names(input).into_iter().zip([along.perp(), -along.perp()]) {
+        drawing.text_beside(name, line.at(middle) + aside * (0.6 * em_m), aside);
+    }
+}
+
+/// The names of the units on the left and on the right of a line, with their country.
+fn unit_names(input: &GraphicInput<'_>) -> [String; 2] {
+    let fields = input.fields;
+    [&fields.designation, &fields.designation_2].map(|name| {
+        if fields.country.is_empty() || name.is_empty() {
+            name.clone()
+        } else {
+            format!("{name} ({})", fields.country)
+        }
+    })
+}
+
 /// A boundary (LINE7): the echelon in a gap of the line and the texts on either side, on every leg that has the length for
 /// them, at least on the longest.
 pub fn boundary(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
@@ -160,14 +184,7 @@ pub fn boundary(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graphic
     const LEAST_WIDTHS: f64 = 3.0;
     let Some(line) = Polyline::new(input.points.iter().copied(), 0.0) else { return };
     let (fields, em_m) = (input.fields, input.em_m);
-    let named = |name: &String| {
-        if fields.country.is_empty() || name.is_empty() {
-            name.clone()
-        } else {
-            format!("{name} ({})", fields.country)
-        }
-    };
-    let names = [named(&fields.designation), named(&fields.designation_2)];
+    let names = unit_names(input);
     let texts = [&names[0], &names[1], &fields.echelon];
     let widest_m = texts.iter().map(|text| text_m(text, em_m)).fold(4.0 * em_m, f64::max);
     let middles = labeled_legs(&line, LEAST_WIDTHS * widest_m);

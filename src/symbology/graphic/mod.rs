@@ -9,7 +9,7 @@
 //! ```text
 //! kind_table    ─► lines, teeth, wire, axis, area, zone, fires, task, maneuver, crossing, corridor ─┐
 //! point_table   ─► icon ─► letters                                                                  ├─► plane, drawing
-//! weather_table ─► weather ─────────────────────────────────────────────────────────────────────────┘
+//! weather_table ─► weather, fronts ─────────────────────────────────────────────────────────────────┘
 //! check ─► kind, rules
 //! ```
 
@@ -21,7 +21,8 @@ mod crossing;
 pub mod drawing;
 pub mod fields;
 mod fires;
-mod icon;
+mod fronts;
+pub(crate) mod icon;
 pub mod kind;
 pub mod kind_table;
 mod letters;
