@@ -2,13 +2,14 @@
 //!
 //! ```text
 //!  text ──► code (digits, fields; letter_code) ──► frame, entities, modifiers, amplifiers ──► symbol: marks in a box
+//!  symbol, texts, engagement ──► labeled: with the text round it ──► svg
 //! ```
 
 mod amplifiers;
 pub mod code;
 pub mod country;
 pub mod drawing;
-mod engagement;
+pub mod engagement;
 pub mod entities;
 pub mod fields;
 pub mod frame;
