@@ -20,6 +20,7 @@ use sandtable_description::symbols::SymbolTable;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::position::Position;
 use sandtable_symbology::code::SymbolCode;
+use sandtable_symbology::engagement::EngagementBar;
 use sandtable_symbology::symbol::MilitarySymbol;
 use sandtable_symbology::texts::{SymbolNote, SymbolText, TEXT_FIELDS, placed_for};
 use sandtable_terrain::lattice::Lattice;
@@ -101,11 +102,12 @@ fn symbol_at(
     let world = frame.point(at, table.crs.as_ref())?;
     let ground = frame.on_ground(lattice, at, world)?;
     let text = |field| stated_text(table, field).map(|text| text.as_str());
-    let symbol = engaged(symbol, &code, text);
     let texts = placed_for(&code, text);
     let fields =
         TEXT_FIELDS.iter().filter_map(|row| Some((row.field, text(row.field)?.to_owned()))).collect();
     let found = FoundSymbol { code, symbol, texts, fields, name: name(text, &table.sidc), ground };
+    let symbol = engaged(symbol, &code, EngagementBar::of(text), &texts);
+    let found = FoundSymbol { code, symbol, texts, name: name(text, &table.sidc), ground };
     Ok(found.finished(table, &Attributes::default(), findings))
 }
 
@@ -150,6 +152,9 @@ fn read_features(
         let symbol = engaged(symbol, &code, text);
         let (lines, name) = (placed_for(&code, text), name(text, &stated));
         let found = FoundSymbol { code, symbol, texts: lines, fields: texts, name, ground };
+        let lines = placed_for(&code, text);
+        let symbol = engaged(symbol, &code, EngagementBar::of(text), &lines);
+        let found = FoundSymbol { code, symbol, texts: lines, name: name(text, &stated), ground };
         symbols.push(found.finished(table, &attributes, findings));
         if symbols.len() > SCENE_SYMBOLS.count() {
             break;
@@ -183,12 +188,14 @@ fn stated_text(table: &SymbolTable, field: SymbolText) -> Option<&Stated<String>
 
 /// The symbol with its engagement bar, if it has one.
 pub(super) fn engaged<'a>(
+fn engaged(
     symbol: MilitarySymbol,
     code: &SymbolCode,
-    text: impl Fn(SymbolText) -> Option<&'a str>,
+    bar: Option<EngagementBar<'_>>,
+    texts: &[SymbolNote],
 ) -> MilitarySymbol {
-    match text(SymbolText::EngagementBar).filter(|text| !text.trim().is_empty()) {
-        Some(bar) => symbol.with_engagement_bar(code, bar, text(SymbolText::Engagement)),
+    match bar {
+        Some(bar) => symbol.with_engagement_bar(code, bar, texts),
         None => symbol,
     }
 }

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::code::{SymbolCode, SymbolCodeError};
+use crate::engagement::EngagementBar;
 use crate::entities;
 use crate::fields::SymbolSet;
 use crate::symbol::MilitarySymbol;
@@ -66,16 +67,19 @@ impl LabeledSymbol {
         }
         let text = |field| texts.iter().find(|row| row.0 == field).map(|row| row.1);
         let symbol = MilitarySymbol::new(&code).ok_or(LabeledSymbolError::Frameless(code.set))?;
-        let symbol = match text(SymbolText::EngagementBar).filter(|text| !text.trim().is_empty()) {
-            Some(bar) => symbol.with_engagement_bar(&code, bar, text(SymbolText::Engagement)),
+        let lines = placed_for(&code, text);
+        let symbol = match EngagementBar::of(text) {
+            Some(bar) => symbol.with_engagement_bar(&code, bar, &lines),
             None => symbol,
         };
-        Ok(Self { code, symbol, texts: placed_for(&code, text) })
+        Ok(Self { code, symbol, texts: lines })
     }
 
     /// What the symbol is: its identity, its set, and its entity where one is stated and drawn.
     pub fn description(&self) -> String {
-        let words = [Some(self.code.identity.name()), Some(self.code.set.name()), self.entity()];
+        // Jokers and fakers are what follows a comma.
+        let identity = self.code.identity.name().split(',').next();
+        let words = [identity, Some(self.code.set.name()), self.entity()];
         words.into_iter().flatten().collect::<Vec<_>>().join(", ")
     }
 

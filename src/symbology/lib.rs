@@ -2,6 +2,7 @@
 //!
 //! ```text
 //!  text ──► code (digits, fields; letter_code) ──► frame, entities, modifiers, amplifiers ──► symbol: marks in a box
+//!  symbol, texts, engagement ──► labeled: with the text round it ──► svg
 //! ```
 
 mod amplifiers;
@@ -9,7 +10,7 @@ pub mod code;
 pub mod country;
 mod control_point;
 pub mod drawing;
-mod engagement;
+pub mod engagement;
 pub mod entities;
 pub mod fields;
 pub mod frame;

@@ -19,7 +19,7 @@ use crate::drawing::{BLACK, PathStep, SymbolMark, SymbolPen, parse, path};
 use crate::entities;
 use crate::fields::{SymbolContext, SymbolIdentity, SymbolSet, SymbolStatus};
 use crate::frame::{FRAME_LINE, FrameInk, FrameShape, SymbolBox, fill};
-use crate::frame_marks::frame_marks;
+use crate::frame_marks::{FrameAddition, frame_marks};
 use crate::modifiers;
 
 /// The light dashes over the frame of what is only assumed, and of what is planned: lengths of dash and gap.
@@ -35,6 +35,8 @@ const SPECIAL_ELEMENTS: [(u32, &str); 4] = [
     (97, "@corps-support"),
     (98, "@theater-support"),
 ];
+/// How much higher echelons are over the bar of an installation.
+const INSTALLATION_BAR: f32 = 15.0;
 /// The box of an icon without a frame.
 const BARE_ICON: SymbolBox = SymbolBox::new(50.0, 50.0, 150.0, 150.0);
 /// In the frame of a thing of an unknown set.
@@ -91,7 +93,12 @@ impl MilitarySymbol {
             _ => frame.max.y,
         };
         amplified.role(code.role, code.amplifier, shape);
-        amplified.echelon(code.amplifier, frame);
+        let over = if FrameAddition::of(code) == Some(FrameAddition::InstallationBar) {
+            SymbolBox { min: frame.min - Vec2::new(0.0, INSTALLATION_BAR), ..frame }
+        } else {
+            frame
+        };
+        amplified.echelon(code.amplifier, over);
         amplified.leader(code.amplifier, shape);
         amplified.condition(code.status, frame, bottom);
         marks.extend(amplified.marks);

@@ -187,6 +187,7 @@ function amplifiers() {
       table.add(code(identity, "10", { amplifier }));
       table.add(code(identity, "10", { amplifier, role: 4 }), false);
     }
+    for (const amplifier of [13, 15, 18]) table.add(code(identity, "20", { amplifier }), identity === 3);
     for (const amplifier of [31, 32, 33, 34, 35, 36, 37, 41, 42, 51, 52, 61, 62]) table.add(code(identity, "15", { amplifier, entity: "120200" }));
     for (const role of [1, 2, 3, 4, 5, 6, 7]) for (const set of ["10", "15", "20", "01"]) table.add(code(identity, set, { role }), role === 2 || role === 4);
     for (const status of [1, 2, 3, 4, 5]) table.add(code(identity, "10", { status }), status !== 1);
