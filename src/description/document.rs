@@ -50,6 +50,7 @@ use crate::features::{
 use crate::finding_code::FindingCode;
 use crate::graphics::{GraphicTable, RangeTable, SightTable, ViewshedTable};
 use crate::key;
+use crate::overlays::OverlayTable;
 use crate::reader::TableReader;
 use crate::selection::Selection;
 use crate::source_text::SourceText;
@@ -124,6 +125,8 @@ table! {
         phases as "phase": Vec<PhaseTable> = table_key::tables::<PhaseTable>(), default [];
         /// Military symbols, standing on the ground.
         symbols as "symbol": Vec<SymbolTable> = table_key::styled_tables::<SymbolTable>(), default [];
+        /// Files of units, tactical graphics and drawings.
+        overlays as "overlay": Vec<OverlayTable> = table_key::styled_tables::<OverlayTable>(), default [];
         /// Views; the first is the default. Without any, one is fitted to the whole ground.
         cameras as "camera": Vec<CameraTable> = table_key::tables::<CameraTable>(), default [];
         /// Paths through the scene that `sandtable fly` follows.

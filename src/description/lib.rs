@@ -20,6 +20,7 @@ pub mod finding_code;
 pub mod graphics;
 pub mod include;
 mod key;
+pub mod overlays;
 pub mod parse;
 pub mod phases;
 mod reader;

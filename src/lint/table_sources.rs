@@ -47,6 +47,11 @@ pub fn table_sources(document: &Document) -> Vec<TableSource<'_>> {
     all.extend(document.scatters.iter().map(|table| own("areas of models", Over, &table.source)));
     all.extend(document.graphics.iter().map(|table| own("graphics", Over, &table.source)));
     all.extend(document.labels.iter().filter_map(|table| of_file("labels", table.source())));
+    all.extend(document.overlays.iter().map(|table| TableSource {
+        noun: "overlays",
+        source: Cow::Owned(table.source()),
+        role: Over,
+    }));
     all.extend(document.symbols.iter().filter_map(|table| of_file("symbols", table.source())));
     all
 }

@@ -34,7 +34,7 @@ pub const LAYER: u8 = 200;
 const EM_PX: f64 = 14.0;
 
 /// The width of a line, and of the light casing on either side, in pixels of a picture 1080 lines high.
-const LINE_PX: f64 = 3.0;
+pub const LINE_PX: f64 = 3.0;
 const CASING_PX: f64 = 1.2;
 
 /// The casing's color: as light as paper, and seen through.
@@ -125,12 +125,14 @@ pub fn add_parts(list: &mut DrawList, parts: impl Iterator<Item = DrapedPart>) {
 }
 
 /// The look of a line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineLook {
     /// Its color.
     pub color: Srgba,
     /// Whether it is dashed.
     pub is_dashed: bool,
+    /// Its width, in pixels of a picture 1080 lines high.
+    pub width_px: f64,
 }
 
 /// The materials of graphics, one a color.
@@ -190,8 +192,8 @@ impl<'a> GraphicView<'a> {
     pub fn draw(&self, pen: &mut GraphicPen, points: &[DVec2], look: LineLook, feature: FeatureId) {
         let [casing, line] = pen.drawn.entry((feature, look.color.0)).or_default();
         for run in self.runs(points, look.is_dashed) {
-            stroke_run(&run, LINE_PX + 2.0 * CASING_PX, casing);
-            stroke_run(&run, LINE_PX, line);
+            stroke_run(&run, look.width_px + 2.0 * CASING_PX, casing);
+            stroke_run(&run, look.width_px, line);
         }
     }
 

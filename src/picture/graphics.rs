@@ -8,14 +8,14 @@ use rayon::prelude::*;
 use glam::DVec2;
 
 use crate::graphic_colors::{graphic_color, ground_color, opposing_color};
-use crate::graphic_lines::{DrapedPart, GraphicPen, GraphicView, LineLook};
+use crate::graphic_lines::{DrapedPart, GraphicPen, GraphicView, LINE_PX, LineLook};
 use crate::placed_text::{PlacedCourse, PlacedText};
 use sandtable_description::words::GraphicStatus;
 use sandtable_draw::color::Srgba;
 use sandtable_geom::polygon::doubled_area;
 use sandtable_geom::rect::Rect;
 use sandtable_ribbon::area;
-use sandtable_scene::scene_graphic::SceneGraphic;
+use sandtable_scene::scene_graphic::{GraphicStyle, SceneGraphic};
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_symbology::graphic::drawing::{FillInk, StrokeDash, StrokeSide, TextCourse};
 use sandtable_terrain::triangle_surface::TriangleSurface;
@@ -53,9 +53,19 @@ pub(super) fn each<T: Send>(
 pub(super) fn colors(scene: &SceneModel) -> impl Iterator<Item = Srgba> {
     scene.graphics.iter().flat_map(|graphic| {
         let tint = graphic.kind.tint;
-        let lines = [graphic_color(graphic.side, tint), opposing_color(graphic.side, tint)];
+        let lines = match &graphic.style {
+            Some(style) => vec![line_color(graphic), style.fill.unwrap_or(line_color(graphic))],
+            None => vec![graphic_color(graphic.side, tint), opposing_color(graphic.side, tint)],
+        };
         lines.into_iter().chain(ground_colors(graphic))
     })
+}
+
+/// The color of a graphic's lines and texts.
+fn line_color(graphic: &SceneGraphic) -> Srgba {
+    let style = graphic.style.as_ref();
+    let stated = style.and_then(|style| style.stroke.or(style.fill));
+    stated.unwrap_or_else(|| graphic_color(graphic.side, graphic.kind.tint))
 }
 
 /// The colors of the ground within a graphic, which do not depend on the camera.
@@ -75,10 +85,14 @@ fn drawn(graphic: &SceneGraphic, view: &GraphicView<'_>) -> Option<(GraphicPen, 
     let size_m = Rect::around(graphic.points.iter().copied()).size().length();
     let em_m = if size_m > 0.0 { em_m.min(size_m * SMALLEST) } else { em_m };
     let drawing = graphic.kind.draw(&graphic.input(em_m, view.up(graphic.points[0])));
-    let own = graphic_color(graphic.side, graphic.kind.tint);
+    let own = line_color(graphic);
     let other = opposing_color(graphic.side, graphic.kind.tint);
     let mut pen = GraphicPen::default();
-    for stroke in &drawing.strokes {
+    if let Some(style) = &graphic.style {
+        draw_plain(graphic, style, view, &mut pen);
+    }
+    let strokes = if graphic.style.is_some() { &[] } else { &drawing.strokes[..] };
+    for stroke in strokes {
         let color = match stroke.side {
             StrokeSide::Own => own,
             StrokeSide::Opposing => other,
@@ -88,7 +102,12 @@ fn drawn(graphic: &SceneGraphic, view: &GraphicView<'_>) -> Option<(GraphicPen, 
             StrokeDash::Dashed => true,
             StrokeDash::Hatch => false,
         };
-        view.draw(&mut pen, &stroke.points, LineLook { color, is_dashed }, graphic.feature);
+        view.draw(
+            &mut pen,
+            &stroke.points,
+            LineLook { color, is_dashed, width_px: LINE_PX },
+            graphic.feature,
+        );
     }
     for fill in &drawing.fills {
         let color = match fill.ink {
@@ -116,6 +135,24 @@ fn drawn(graphic: &SceneGraphic, view: &GraphicView<'_>) -> Option<(GraphicPen, 
         })
         .collect();
     Some((pen, texts))
+}
+
+/// Draws an overlay's line, area or point in the style of its file.
+fn draw_plain(graphic: &SceneGraphic, style: &GraphicStyle, view: &GraphicView<'_>, pen: &mut GraphicPen) {
+    if let Some(fill) = style.fill {
+        let holes: Vec<Vec<DVec2>> = style.holes.iter().map(|hole| counter_clockwise(hole)).collect();
+        area::fill(&counter_clockwise(&graphic.points), &holes, 1.0, pen.plan(fill, graphic.feature));
+    }
+    let Some(color) = style.stroke.filter(|_| graphic.points.len() > 1) else { return };
+    let look = LineLook { color, is_dashed: style.is_dashed, width_px: style.width_px };
+    let rings = style.holes.iter().map(Vec::as_slice);
+    for ring in [graphic.points.as_slice()].into_iter().chain(rings) {
+        let mut points = ring.to_vec();
+        if graphic.kind.is_area() {
+            points.extend(ring.first().copied());
+        }
+        view.draw(pen, &points, look, graphic.feature);
+    }
 }
 
 /// A ring counter-clockwise.

@@ -10,7 +10,7 @@ use glam::{DVec2, UVec2, Vec2, Vec4};
 
 use crate::add_mesh;
 use crate::graphic_colors::{self, HIDDEN, SEEN, side_color};
-use crate::graphic_lines::{GraphicPen, GraphicView, LAYER, LineLook};
+use crate::graphic_lines::{GraphicPen, GraphicView, LAYER, LINE_PX, LineLook};
 use crate::placed_text::{PlacedCourse, PlacedText};
 use sandtable_description::words::{RangeExtent, ViewshedTint};
 use sandtable_draw::color::Srgba;
@@ -31,11 +31,14 @@ use sandtable_terrain::sight::viewshed::{PostVisibility, Viewshed};
 pub(super) const TINT_LAYER: u8 = LAYER - 1;
 
 /// Lines of sight to seen and to hidden ground.
-const SEEN_LINE: LineLook = LineLook { color: graphic_colors::SEEN_LINE, is_dashed: false };
-const HIDDEN_LINE: LineLook = LineLook { color: graphic_colors::HIDDEN_LINE, is_dashed: false };
+const SEEN_LINE: LineLook =
+    LineLook { color: graphic_colors::SEEN_LINE, is_dashed: false, width_px: LINE_PX };
+const HIDDEN_LINE: LineLook =
+    LineLook { color: graphic_colors::HIDDEN_LINE, is_dashed: false, width_px: LINE_PX };
 
 /// The marks of observers.
-const OBSERVER_LINE: LineLook = LineLook { color: Srgba::opaque(10, 10, 10), is_dashed: false };
+const OBSERVER_LINE: LineLook =
+    LineLook { color: Srgba::opaque(10, 10, 10), is_dashed: false, width_px: LINE_PX };
 
 /// The share of light that the fill of a range stops.
 const FILL_ALPHA: u8 = 84;
@@ -268,13 +271,23 @@ fn draw_range(
         let mut was_seen = None;
         for (pair, &seen) in places.windows(2).zip(pieces) {
             if was_seen.is_some_and(|was| was != seen) {
-                view.draw(pen, &piece, LineLook { color, is_dashed: was_seen == Some(false) }, range.feature);
+                view.draw(
+                    pen,
+                    &piece,
+                    LineLook { color, is_dashed: was_seen == Some(false), width_px: LINE_PX },
+                    range.feature,
+                );
                 piece = vec![pair[0]];
             }
             piece.push(pair[1]);
             was_seen = Some(seen);
         }
-        view.draw(pen, &piece, LineLook { color, is_dashed: was_seen == Some(false) }, range.feature);
+        view.draw(
+            pen,
+            &piece,
+            LineLook { color, is_dashed: was_seen == Some(false), width_px: LINE_PX },
+            range.feature,
+        );
         let text = distance_text(radius_m);
         let azimuth = if is_sector { middle } else { view.up_azimuth_deg(range.at) };
         texts.push(level_text(view, range.at + heading(azimuth) * radius_m, text, color, range.feature));
@@ -282,11 +295,11 @@ fn draw_range(
     if let (true, Some(&farthest_m)) = (is_sector, range.distances_m.last()) {
         for side in [range.sector.from_deg, range.sector.from_deg + range.sector.width_deg] {
             let side = [range.at, range.at + heading(side) * farthest_m];
-            view.draw(pen, &side, LineLook { color, is_dashed: false }, range.feature);
+            view.draw(pen, &side, LineLook { color, is_dashed: false, width_px: LINE_PX }, range.feature);
         }
     }
     let mark = circle(range.at, MARK_EM * view.em_at(range.at));
-    view.draw(pen, &mark, LineLook { color, is_dashed: false }, range.feature);
+    view.draw(pen, &mark, LineLook { color, is_dashed: false, width_px: LINE_PX }, range.feature);
     if !range.name.is_empty() {
         let mut name = level_text(view, range.at, range.name.clone(), color, range.feature);
         name.toward =

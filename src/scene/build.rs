@@ -26,6 +26,7 @@ use crate::imagery;
 use crate::labels;
 use crate::military;
 use crate::models;
+use crate::overlays;
 use crate::placed_sight;
 use crate::planned_pictures::ElevationNeed;
 use crate::roads::network;
@@ -124,6 +125,7 @@ pub fn build_with(
     collected.tag_notes.report(&mut collected.findings);
 
     graphics::lay(document, &sources, &lattice.extent(), &mut collected);
+    let of_overlays = overlays::lay(&sources, &lattice, &mut collected);
     let exact = ExactGround::new(&frame, &lattice, assets, loaded.all_samples)?;
     let sight = placed_sight::lay(&exact, &mut collected);
 
@@ -137,7 +139,8 @@ pub fn build_with(
     drop(exact);
     let (scale, height_range_m, lattice) = (frame.scale, lattice.height_range(), Arc::new(lattice));
     let bounds = scale.ground(&lattice).bounds(height_range_m);
-    let military = military::symbols(&sources, &lattice, &mut collected);
+    let mut military = military::symbols(&sources, &lattice, &mut collected);
+    military.extend(of_overlays);
     let cameras = views::cameras(&frame, &lattice, &mut collected.errors);
     let ramp = collected.errors.keep(RampSource::new(document));
     let imagery = collected.errors.keep(imagery::load(document, assets, &crs, &lattice));

@@ -91,7 +91,7 @@ fn placed(table: &GraphicTable, sources: &Sources<'_>) -> Result<Vec<(Attributes
 }
 
 /// One graphic, without its feature; `None` for a feature of a file whose properties name no kind.
-fn graphic(
+pub(super) fn graphic(
     table: &GraphicTable,
     attributes: &Attributes,
     mut points: Vec<DVec2>,
@@ -188,6 +188,7 @@ fn graphic(
         side,
         status: table.status.unwrap_or(status),
         elevations_m: table.elevations,
+        style: None,
         feature: FeatureId::NONE,
     }))
 }

@@ -1,5 +1,7 @@
 //! Military symbols of the scene: codes and texts from the scene file or from the features of a file, set on the ground.
 
+use std::ops::Range;
+
 use glam::Vec3;
 
 use crate::attributes::{Attributes, written};
@@ -158,7 +160,7 @@ fn on_ground(attributes: &Attributes, crs: &Crs, frame: &WorldFrame<'_>, lattice
     Some(place(attributes.geometry()?, crs, frame, lattice)?.as_vec3())
 }
 
-fn frameless(code: &SymbolCode) -> String {
+pub(super) fn frameless(code: &SymbolCode) -> String {
     let (number, name) = (code.set.number(), code.set.name());
     format!(
         "the set {number:02} of the symbol code, {name}, has no symbols with frames: use another set, or a graphic"
@@ -172,7 +174,7 @@ fn stated_text(table: &SymbolTable, field: SymbolText) -> Option<&Stated<String>
 }
 
 /// What reports call a symbol.
-fn name<'a>(text: impl Fn(SymbolText) -> Option<&'a str>, code: &str) -> String {
+pub(super) fn name<'a>(text: impl Fn(SymbolText) -> Option<&'a str>, code: &str) -> String {
     match (text(SymbolText::UniqueDesignation), text(SymbolText::HigherFormation)) {
         (Some(unit), Some(higher)) => format!("{unit}/{higher}"),
         (Some(unit), None) => unit.to_owned(),
@@ -180,13 +182,20 @@ fn name<'a>(text: impl Fn(SymbolText) -> Option<&'a str>, code: &str) -> String 
     }
 }
 
-/// A symbol before the keys that any feature may compute.
-struct FoundSymbol {
-    code: SymbolCode,
-    symbol: MilitarySymbol,
-    texts: Vec<SymbolNote>,
-    name: String,
-    ground: Vec3,
+/// A symbol before what its table says of it.
+pub(super) struct FoundSymbol {
+    pub code: SymbolCode,
+    pub symbol: MilitarySymbol,
+    pub texts: Vec<SymbolNote>,
+    pub name: String,
+    pub ground: Vec3,
+}
+
+/// What a table says of its symbols.
+pub(super) struct SymbolLook {
+    pub direction_deg: Option<f64>,
+    pub size: SymbolSize,
+    pub rank: f64,
 }
 
 impl FoundSymbol {
@@ -196,30 +205,36 @@ impl FoundSymbol {
         attributes: &Attributes,
         findings: &mut SceneFindings,
     ) -> SceneSymbol {
-        let Self { code, symbol, texts, name, ground } = self;
-        for note in &symbol.notes {
-            let message = format!("symbol {name}: {note}");
-            if !findings.state(&message) {
-                findings.add(FindingCode::SymbolIncomplete, table.sidc.span().unwrap_or_default(), message);
-            }
-        }
-        let direction = attributes.value(table.direction.as_deref());
-        SceneSymbol {
-            code,
-            symbol,
-            texts,
-            name,
-            ground,
-            direction_rad: direction.map(|degrees| degrees.to_radians() as f32),
-            size: match table.extent {
-                Some(meters) => SymbolSize::Ground(meters as f32),
-                None => SymbolSize::Design(table.size as f32),
-            },
+        let look = SymbolLook {
+            direction_deg: attributes.value(table.direction.as_deref()),
+            size: SymbolSize::stated(table.size, table.extent),
             rank: match table.rank.stated() {
                 Some(rank) => attributes.value(Some(rank)).unwrap_or(f64::INFINITY),
                 None => *table.rank.default(),
             },
+        };
+        self.looking(look, &table.sidc.span().unwrap_or_default(), findings)
+    }
+
+    /// The symbol of the scene; what its code has that is not drawn is told at the bytes `span` of the scene file.
+    pub fn looking(self, look: SymbolLook, span: &Range<usize>, findings: &mut SceneFindings) -> SceneSymbol {
+        let Self { code, symbol, texts, name, ground } = self;
+        for note in &symbol.notes {
+            let message = format!("symbol {name}: {note}");
+            if !findings.state(&message) {
+                findings.add(FindingCode::SymbolIncomplete, span.clone(), message);
+            }
         }
+        let SymbolLook { direction_deg, size, rank } = look;
+        let direction_rad = direction_deg.map(|degrees| degrees.to_radians() as f32);
+        SceneSymbol { code, symbol, texts, name, ground, direction_rad, size, rank }
+    }
+}
+
+impl SymbolSize {
+    /// The height in pixels, or that on the ground where one is stated.
+    pub(super) fn stated(size: f64, extent_m: Option<f64>) -> Self {
+        extent_m.map_or(Self::Design(size as f32), |meters| Self::Ground(meters as f32))
     }
 }
 

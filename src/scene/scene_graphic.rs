@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use sandtable_description::words::{GraphicSide, GraphicStatus};
+use sandtable_draw::color::Srgba;
 use sandtable_draw::list::FeatureId;
 use sandtable_symbology::graphic::drawing::GraphicInput;
 use sandtable_symbology::graphic::fields::GraphicFields;
@@ -25,8 +26,27 @@ pub struct SceneGraphic {
     pub status: GraphicStatus,
     /// The lowest and the highest elevation of airspace, meters.
     pub elevations_m: Option<[f64; 2]>,
+    /// How an overlay's file draws it; `None` for what the standard draws.
+    pub style: Option<GraphicStyle>,
     /// The feature it is.
     pub feature: FeatureId,
+}
+
+/// The look that an overlay's file gives a line, an area or a point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GraphicStyle {
+    /// The color of its line; `None` where it has none.
+    pub stroke: Option<Srgba>,
+    /// The width of its line in pixels of a picture 1080 pixels high.
+    pub width_px: f64,
+    /// Whether its line is dashed.
+    pub is_dashed: bool,
+    /// The color of its inside; `None` where the ground shows.
+    pub fill: Option<Srgba>,
+    /// The rings within an area that are not of it, world X and Y.
+    pub holes: Vec<Vec<DVec2>>,
+    /// The name of its overlay in the legend.
+    pub overlay: String,
 }
 
 impl SceneGraphic {

@@ -133,7 +133,9 @@ impl Surroundings {
             table: *style.table,
             land_cover: style.land_cover.stated().copied().unwrap_or(is_natural || *style.land_cover),
             is_base_map: matches!(style.preset, Some(StylePreset::Military | StylePreset::Print))
-                || !(document.graphics.is_empty() && document.symbols.is_empty()),
+                || !(document.graphics.is_empty()
+                    && document.symbols.is_empty()
+                    && document.overlays.is_empty()),
         }
     }
 }

@@ -11,6 +11,9 @@ use sandtable_render::picture::Rendering;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_symbology::graphic::kind::GraphicTint;
 
+/// The swatches of an overlay's own lines and areas: one of many colors does not fill the legend.
+const MOST_SWATCHES: usize = 4;
+
 /// The width of a graphic's line in design pixels.
 const LINE: f32 = 2.6;
 
@@ -27,7 +30,23 @@ pub fn overlay_entries(scene: &SceneModel, picture: &Rendering) -> Vec<LegendEnt
     let mut entries = Vec::new();
     let mut seen = BTreeSet::new();
     let mut weather = BTreeSet::new();
+    // An overlay's lines and areas by its name, a swatch for each color.
+    let mut plain: Vec<(&str, LegendEntry)> = Vec::new();
     for graphic in scene.graphics.iter().filter(|graphic| shown.contains(&graphic.feature)) {
+        if let Some(style) = &graphic.style {
+            let name = style.overlay.as_str();
+            let entry = match (style.stroke, style.fill) {
+                (Some(color), None) => line(name, color),
+                (_, Some(color)) => area(name.to_owned(), color),
+                (None, None) => continue,
+            };
+            let is_known = plain.iter().any(|(known, other)| *known == name && *other == entry);
+            let is_many = plain.iter().filter(|(known, _)| *known == name).count() >= MOST_SWATCHES;
+            if !is_known && !is_many {
+                plain.push((name, entry));
+            }
+            continue;
+        }
         match graphic.kind.tint {
             GraphicTint::Obstacle => seen.insert(None),
             GraphicTint::Own => seen.insert(Some(graphic.side)),
@@ -43,6 +62,7 @@ pub fn overlay_entries(scene: &SceneModel, picture: &Rendering) -> Vec<LegendEnt
         entries.push(line(class.map_or("Obstacle", side_name), color));
     }
     entries.extend(weather.into_iter().map(|(name, color)| line(name, Srgba(color))));
+    entries.extend(plain.into_iter().map(|(_, entry)| entry));
     for layer in &scene.sight.viewsheds {
         let named = |text: &str| match layer.name.as_str() {
             "" => text.to_owned(),

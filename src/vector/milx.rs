@@ -281,7 +281,7 @@ mod tests {
         );
         let layer = read::read("a.milxly", text.as_bytes(), &VectorHints::default()).expect("one is sound");
         let expected = serde_json::json!({
-            "sidc": "GFFPACSC--****X", "name": "FSA", "layer": "Friend", "marker-color": "#ff8000", "reinforced": "(+)",
+            "sidc": "GFFPACSC------X", "name": "FSA", "layer": "Friend", "marker-color": "#ff8000", "reinforced": "(+)",
             "stroke": "#ff0000", "stroke-width": 3.0, "fill": "#0000ff", "distances": "500", "azimuths": "45",
         });
         assert_eq!(serde_json::to_value(&layer.features[0].properties).expect("texts"), expected);

@@ -113,6 +113,10 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
                      1,1 0,0</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark></Document></kml>"),
             text(6, "<osm><node id=\"1\" lat=\"1\" lon=\"2\"/><node id=\"2\" lat=\"1.1\" lon=\"2\"/><way id=\"3\">\
                      <nd ref=\"1\"/><nd ref=\"2\"/><tag k=\"highway\" v=\"track\"/></way></osm>"),
+            file(9, "assets/jacksboro/scenario.msdl.xml"),
+            file(10, "assets/jacksboro/plan.nvg"),
+            file(11, "assets/jacksboro/picture.milxly"),
+            file(12, "assets/jacksboro/tracks.cot"),
             [&[1][..], &[0, 0, 0x27, 0x0a], &[0; 20], &[0, 0, 0, 50], &[0xe8, 3, 0, 0, 3, 0, 0, 0], &[0; 72]].concat(),
         ],
         "models" => vec![

@@ -89,6 +89,7 @@ fn every_declared_default_is_a_value_of_its_key() {
         "range" => "at = [0, 0]\ndistances = [100]\n".into(),
         "label" => "text = \"a\"\nat = [0, 0]\n".into(),
         "symbol" => "sidc = \"10031000161211000000\"\nat = [0, 0]\n".into(),
+        "overlay" => "file = \"a.json\"\n".into(),
         "phase" => "name = \"a\"\n".into(),
         "flight" => format!("{source}name = \"a\"\n"),
         "camera" => "name = \"a\"\neye = [0, 0]\nlook_at = [1, 1]\n".into(),

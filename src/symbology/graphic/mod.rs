@@ -27,6 +27,7 @@ mod lines;
 mod maneuver;
 #[cfg(test)]
 mod oracle;
+pub mod plain;
 mod plane;
 mod point_table;
 pub mod rules;
