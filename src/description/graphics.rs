@@ -60,10 +60,10 @@ table! {
         elevations: Option<[f64; 2]> = key::number_range(Bounds::ELEVATION, "m"), otherwise "on the ground";
         /// Field AM: radius of a circle, the rising ranges of a fan, or the half axes of an ellipse, and length and width of a
         /// rectangle, the one along its azimuth first.
-        distances: Option<Stated<Vec<f64>>> = key::numbers(REACH, "m"), otherwise "none";
+        distances: Option<Stated<Vec<f64>>> = key::numbers(REACH, "m"), otherwise "none; with `file` the property `distances`";
         /// Field AN: of a sector, the left and the right azimuth of each range; of an ellipse or rectangle that of its first
         /// distance.
-        azimuths: Option<Stated<Vec<f64>>> = key::numbers(Bounds::DIRECTION, "°"), otherwise "none";
+        azimuths: Option<Stated<Vec<f64>>> = key::numbers(Bounds::DIRECTION, "°"), otherwise "none; with `file` the property `azimuths`";
     }
     check(reader) {
         reader.exclude("sidc", "kind");

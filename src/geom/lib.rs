@@ -2,6 +2,7 @@
 
 pub mod aabb;
 pub mod axis;
+pub mod cell_outlines;
 pub mod chebyshev;
 pub mod compound_crs;
 pub mod convex;

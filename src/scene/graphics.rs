@@ -102,11 +102,8 @@ pub(super) fn graphic(
         Some(Scalar::Number(number)) => Some(number.to_string()),
         _ => None,
     };
-    let number = |key: &str| match attributes.get(key) {
-        Some(Scalar::Number(number)) => Some(number),
-        Some(Scalar::Text(text)) => text.trim().parse().ok(),
-        _ => None,
-    };
+    let number = |key: &str| attributes.get(key).and_then(|value| value.number());
+    let listed = |key: &str| property(key).map_or_else(|| Ok(Vec::new()), |text| numbers_of(key, &text));
     let text =
         |stated: &Option<String>, key: &str| stated.clone().or_else(|| property(key)).unwrap_or_default();
     let stated_or = |stated: &Option<Stated<String>>, rival: bool, key: &str| {
@@ -152,8 +149,14 @@ pub(super) fn graphic(
         from: text(&table.from, "from"),
         until: text(&table.until, "until"),
         heights: heights.map(Vec::from).unwrap_or_default(),
-        distances_m: numbers(&table.distances, document)?,
-        azimuths_deg: table.azimuths.as_deref().cloned().unwrap_or_default(),
+        distances_m: match &table.distances {
+            Some(stated) => numbers(stated, document)?,
+            None => listed("distances").map_err(|(message, help)| failed(message, help))?,
+        },
+        azimuths_deg: match table.azimuths.as_deref() {
+            Some(stated) => stated.clone(),
+            None => listed("azimuths").map_err(|(message, help)| failed(message, help))?,
+        },
     };
     if kind.is_area() && points.len() > 1 && points.first() == points.last() {
         points.pop();
@@ -194,13 +197,27 @@ pub(super) fn graphic(
 }
 
 /// The stated distances, as many as a graphic may have.
-fn numbers(stated: &Option<Stated<Vec<f64>>>, document: &Document) -> Result<Vec<f64>, Diagnostic> {
-    let Some(distances) = stated else { return Ok(Vec::new()) };
+fn numbers(distances: &Stated<Vec<f64>>, document: &Document) -> Result<Vec<f64>, Diagnostic> {
     if distances.len() > MOST_RANGES {
         let message = format!("{} distances are more than the {MOST_RANGES} allowed", distances.len());
         return Err(document.error(distances, message).with_help("leave some of them out"));
     }
     Ok(distances.to_vec())
+}
+
+/// The numbers that a property of a file's feature lists, separated by spaces, commas or semicolons.
+fn numbers_of(key: &str, text: &str) -> Result<Vec<f64>, (String, String)> {
+    /// More than the ranges of a fan, and their azimuths.
+    const MOST_NUMBERS: usize = 2 * MOST_RANGES;
+    let words = text.split([' ', ',', ';']).filter(|word| !word.is_empty());
+    let numbers: Result<Vec<f64>, &str> = words
+        .take(MOST_NUMBERS)
+        .map(|word| word.parse().ok().filter(|number: &f64| number.is_finite() && *number >= 0.0).ok_or(word))
+        .collect();
+    numbers.map_err(|word| {
+        let message = format!("the property `{key}` is no list of numbers of at least 0: '{}'", quoted(word));
+        (message, "write it as `500, 1000`".to_owned())
+    })
 }
 
 fn kind_of_word(word: &str) -> Result<&'static GraphicKind, (String, String)> {

@@ -17,7 +17,7 @@ use crate::attributes::{Attributes, written};
 use crate::builder::SceneBuilder;
 use crate::feature::FeatureKind;
 use crate::graphics::graphic;
-use crate::military::{FoundSymbol, SceneSymbol, SymbolLook, SymbolSize, frameless, name};
+use crate::military::{FoundSymbol, SceneSymbol, SymbolLook, SymbolSize, engaged, frameless, name};
 use crate::scene_graphic::SceneGraphic;
 use crate::shape_place::place;
 use crate::sources::Sources;
@@ -37,7 +37,7 @@ use sandtable_symbology::code::SymbolCode;
 use sandtable_symbology::fields::SymbolSet;
 use sandtable_symbology::graphic::kind::GraphicKind;
 use sandtable_symbology::symbol::MilitarySymbol;
-use sandtable_symbology::texts::{SymbolText, TEXT_FIELDS, placed};
+use sandtable_symbology::texts::{SymbolText, TEXT_FIELDS, placed_for};
 use sandtable_terrain::lattice::Lattice;
 use sandtable_vector::feature::{Geometry, Polygon};
 use sandtable_vector::moment::Moment;
@@ -200,8 +200,10 @@ impl<'a> Overlay<'a> {
         let called =
             text(attributes, schema::NAME).filter(|_| field(SymbolText::UniqueDesignation).is_none());
         let called = called.unwrap_or_else(|| name(field, stated));
+        let symbol = engaged(symbol, &code, field);
+        let notes = placed_for(&code, field);
         let found =
-            FoundSymbol { code, symbol, texts: placed(field), name: called, ground: ground.as_vec3() };
+            FoundSymbol { code, symbol, texts: notes, fields: texts, name: called, ground: ground.as_vec3() };
         let look = SymbolLook {
             direction_deg: number(attributes, schema::DIRECTION),
             size: SymbolSize::stated(self.table.size, self.table.extent),

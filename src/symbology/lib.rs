@@ -6,15 +6,20 @@
 
 mod amplifiers;
 pub mod code;
+pub mod country;
 pub mod drawing;
+mod engagement;
 pub mod entities;
 pub mod fields;
 pub mod frame;
+mod frame_marks;
 pub mod graphic;
+pub mod labeled;
 mod letter_code;
 mod letter_functions;
 pub mod modifiers;
 mod pieces;
+mod svg;
 pub mod symbol;
 pub mod texts;
 

@@ -4,6 +4,7 @@ mod broken_records;
 mod builder;
 pub mod cityjson;
 mod cot;
+mod dxf;
 mod encoding;
 pub mod error;
 pub mod feature;

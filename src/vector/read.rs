@@ -5,6 +5,7 @@
 //! | GeoJSON, also one feature to a line or as a text sequence | one | its `crs` member, else EPSG:4326 |
 //! | CityJSON, also one feature to a line | one: footprints | its reference system |
 //! | ESRI shapefile, also zipped | one; of an archive the names of its `.shp` files | its `.prj` |
+//! | DXF | its layers; all that are shown where none is requested | none: `crs` |
 //! | GeoPackage (feature `vector-db`) | its tables and views of features | its own |
 //! | FlatGeobuf | one | its own |
 //! | GPX | waypoints, routes, tracks; route_points, track_points | EPSG:4326 |
@@ -25,7 +26,9 @@ use crate::feature::VectorLayer;
 #[cfg(feature = "vector-db")]
 use crate::geopackage;
 use crate::hints::VectorHints;
-use crate::{cityjson, cot, flatgeobuf, geojson, gpx, kml, landxml, milx, msdl, nvg, orbat, osm, shapefile};
+use crate::{
+    cityjson, cot, dxf, flatgeobuf, geojson, gpx, kml, landxml, milx, msdl, nvg, orbat, osm, shapefile,
+};
 use sandtable_base::archive::{self, ArchiveError, ZipReader};
 use sandtable_base::limits::UNPACKED_VECTOR_BYTES;
 
@@ -120,6 +123,7 @@ fn read_unpacked(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<Vector
             let (format, feature) = ("GeoPackage", "vector-db");
             Err(VectorError::FeatureDisabled { format, feature, command: conversion(name) })
         }
+        VectorFormat::Dxf => dxf::read(bytes, hints),
         VectorFormat::FlatGeobuf => single(name, hints, flatgeobuf::read(bytes, hints)),
         VectorFormat::Gpx => gpx::read(bytes, hints),
         VectorFormat::Kml => kml::read(bytes, hints),
@@ -205,6 +209,7 @@ enum VectorFormat {
     GeoJson,
     GeoJsonSequence,
     CityJson,
+    Dxf,
     Shapefile,
     GeoPackage,
     FlatGeobuf,
@@ -234,6 +239,7 @@ fn format_of(name: &str, bytes: &[u8]) -> VectorFormat {
         () if shapefile::is_shapefile(bytes) => VectorFormat::Shapefile,
         () if bytes.starts_with(b"SQLite format 3\0") => VectorFormat::GeoPackage,
         () if flatgeobuf::is_flatgeobuf(bytes) => VectorFormat::FlatGeobuf,
+        () if dxf::is_dxf(bytes) => VectorFormat::Dxf,
         () if osm::is_pbf(bytes) => VectorFormat::OsmPbf,
         () if bytes.starts_with(b"PAR1") => VectorFormat::Other("GeoParquet"),
         () => xml_format(bytes).or_else(|| format_by_name(name)).unwrap_or_else(|| match text.first() {
@@ -284,7 +290,8 @@ fn format_by_name(name: &str) -> Option<VectorFormat> {
             VectorFormat::Other("a part of an ESRI shapefile; give the .shp file")
         }
         "tab" | "mif" | "mid" => VectorFormat::Other("MapInfo"),
-        "dxf" | "dwg" => VectorFormat::Other("a CAD drawing"),
+        "dxf" => VectorFormat::Dxf,
+        "dwg" => VectorFormat::Other("a CAD drawing; save it as DXF"),
         "geojsonl" | "geojsons" | "geojsonseq" | "ndjson" | "jsonl" => VectorFormat::GeoJsonSequence,
         _ => return None,
     })

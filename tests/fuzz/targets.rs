@@ -20,19 +20,23 @@ use sandtable_model::error::CompanionError;
 use sandtable_model::read as models;
 use sandtable_scene::scene_file::{OpenSceneError, build_scene_text};
 use sandtable_scene::scene_model::SceneModel;
+use sandtable_structure::space_polygon;
 use sandtable_symbology::code::SymbolCode;
 use sandtable_vector::hints::VectorHints;
-use sandtable_vector::read as vectors;
+use sandtable_vector::read::{self as vectors, VectorFile};
 
 /// A target by its name.
 pub type Target = (&'static str, fn(&[u8]));
 
 /// All targets.
 #[allow(dead_code, reason = "each fuzz target is a program that uses one of them")]
-pub const TARGETS: [Target; 11] = [
+pub const TARGETS: [Target; 14] = [
     ("elevation", elevation),
     ("points", points),
     ("vectors", vectors),
+    ("city_models", city_models),
+    ("drawings", drawings),
+    ("land_xml", land_xml),
     ("models", models),
     ("scene_text", scene_text),
     ("scene_build", scene_build),
@@ -90,6 +94,44 @@ pub fn vectors(bytes: &[u8]) {
     let Some((name, bytes)) = named(&VECTORS, bytes) else { return };
     let wgs84 = Crs::wgs84();
     let _ = vectors::read(name, bytes, &VectorHints { crs: Some(&wgs84), ..VectorHints::default() });
+}
+
+/// CityJSON, whose surfaces are cut into triangles.
+pub fn city_models(bytes: &[u8]) {
+    let rd_new = Crs::from_epsg(7415).expect("known");
+    let hints = VectorHints { crs: Some(&rd_new), ..VectorHints::default() };
+    let Ok(VectorFile { model: Some(model), .. }) = vectors::read_file("a.city.json", bytes, &hints) else {
+        return;
+    };
+    for body in model.objects.values().flat_map(|object| &object.bodies) {
+        for surface in &body.surfaces {
+            let count: usize = surface.rings.iter().map(Vec::len).sum();
+            let triangles = space_polygon::triangles(&surface.rings);
+            assert!(
+                triangles.iter().flatten().all(|&corner| corner < count),
+                "a corner beyond the last vertex"
+            );
+        }
+    }
+}
+
+/// DXF drawings.
+pub fn drawings(bytes: &[u8]) {
+    let wgs84 = Crs::wgs84();
+    let _ = vectors::read("a.dxf", bytes, &VectorHints { crs: Some(&wgs84), ..VectorHints::default() });
+}
+
+/// LandXML, as a surface and as lines.
+pub fn land_xml(bytes: &[u8]) {
+    let none = |_: &str| None;
+    let hints =
+        DemHints { companions: &none, ..DemOptions { cell: Some(10.0), ..DemOptions::default() }.into() };
+    if let Ok(raster) = elevation::read("a.xml", bytes, &hints) {
+        assert!(raster.width > 0 && raster.height > 0, "a raster without samples");
+    }
+    for layer in [None, Some("alignments"), Some("stations"), Some("points"), Some("plan_features")] {
+        let _ = vectors::read("a.xml", bytes, &VectorHints { layer, ..VectorHints::default() });
+    }
 }
 
 /// Models with whatever they name beside them.

@@ -157,8 +157,8 @@ limits! {
         XML_DEPTH = 64 => Fixed, "levels",
             "of elements in XML: KML, GPX, OpenStreetMap, overlays and scenarios",
             "flatten its folders";
-        CITY_VERTICES = 1 << 23 => COUNT, "vertices",
-            "of all surfaces of a CityJSON file with its templates wherever they are placed: some five hundred megabytes",
+        DESIGN_VERTICES = 1 << 23 => COUNT, "vertices",
+            "of a CityJSON, LandXML or DXF file with the chords of its curves, its templates and its blocks wherever they are placed: some five hundred megabytes",
             "cut it, for example with: cjio IN subset --bbox";
         GEOMETRY_DEPTH = 16 => Fixed, "levels",
             "of collections in a GeoPackage's geometry",

@@ -200,7 +200,7 @@ fn add(statement: &str, paper: &IconPaper, drawing: &mut GraphicDrawing) {
     // The shape of a frame matters to no icon of this set: a test parses them all.
     for mark in parse(statement, FrameShape::Rectangle).unwrap_or_default() {
         match mark {
-            SymbolMark::Text { text, center, size } => {
+            SymbolMark::Text { text, center, size, .. } => {
                 let center = center.as_dvec2();
                 for line in letter_lines(&text, f64::from(size)) {
                     let flipped = line.into_iter().map(|at| paper.place(center + DVec2::new(at.x, -at.y)));

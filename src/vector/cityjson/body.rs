@@ -5,7 +5,7 @@ use glam::{DAffine3, DMat4, DVec2, DVec3};
 use crate::cityjson::boundary::Nested;
 use crate::cityjson::text::{Appearance, GeometryText};
 use crate::error::shorten;
-use sandtable_base::limits::CITY_VERTICES;
+use sandtable_base::limits::DESIGN_VERTICES;
 
 /// The surfaces of an object in one level of detail.
 #[derive(Clone, Debug, PartialEq)]
@@ -121,7 +121,9 @@ pub(super) struct ShapeTally {
 impl ShapeTally {
     fn take(&mut self, count: usize) -> Result<(), String> {
         self.vertices_left = self.vertices_left.checked_sub(count as u64).ok_or_else(|| {
-            format!("the geometries of the file have more than {CITY_VERTICES} vertices; {CITY_VERTICES:#}")
+            format!(
+                "the geometries of the file have more than {DESIGN_VERTICES} vertices; {DESIGN_VERTICES:#}"
+            )
         })?;
         Ok(())
     }

@@ -5,9 +5,8 @@
 //! with its attributes and those of its parents, and `id`, `type`, `parent` and `lod`. A [`CityModel`] holds the surfaces,
 //! in all levels of detail.
 //!
-//! Written by hand, over `serde_json`. The crate `cityjson` keeps a whole model in memory in its own arenas, whatever the
-//! file claims, and stops at the first object that is wrong; here a limit holds for what templates multiply, and an
-//! object that cannot be read is left out and reported.
+//! Written by hand, over `serde_json`: a limit holds for what templates multiply, and an object that cannot be read is left
+//! out and reported.
 //!
 //! Heights are those of the file, meters above the zero of its vertical system. Of the system only the horizontal part is
 //! read. Inner shells of solids, extensions' own geometry and transparency are not read.
@@ -29,7 +28,7 @@ use crate::error::{VectorError, shorten};
 use crate::feature::{Properties, VectorLayer};
 use crate::hints::VectorHints;
 use crate::tally::RecordTally;
-use sandtable_base::limits::{CITY_VERTICES, GEOJSON_BYTES};
+use sandtable_base::limits::{DESIGN_VERTICES, GEOJSON_BYTES};
 use sandtable_geom::crs::{Crs, CrsError};
 
 pub(crate) use crate::cityjson::text::is_cityjson;
@@ -190,7 +189,7 @@ impl ModelReader {
             objects: BTreeMap::new(),
             images: Vec::new(),
             templates,
-            tally: ShapeTally { vertices_left: CITY_VERTICES.get(), lost_textures: 0 },
+            tally: ShapeTally { vertices_left: DESIGN_VERTICES.get(), lost_textures: 0 },
             without_geometry: RecordTally::new(),
         })
     }

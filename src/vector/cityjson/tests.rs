@@ -195,5 +195,5 @@ fn templates_cannot_multiply_without_end() {
     let referred =
         Referred { vertices: &vertices, appearance: &appearance, first_image: 0, templates: &templates };
     let refused = body::shapes(&geometry, &referred, &mut tally).err().expect("too many");
-    assert!(refused.contains("CITY_VERTICES") || refused.contains("city-vertices"), "{refused}");
+    assert!(refused.contains("DESIGN_VERTICES") || refused.contains("city-vertices"), "{refused}");
 }

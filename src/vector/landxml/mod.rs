@@ -30,7 +30,7 @@ use crate::landxml::horizontal::{NamedPoints, Traced, trace};
 use crate::landxml::stations::StationEquations;
 use crate::landxml::units::LandUnits;
 use crate::xml::{self, DecodedXml, XmlElement, XmlReader};
-use sandtable_base::limits::CITY_VERTICES;
+use sandtable_base::limits::DESIGN_VERTICES;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::profile::Profile;
 
@@ -75,7 +75,7 @@ pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, Vec
     if wanted.is_none() {
         note_others(&file, layer, &mut builder);
     }
-    LandLayer { file: &file, xml: &xml, layer: builder, vertices_left: CITY_VERTICES.get() }.finish(layer)
+    LandLayer { file: &file, xml: &xml, layer: builder, vertices_left: DESIGN_VERTICES.get() }.finish(layer)
 }
 
 /// Notes what the file holds besides the layer that is read unasked.
