@@ -24,8 +24,8 @@ use crate::hints::VectorHints;
 use crate::moment::Moment;
 use crate::overlay_schema::{
     ALTITUDE, BEGIN, DESCRIPTION, DIRECTION, END, FILL, FILL_OPACITY, ID, LABEL, MARKER_COLOR, NAME, SPEED,
-    STROKE, STROKE_DASHES, STROKE_OPACITY, STROKE_WIDTH, UNIQUE_DESIGNATION, bare_code, set, set_code,
-    set_field, set_number,
+    STROKE, STROKE_DASHES, STROKE_OPACITY, STROKE_WIDTH, UNIQUE_DESIGNATION, set, set_code, set_field,
+    set_number,
 };
 use crate::svg_style::hex_color;
 use crate::tally::RecordTally;
@@ -130,7 +130,8 @@ fn read_event(event: &XmlElement<'_>) -> Result<(FeatureParts, Properties), Stri
     let mut is_symbol = false;
     for symbol in symbols {
         let stated = symbol.attribute("id").map_or_else(|| symbol.text(), std::borrow::Cow::into_owned);
-        is_symbol |= bare_code(&stated).is_some() && set_code(&mut properties, &stated);
+        // An icon's code may have 20 digits where that of the symbol beside it is its equal for older programs.
+        is_symbol = is_symbol || set_code(&mut properties, &stated);
         for modifier in symbol.children_named("unitmodifier") {
             if let Some(letters) = modifier.attribute("code") {
                 set_field(&mut properties, &letters, &modifier.text());
@@ -451,7 +452,7 @@ mod tests {
         let [unit, air] = &layer.features[..] else { panic!("two: {:?}", layer.features) };
         assert_eq!(
             (unit.properties["sidc"].as_str(), unit.properties["unique_designation"].as_str()),
-            (Some("SFGCUCI--------"), Some("1-77"))
+            (Some("10031000161211000000"), Some("1-77"))
         );
         assert_eq!(air.properties["altitude"], "310 m");
         assert!(

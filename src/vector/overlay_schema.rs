@@ -142,8 +142,14 @@ pub(crate) fn set_number(properties: &mut Properties, name: &str, number: Option
 /// becomes its mark.
 pub(crate) fn set_field(properties: &mut Properties, letters: &str, text: &str) -> bool {
     let Some(property) = field_property(letters.trim()) else { return false };
-    match property {
-        REINFORCED => set(properties, property, reinforced_mark(text)),
+    let known = properties.get(property).and_then(Value::as_str);
+    match (property, known) {
+        (REINFORCED, _) => set(properties, property, reinforced_mark(text)),
+        // H and H1 are one text.
+        (ADDITIONAL_INFORMATION, Some(known)) if known != text.trim() => {
+            let both = format!("{known} {}", text.trim());
+            set(properties, property, both);
+        }
         _ => set(properties, property, text),
     }
     true
@@ -334,6 +340,14 @@ mod tests {
         assert_eq!(code("SUGPUCI--------", 'H'), "SHGPUCI--------");
         assert_eq!(code("10031000141211000000", 'N'), "10041000141211000000");
         assert_eq!(code("10031000141211000000", 'K'), "10161000141211000000");
+    }
+
+    #[test]
+    fn the_second_text_of_field_h_follows_the_first() {
+        let mut properties = Properties::new();
+        assert!(set_field(&mut properties, "H", "dug in") && set_field(&mut properties, "h1", " since noon"));
+        assert_eq!(properties[ADDITIONAL_INFORMATION], "dug in since noon");
+        assert!(!set_field(&mut properties, "XO", "$80FF"));
     }
 
     #[test]
