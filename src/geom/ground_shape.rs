@@ -63,6 +63,7 @@ impl DirectionRange {
     /// An angle is no finite number.
     pub fn between(start_deg: f64, end_deg: f64) -> Result<Self, GroundShapeError> {
         let wrong = [start_deg, end_deg].into_iter().find(|angle| angle.is_nan() || angle.abs() >= 1e6);
+        let wrong = [start_deg, end_deg].into_iter().find(|angle| !is_angle(*angle));
         if let Some(angle) = wrong {
             return Err(GroundShapeError::Angle(angle));
         }
@@ -117,7 +118,7 @@ impl GroundEllipse {
     fn check(&self) -> Result<(), GroundShapeError> {
         check_reach(self.center, self.radii_m.max_element())?;
         check_reach(self.center, self.radii_m.min_element())?;
-        if self.rotation_deg.abs() < 1e6 { Ok(()) } else { Err(GroundShapeError::Angle(self.rotation_deg)) }
+        if is_angle(self.rotation_deg) { Ok(()) } else { Err(GroundShapeError::Angle(self.rotation_deg)) }
     }
 
     /// The corners of the rectangle around the ellipse whose sides are its axes' directions, clockwise from north-east before
@@ -167,6 +168,11 @@ pub fn arc_band(
             Ok(vec![ring])
         }
     }
+}
+
+/// Whether an angle in degrees is one: a number of some turns at most.
+fn is_angle(degrees: f64) -> bool {
+    degrees.abs() < 1e6
 }
 
 /// The position `distance_m` meters from `start`, its longitude within 180° of that of `start`.

@@ -5,7 +5,7 @@
 //! |---|---|
 //! | `a-f-G-U-C-I` | a symbol: the affiliation, the dimension and the function letters of MIL-STD-2525C |
 //! | `u-d-…` with links | a line, an area where it is closed |
-//! | a shape of ellipses or polylines | the largest ellipse as an area, rings in it as lines; lines and areas |
+//! | a shape of ellipses or polylines | areas; lines and areas |
 //! | `b-m-r` | a route |
 //! | `u-rb-a` with a range and a bearing | a line |
 //! | `t-…`, `b-t-f`, `y-…`: tasks, chats and replies | nothing: they are told |
@@ -24,8 +24,8 @@ use crate::hints::VectorHints;
 use crate::moment::Moment;
 use crate::overlay_schema::{
     ALTITUDE, BEGIN, DESCRIPTION, DIRECTION, END, FILL, FILL_OPACITY, ID, LABEL, MARKER_COLOR, NAME, SPEED,
-    STROKE, STROKE_DASHES, STROKE_OPACITY, STROKE_WIDTH, UNIQUE_DESIGNATION, bare_code, set, set_code,
-    set_field, set_number,
+    STROKE, STROKE_DASHES, STROKE_OPACITY, STROKE_WIDTH, UNIQUE_DESIGNATION, set, set_code, set_field,
+    set_number,
 };
 use crate::svg_style::hex_color;
 use crate::tally::RecordTally;
@@ -130,7 +130,8 @@ fn read_event(event: &XmlElement<'_>) -> Result<(FeatureParts, Properties), Stri
     let mut is_symbol = false;
     for symbol in symbols {
         let stated = symbol.attribute("id").map_or_else(|| symbol.text(), std::borrow::Cow::into_owned);
-        is_symbol |= bare_code(&stated).is_some() && set_code(&mut properties, &stated);
+        // An icon's code may have 20 digits where that of the symbol beside it is its equal for older programs.
+        is_symbol = is_symbol || set_code(&mut properties, &stated);
         for modifier in symbol.children_named("unitmodifier") {
             if let Some(letters) = modifier.attribute("code") {
                 set_field(&mut properties, &letters, &modifier.text());
@@ -204,18 +205,9 @@ fn add_shape(
     let shapes: Vec<&XmlElement<'_>> =
         details.iter().copied().filter(|detail| detail.name() == "shape").collect();
     let within = |name: &'static str| shapes.iter().flat_map(move |shape| shape.children_named(name));
-    let ellipses: Vec<GroundEllipse> =
-        within("ellipse").map(|ellipse| ellipse_of(ellipse, event)).collect::<Result<_, _>>()?;
-    let largest = ellipses.iter().map(|ellipse| ellipse.radii_m.max_element()).fold(0.0, f64::max);
-    let mut has_area = false;
-    for ellipse in &ellipses {
-        let ring = ellipse.ring().map_err(|error| format!("its ellipse has no outline: {error}"))?;
-        if !has_area && ellipse.radii_m.max_element() == largest {
-            has_area = true;
-            parts.add_polygon([vertices(&ring)]);
-        } else {
-            parts.add_line(vertices(&ring).into_iter().chain(vertices(&ring[..1])).collect());
-        }
+    for ellipse in within("ellipse") {
+        let ring = ellipse_of(ellipse, event)?.ring();
+        parts.add_polygon([vertices(&ring.map_err(|error| format!("its ellipse has no outline: {error}"))?)]);
     }
     for line in within("polyline") {
         let points: Vec<DVec2> = line.children_named("vertex").map(vertex).collect::<Result<_, _>>()?;
@@ -460,7 +452,7 @@ mod tests {
         let [unit, air] = &layer.features[..] else { panic!("two: {:?}", layer.features) };
         assert_eq!(
             (unit.properties["sidc"].as_str(), unit.properties["unique_designation"].as_str()),
-            (Some("SFGCUCI---*****"), Some("1-77"))
+            (Some("10031000161211000000"), Some("1-77"))
         );
         assert_eq!(air.properties["altitude"], "310 m");
         assert!(
@@ -482,16 +474,17 @@ mod tests {
             + &event("e", "u-d-c-e", "<shape><ellipse major='2000' minor='500' angle='30'/></shape>");
         let layer = layer(&text);
         let kinds: Vec<&str> = layer.features.iter().map(|feature| feature.geometry.kind()).collect();
-        assert_eq!(kinds, ["lines", "polygons", "polygons", "lines", "polygons"]);
+        assert_eq!(kinds, ["polygons", "polygons", "lines", "polygons"]);
+        assert_eq!(layer.features[0].polygons().len(), 2);
         assert_eq!(layer.features[0].properties["stroke-dasharray"], "6,4");
         let center = DVec2::new(-84.2, 36.3);
-        let far = layer.features[4].geometry.vertices().map(|at| Geodesic::between(center, *at));
+        let far = layer.features[3].geometry.vertices().map(|at| Geodesic::between(center, *at));
         let far = far.max_by(|a, b| a.length_m().total_cmp(&b.length_m())).expect("vertices");
         assert!(
             (far.length_m() - 2000.0).abs() < 5.0 && (far.bearing_deg().rem_euclid(180.0) - 30.0).abs() < 2.0,
             "{far:?}"
         );
-        let line = &layer.features[3].lines()[0];
+        let line = &layer.features[2].lines()[0];
         assert!((Geodesic::between(line[0], line[1]).length_m() - 1000.0).abs() < 1e-6);
     }
 

@@ -63,7 +63,7 @@ pub enum VectorError {
     )]
     FeatureDisabled { format: &'static str, feature: &'static str, command: String },
     #[error(
-        "neither its content nor its name tells its format; GeoJSON is read, and ESRI shapefiles, GeoPackage, FlatGeobuf, GPX, KML, KMZ, CityJSON, LandXML, DXF and OpenStreetMap (.osm, .osm.pbf)"
+        "neither its content nor its name tells its format; GeoJSON is read, and ESRI shapefiles, GeoPackage, FlatGeobuf, GPX, KML, KMZ, CityJSON, LandXML, DXF, OpenStreetMap (.osm, .osm.pbf), and the overlays MSDL, NVG, MilX, Cursor on Target and ORBAT Mapper"
     )]
     UnknownFormat,
     /// A longitude or latitude is out of range: usually meters in a file that names no system.

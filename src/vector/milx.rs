@@ -34,22 +34,12 @@ pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, Vec
     }
     let root = xml.root()?;
     let mut names = Vec::new();
-    let mut add = |layer: &XmlElement<'_>, xml: &XmlReader<'_>| {
-        let name = child_text(layer, "Name").unwrap_or_else(|| "layer".to_owned());
-        let name = shared_name(&name);
-        if hints.layer.is_none_or(|wanted| wanted == name) {
-            add_layer(layer, &name, xml, &mut builder);
-        }
-        names.push(name);
-    };
     if root.name() == "MilXLayer" {
-        let layer = xml.read(root)?;
-        add(&layer, &xml);
+        names.push(read_layer(&mut xml, hints.layer, &mut builder)?);
     } else {
         while let Some(child) = xml.next_child()? {
             if child.name() == "MilXLayer" {
-                let layer = xml.read(child)?;
-                add(&layer, &xml);
+                names.push(read_layer(&mut xml, hints.layer, &mut builder)?);
             } else {
                 xml.skip()?;
             }
@@ -70,24 +60,74 @@ fn child_text(element: &XmlElement<'_>, name: &str) -> Option<String> {
     element.children_named(name).next().map(XmlElement::text).filter(|text| !text.is_empty())
 }
 
-fn add_layer(layer: &XmlElement<'_>, name: &str, xml: &XmlReader<'_>, builder: &mut LayerBuilder) {
-    let system = child_text(layer, "CoordSystemType").unwrap_or_default();
-    let system = system_of(&system);
-    let lists = layer.children_named("GraphicList");
-    for graphic in lists.flat_map(|list| list.children_named("MilXGraphic")) {
-        let place = || xml.line_of(graphic);
-        let read = system.clone().and_then(|system| read_graphic(graphic, system.as_ref()));
-        match read {
-            Ok((parts, mut properties)) => {
-                set(&mut properties, LAYER, name);
-                builder.add_at(parts, properties, place);
+/// A graphic whose points are in the system that its layer names behind it.
+struct MilXGraphic {
+    line: String,
+    read: Result<(Vec<DVec2>, Properties), String>,
+}
+
+/// Reads the layer just opened and adds its graphics, where it is the one that is asked for; returns its name.
+fn read_layer(
+    xml: &mut XmlReader<'_>,
+    wanted: Option<&str>,
+    builder: &mut LayerBuilder,
+) -> Result<String, VectorError> {
+    let (mut name, mut system, mut graphics) = ("layer".to_owned(), String::new(), Vec::new());
+    while let Some(child) = xml.next_child()? {
+        match child.name() {
+            "Name" => {
+                name = Some(shared_name(&xml.read(child)?.text()))
+                    .filter(|name| !name.is_empty())
+                    .unwrap_or(name)
             }
-            Err(reason) => {
-                let line = place();
-                builder.add_broken(&line, VectorError::broken(FORMAT, &line, reason));
+            "CoordSystemType" => system = xml.read(child)?.text(),
+            "GraphicList" => {
+                while let Some(child) = xml.next_child()? {
+                    if child.name() == "MilXGraphic" {
+                        let graphic = xml.read(child)?;
+                        let line = xml.line_of(&graphic);
+                        graphics.push(MilXGraphic { line, read: read_graphic(&graphic) });
+                    } else {
+                        xml.skip()?;
+                    }
+                }
             }
+            _ => xml.skip()?,
         }
     }
+    if wanted.is_some_and(|wanted| wanted != name) {
+        return Ok(name);
+    }
+    let system = system_of(&system);
+    for MilXGraphic { line, read } in graphics {
+        let shape =
+            read.and_then(|(points, properties)| Ok((parts(points, system.clone()?.as_ref())?, properties)));
+        match shape {
+            Ok((parts, mut properties)) => {
+                set(&mut properties, LAYER, name.as_str());
+                builder.add_at(parts, properties, || line.clone());
+            }
+            Err(reason) => builder.add_broken(&line, VectorError::broken(FORMAT, &line, reason)),
+        }
+    }
+    Ok(name)
+}
+
+/// A point, or a line through several, in longitude and latitude.
+fn parts(points: Vec<DVec2>, system: Option<&Crs>) -> Result<FeatureParts, String> {
+    let place = |at: DVec2| match system {
+        Some(system) => system.transform(&Crs::wgs84(), at).map_err(|error| error.to_string()),
+        None => Ok(at),
+    };
+    let places: Vertices =
+        points.into_iter().map(|at| place(at).map(|at| at.extend(f64::NAN))).collect::<Result<_, _>>()?;
+    let mut parts = FeatureParts::default();
+    match places.len() {
+        0 => return Err("the graphic has no points".into()),
+        1 => parts.add_points(places),
+        _ => parts.add_line(places),
+    }
+    Ok(parts)
 }
 
 /// The system of a layer's points; `None` for longitude and latitude.
@@ -103,10 +143,7 @@ fn system_of(name: &str) -> Result<Option<Crs>, String> {
     Crs::from_epsg(code).map(Some).map_err(|error| error.to_string())
 }
 
-fn read_graphic(
-    graphic: &XmlElement<'_>,
-    system: Option<&Crs>,
-) -> Result<(FeatureParts, Properties), String> {
+fn read_graphic(graphic: &XmlElement<'_>) -> Result<(Vec<DVec2>, Properties), String> {
     let symbol = child_text(graphic, "MssStringXML").or_else(|| child_text(graphic, "MssString"));
     let symbol = symbol.ok_or("the graphic has no symbol")?;
     let mut properties = Properties::new();
@@ -120,21 +157,9 @@ fn read_graphic(
     let points = lists.flat_map(|list| list.children_named("Point")).map(|point| {
         let number = |name| child_text(point, name).and_then(|text| text.parse::<f64>().ok());
         let at = number("X").zip(number("Y")).map(|(x, y)| DVec2::new(x, y)).filter(|at| at.is_finite());
-        let at = at.ok_or("a point is no pair of numbers")?;
-        match system {
-            Some(system) => system.transform(&Crs::wgs84(), at).map_err(|error| error.to_string()),
-            None => Ok(at),
-        }
+        at.ok_or_else(|| "a point is no pair of numbers".to_owned())
     });
-    let points: Vertices =
-        points.map(|at: Result<DVec2, String>| at.map(|at| at.extend(f64::NAN))).collect::<Result<_, _>>()?;
-    let mut parts = FeatureParts::default();
-    match points.len() {
-        0 => return Err("the graphic has no points".into()),
-        1 => parts.add_points(points),
-        _ => parts.add_line(points),
-    }
-    Ok((parts, properties))
+    Ok((points.collect::<Result<_, _>>()?, properties))
 }
 
 /// Reads the escaped symbol: its code and fields.
@@ -281,7 +306,7 @@ mod tests {
         );
         let layer = read::read("a.milxly", text.as_bytes(), &VectorHints::default()).expect("one is sound");
         let expected = serde_json::json!({
-            "sidc": "GFFPACSC--****X", "name": "FSA", "layer": "Friend", "marker-color": "#ff8000", "reinforced": "(+)",
+            "sidc": "GFFPACSC------X", "name": "FSA", "layer": "Friend", "marker-color": "#ff8000", "reinforced": "(+)",
             "stroke": "#ff0000", "stroke-width": 3.0, "fill": "#0000ff", "distances": "500", "azimuths": "45",
         });
         assert_eq!(serde_json::to_value(&layer.features[0].properties).expect("texts"), expected);

@@ -142,26 +142,33 @@ pub(crate) fn set_number(properties: &mut Properties, name: &str, number: Option
 /// becomes its mark.
 pub(crate) fn set_field(properties: &mut Properties, letters: &str, text: &str) -> bool {
     let Some(property) = field_property(letters.trim()) else { return false };
-    match property {
-        REINFORCED => set(properties, property, reinforced_mark(text)),
+    let known = properties.get(property).and_then(Value::as_str);
+    match (property, known) {
+        (REINFORCED, _) => set(properties, property, reinforced_mark(text)),
+        // H and H1 are one text.
+        (ADDITIONAL_INFORMATION, Some(known)) if known != text.trim() => {
+            let both = format!("{known} {}", text.trim());
+            set(properties, property, both);
+        }
         _ => set(properties, property, text),
     }
     true
 }
 
-/// Sets the code of a text in the form that symbols are drawn from; returns `false` where it is none.
-///
-/// A code of letters may be a template that leaves the standard identity open: then a tactical graphic is a friend's, and a
-/// symbol is unknown.
+/// Sets the code of a text, by [`bare_code`]; returns `false` where it is none.
 pub(crate) fn set_code(properties: &mut Properties, text: &str) -> bool {
-    let Some(code) = bare_code(text) else { return false };
-    let identity = match code.as_bytes() {
-        [b'G', b'-' | b'*', ..] => Some('F'),
-        [b'S' | b'O' | b'E' | b'I', b'-' | b'*', ..] => Some('U'),
-        _ => None,
-    };
-    set(properties, SIDC, with_identity(code, identity));
-    true
+    let code = bare_code(text);
+    let is_code = code.is_some();
+    code.into_iter().for_each(|code| set(properties, SIDC, code));
+    is_code
+}
+
+/// Whether a text is a code of letters, such as `S-G-UCI----D---`, that leaves the standard identity open.
+pub(crate) fn leaves_identity_open(text: &str) -> bool {
+    let code = text.trim().rsplit(':').next().unwrap_or_default();
+    !code.starts_with(['W', 'w'])
+        && code.starts_with(|first: char| first.is_ascii_alphabetic())
+        && code.get(1..).is_some_and(|rest| rest.starts_with(['-', '*', '_']))
 }
 
 /// A code with the standard identity of a letter of MIL-STD-2525C, where one is given.
@@ -251,10 +258,8 @@ pub fn field_property(name: &str) -> Option<&'static str> {
 }
 
 /// A symbol code without what programs write around it: a scheme such as `app6b:` or `2525d:`, options behind the code after
-/// a comma, semicolon or bar, spaces. `None` where what remains is no code by its length and characters.
-///
-/// A status that a code of letters leaves open is present. Maneuver graphics of MIL-STD-2525A and APP-6A, `G*C*M…`, are those of
-/// 2525C, `G*G*…`, which has no category C.
+/// a comma, semicolon or bar, spaces. `None` where what remains is no code by its length and characters. What a code of letters
+/// leaves open is settled.
 pub fn bare_code(text: &str) -> Option<String> {
     let text = text.trim();
     let code = match text.rsplit_once(':') {
@@ -269,24 +274,28 @@ pub fn bare_code(text: &str) -> Option<String> {
         && code.starts_with(|first: char| first.is_ascii_alphabetic());
     match (is_digits, is_letters) {
         (true, _) => Some(code),
-        (_, true) => Some(settled(&format!("{:-<15}", code.to_ascii_uppercase().replace('_', "-")))),
+        (_, true) => Some(of_letters(&code)),
         _ => None,
     }
 }
 
-/// A code of 15 letters in the words of 2525C, with a status.
-fn settled(code: &str) -> String {
-    let mut letters = code.as_bytes().to_vec();
-    // The second and fourth letter of weather are part of its kind.
-    if letters[0] != b'W' && matches!(letters[3], b'-' | b'*') {
-        letters[3] = b'P';
+/// A code of 15 letters as MIL-STD-2525C has it: templates leave the identity and the status open, and APP-6A has command and
+/// general maneuver in a category of its own. An open identity is that of a friend in a graphic, and unknown in a symbol.
+fn of_letters(code: &str) -> String {
+    let padded = format!("{code:-<15}").to_ascii_uppercase().replace(['_', '*'], "-");
+    let (scheme, category) = (&padded[..1], &padded[2..3]);
+    // The letters of weather are all of its kind.
+    if scheme == "W" {
+        return padded;
     }
-    if letters[0] == b'G' && letters[2] == b'C' && letters[4] == b'M' {
-        letters[2] = b'G';
-        letters.copy_within(5..10, 4);
-        letters[9] = b'-';
+    let open_identity = if scheme == "G" { "F" } else { "U" };
+    let identity = if padded[1..].starts_with('-') { open_identity } else { &padded[1..2] };
+    let status = if padded[3..].starts_with('-') { "P" } else { &padded[3..4] };
+    let (function, rest) = padded[4..].split_at(6);
+    match function.strip_prefix('M').filter(|_| scheme == "G" && category == "C") {
+        Some(function) => format!("{scheme}{identity}G{status}{function:-<6}{rest}"),
+        None => format!("{scheme}{identity}{category}{status}{function}{rest}"),
     }
-    String::from_utf8_lossy(&letters).into_owned()
 }
 
 #[cfg(test)]
@@ -307,6 +316,8 @@ mod tests {
         assert_eq!(bare_code(" 1003 1000161211 000000").as_deref(), Some("10031000161211000000"));
         assert_eq!(bare_code("sfgpuci---").as_deref(), Some("SFGPUCI--------"));
         assert_eq!(bare_code("SFGPUCIA---F--G;XO").as_deref(), Some("SFGPUCIA---F--G"));
+        assert_eq!(bare_code("S*G*UCI---*****").as_deref(), Some("SUGPUCI--------"));
+        assert_eq!(bare_code("app6a:GHC*MGLP--*****").as_deref(), Some("GHGPGLP--------"));
         for other in ["", "infantry", "1003100016121100000", "http://a.b/c", "SFGPUCI---------"] {
             assert_eq!(bare_code(other), None, "{other}");
         }
@@ -314,16 +325,17 @@ mod tests {
 
     #[test]
     fn open_letters_of_a_code_are_settled() {
-        let code = |text: &str| {
-            let mut properties = Properties::new();
-            assert!(set_code(&mut properties, text), "{text}");
-            properties[SIDC].as_str().map(str::to_owned).expect("a text")
-        };
-        assert_eq!(code("S-G-UCI----F--G"), "SUGPUCI----F--G");
-        assert_eq!(code("SHG*UCI---*****"), "SHGPUCI---*****");
-        assert_eq!(code("app6a:G*C*MALC--*****"), "GFGPALC---*****");
-        assert_eq!(code("GHC*MGLP--****X"), "GHGPGLP---****X");
-        assert_eq!(code("WAS-WSTSS-P----"), "WAS-WSTSS-P----");
+        for (text, expected) in [
+            ("S-G-UCI----F--G", "SUGPUCI----F--G"),
+            ("SHG*UCI---*****", "SHGPUCI--------"),
+            ("app6a:G*C*MALC--*****", "GFGPALC--------"),
+            ("GHC*MGLP--****X", "GHGPGLP-------X"),
+            ("WAS-WSTSS-P----", "WAS-WSTSS-P----"),
+        ] {
+            assert_eq!(bare_code(text).as_deref(), Some(expected), "{text}");
+        }
+        assert!(leaves_identity_open("app6a:G*C*MALC--*****") && leaves_identity_open("S-G-U----------"));
+        assert!(!leaves_identity_open("SFG-U----------") && !leaves_identity_open("10031000161211000000"));
         assert!(!set_code(&mut Properties::new(), "icon.png"));
     }
 
@@ -333,6 +345,14 @@ mod tests {
         assert_eq!(code("SUGPUCI--------", 'H'), "SHGPUCI--------");
         assert_eq!(code("10031000141211000000", 'N'), "10041000141211000000");
         assert_eq!(code("10031000141211000000", 'K'), "10161000141211000000");
+    }
+
+    #[test]
+    fn the_second_text_of_field_h_follows_the_first() {
+        let mut properties = Properties::new();
+        assert!(set_field(&mut properties, "H", "dug in") && set_field(&mut properties, "h1", " since noon"));
+        assert_eq!(properties[ADDITIONAL_INFORMATION], "dug in since noon");
+        assert!(!set_field(&mut properties, "XO", "$80FF"));
     }
 
     #[test]

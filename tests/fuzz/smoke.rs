@@ -120,6 +120,10 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
                      1,1 0,0</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark></Document></kml>"),
             text(6, "<osm><node id=\"1\" lat=\"1\" lon=\"2\"/><node id=\"2\" lat=\"1.1\" lon=\"2\"/><way id=\"3\">\
                      <nd ref=\"1\"/><nd ref=\"2\"/><tag k=\"highway\" v=\"track\"/></way></osm>"),
+            whole(9, "assets/jacksboro/scenario.msdl.xml"),
+            file(10, "assets/jacksboro/plan.nvg"),
+            file(11, "assets/jacksboro/picture.milxly"),
+            file(12, "assets/jacksboro/tracks.cot"),
             [&[1][..], &[0, 0, 0x27, 0x0a], &[0; 20], &[0, 0, 0, 50], &[0xe8, 3, 0, 0, 3, 0, 0, 0], &[0; 72]].concat(),
         ],
         "city_models" => vec![
@@ -247,6 +251,10 @@ fn seeds_reach_behind_the_first_check() {
     use sandtable_dem::read::read;
     let grid = &seeds("elevation")[2];
     assert!(read("a.asc", &grid[1..], &DemHints::default()).is_ok());
+    for seed in seeds("vectors").iter().filter(|seed| seed[0] >= 9) {
+        let layer = sandtable_vector::read::read("a.xml", &seed[1..], &Default::default());
+        assert!(layer.is_ok_and(|layer| !layer.features.is_empty() && layer.faults.is_empty()), "{}", seed[0]);
+    }
     for seed in seeds("scene_build") {
         let tables = String::from_utf8(seed).expect("text");
         targets::on_hill(&tables).unwrap_or_else(|error| panic!("{tables}: {error:?}"));

@@ -54,8 +54,10 @@ const RASTERS: [&str; 14] = [
 ];
 
 /// The names of vector files.
-const VECTORS: [&str; 9] =
-    ["a.geojson", "a.shp", "a.gpkg", "a.fgb", "a.gpx", "a.kml", "a.osm", "a.osm.pbf", "a.zip"];
+const VECTORS: [&str; 13] = [
+    "a.geojson", "a.shp", "a.gpkg", "a.fgb", "a.gpx", "a.kml", "a.osm", "a.osm.pbf", "a.zip", "a.msdl", "a.nvg",
+    "a.milxly", "a.cot",
+];
 
 /// The names of models.
 const MODELS: [&str; 4] = ["a.3ds", "a.obj", "a.glb", "a.gltf"];

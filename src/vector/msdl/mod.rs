@@ -21,8 +21,8 @@ use crate::moment::Moment;
 use crate::overlay_schema::{
     ADDITIONAL_INFORMATION, ALTITUDE, BEGIN, COMBAT_EFFECTIVENESS, DIRECTION, DTG, EVALUATION_RATING,
     HIGHER_FORMATION, ID, IFF, LAYER, LOCATION, NAME, PARENT, QUANTITY, REINFORCED, SIDE,
-    SPECIAL_HEADQUARTERS, SPEED, STAFF_COMMENTS, TYPE, UNIQUE_DESIGNATION, bare_code, reinforced_mark, set,
-    set_code, shared_name, with_identity,
+    SPECIAL_HEADQUARTERS, SPEED, STAFF_COMMENTS, TYPE, UNIQUE_DESIGNATION, bare_code, leaves_identity_open,
+    reinforced_mark, set, set_code, shared_name, with_identity,
 };
 use crate::tally::RecordTally;
 use crate::xml::{self, DecodedXml, XmlElement, XmlReader};
@@ -71,6 +71,8 @@ struct MsdlThing {
     line: String,
     /// Its code, or what the file has instead; `None` where it has nothing.
     code: Option<Result<String, String>>,
+    /// Whether its code leaves the side open.
+    is_template: bool,
     properties: Properties,
     /// Its places, or why there are none.
     places: Result<Vec<DVec3>, String>,
@@ -178,6 +180,7 @@ fn thing(layer: &'static str, element: &XmlElement<'_>, line: String) -> MsdlThi
     speed.into_iter().for_each(|text| set(&mut properties, SPEED, text));
     let relations = child("Relations");
     let related = |name: &str| relations.and_then(|relations| found(relations, name));
+    let is_template = own("SymbolIdentifier").is_some_and(|text| leaves_identity_open(&text));
     let code = own("SymbolIdentifier").map(|text| bare_code(&text).ok_or(text));
     let echelon = modifier("Echelon").and_then(|word| echelon_letter(&word));
     MsdlThing {
@@ -185,6 +188,7 @@ fn thing(layer: &'static str, element: &XmlElement<'_>, line: String) -> MsdlThi
         handle: own("ObjectHandle").unwrap_or_default(),
         line,
         code: code.map(|code| code.map(|code| with_echelon(code, echelon))),
+        is_template,
         properties,
         places: disposition.map_or(Ok(Vec::new()), |disposition| place::places(disposition)),
         superiors: [
@@ -338,7 +342,7 @@ impl Placing<'_> {
             let Ok(places) = &self.things[at].places else { continue };
             let properties = self.properties(index);
             match &thing.code {
-                Some(Ok(code)) if matches!(code.as_bytes()[1], b'-' | b'*') && code.len() == 15 => {
+                Some(Ok(_)) if thing.is_template => {
                     sideless.add_many(usize::from(self.affiliation(index).is_none()), place);
                 }
                 Some(Ok(_)) => {}

@@ -78,7 +78,7 @@ impl ForceSides {
         self.letters = letters;
     }
 
-    /// A force, its side, and so on up; at most [`MOST_FORCES_UP`] of them, whatever a file says.
+    /// A force, its side, and so on up; a few of them, whatever a file says.
     fn chain<'a>(&'a self, handle: &'a str) -> Vec<&'a str> {
         /// Forces of forces of a side; two is what scenarios have.
         const MOST_FORCES_UP: usize = 32;

@@ -63,7 +63,7 @@ fn every_shape_is_computed_on_the_ground() {
     );
     assert_eq!(layer.features[7].properties["width"], 5000.0);
     let codes = [7, 8, 9].map(|index| text(&layer.features[index], "sidc"));
-    assert_eq!(codes, ["GFGPALC---*****", "GFGPOLAV------X", ""], "a composite has its symbol once");
+    assert_eq!(codes, ["GFGPALC--------", "GFGPOLAV------X", ""], "a composite has its symbol once");
     assert_eq!(text(&layer.features[9], "name"), "axis");
     assert!(layer.features.iter().all(|feature| text(feature, "layer") == "shapes"));
 }
@@ -140,13 +140,13 @@ fn version_1_4_has_its_styles_in_attributes_and_speeds_in_knots() {
     let of = |feature, keys: [&'static str; 4]| keys.map(|key| text(feature, key).to_owned());
     assert_eq!(
         of(unit, ["sidc", "speed", "reinforced", "unique_designation"]),
-        ["SUGPUCI---*****", "12.5 kt", "(±)", "1:2"]
+        ["SUGPUCI--------", "12.5 kt", "(±)", "1:2"]
     );
     assert_eq!(
         of(unit, ["stroke", "layer", "begin", "fill"]),
         ["#ff0000", "Blue", "2026-05-01T06:00:00Z", ""]
     );
-    assert_eq!(of(task, ["stroke", "fill", "sidc", "name"]), ["#00ff00", "#0000ff", "GFTPC-----****X", ""]);
+    assert_eq!(of(task, ["stroke", "fill", "sidc", "name"]), ["#00ff00", "#0000ff", "GFTPC---------X", ""]);
     assert_eq!((task.lines()[0].len(), text(other, "sidc")), (3, ""));
     assert!(layer.faults[0].contains("1 element has a symbol that is no code"), "{:?}", layer.faults);
 }
