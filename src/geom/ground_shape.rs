@@ -62,7 +62,6 @@ impl DirectionRange {
     /// # Errors
     /// An angle is no finite number.
     pub fn between(start_deg: f64, end_deg: f64) -> Result<Self, GroundShapeError> {
-        let wrong = [start_deg, end_deg].into_iter().find(|angle| angle.is_nan() || angle.abs() >= 1e6);
         let wrong = [start_deg, end_deg].into_iter().find(|angle| !is_angle(*angle));
         if let Some(angle) = wrong {
             return Err(GroundShapeError::Angle(angle));

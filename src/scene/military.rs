@@ -105,9 +105,8 @@ fn symbol_at(
     let texts = placed_for(&code, text);
     let fields =
         TEXT_FIELDS.iter().filter_map(|row| Some((row.field, text(row.field)?.to_owned()))).collect();
-    let found = FoundSymbol { code, symbol, texts, fields, name: name(text, &table.sidc), ground };
     let symbol = engaged(symbol, &code, EngagementBar::of(text), &texts);
-    let found = FoundSymbol { code, symbol, texts, name: name(text, &table.sidc), ground };
+    let found = FoundSymbol { code, symbol, texts, fields, name: name(text, &table.sidc), ground };
     Ok(found.finished(table, &Attributes::default(), findings))
 }
 
@@ -149,12 +148,9 @@ fn read_features(
             .filter_map(|(field, text)| Some((*field, written(&attributes.evaluated(text)?)?)))
             .collect();
         let text = |field| texts.iter().find(|text| text.0 == field).map(|text| text.1.as_str());
-        let symbol = engaged(symbol, &code, text);
         let (lines, name) = (placed_for(&code, text), name(text, &stated));
-        let found = FoundSymbol { code, symbol, texts: lines, fields: texts, name, ground };
-        let lines = placed_for(&code, text);
         let symbol = engaged(symbol, &code, EngagementBar::of(text), &lines);
-        let found = FoundSymbol { code, symbol, texts: lines, name: name(text, &stated), ground };
+        let found = FoundSymbol { code, symbol, texts: lines, fields: texts, name, ground };
         symbols.push(found.finished(table, &attributes, findings));
         if symbols.len() > SCENE_SYMBOLS.count() {
             break;
@@ -187,8 +183,7 @@ fn stated_text(table: &SymbolTable, field: SymbolText) -> Option<&Stated<String>
 }
 
 /// The symbol with its engagement bar, if it has one.
-pub(super) fn engaged<'a>(
-fn engaged(
+pub(super) fn engaged(
     symbol: MilitarySymbol,
     code: &SymbolCode,
     bar: Option<EngagementBar<'_>>,

@@ -7,8 +7,8 @@
 
 mod amplifiers;
 pub mod code;
-pub mod country;
 mod control_point;
+pub mod country;
 pub mod drawing;
 pub mod engagement;
 pub mod entities;

@@ -13,9 +13,8 @@ use glam::Vec2;
 
 use crate::amplifiers::{Amplification, staff_foot};
 use crate::code::SymbolCode;
-use crate::drawing::{BLACK, PALE, SymbolMark, SymbolPen, parse};
 use crate::control_point::control_point;
-use crate::drawing::{BLACK, PathStep, SymbolMark, SymbolPen, parse, path};
+use crate::drawing::{BLACK, PALE, SymbolMark, SymbolPen, parse};
 use crate::entities;
 use crate::fields::{SymbolContext, SymbolIdentity, SymbolSet, SymbolStatus};
 use crate::frame::{FRAME_LINE, FrameInk, FrameShape, SymbolBox, fill};

@@ -253,7 +253,11 @@ fn seeds_reach_behind_the_first_check() {
     assert!(read("a.asc", &grid[1..], &DemHints::default()).is_ok());
     for seed in seeds("vectors").iter().filter(|seed| seed[0] >= 9) {
         let layer = sandtable_vector::read::read("a.xml", &seed[1..], &Default::default());
-        assert!(layer.is_ok_and(|layer| !layer.features.is_empty() && layer.faults.is_empty()), "{}", seed[0]);
+        assert!(
+            layer.is_ok_and(|layer| !layer.features.is_empty() && layer.faults.is_empty()),
+            "{}",
+            seed[0]
+        );
     }
     for seed in seeds("scene_build") {
         let tables = String::from_utf8(seed).expect("text");

@@ -55,8 +55,19 @@ const RASTERS: [&str; 14] = [
 
 /// The names of vector files.
 const VECTORS: [&str; 13] = [
-    "a.geojson", "a.shp", "a.gpkg", "a.fgb", "a.gpx", "a.kml", "a.osm", "a.osm.pbf", "a.zip", "a.msdl", "a.nvg",
-    "a.milxly", "a.cot",
+    "a.geojson",
+    "a.shp",
+    "a.gpkg",
+    "a.fgb",
+    "a.gpx",
+    "a.kml",
+    "a.osm",
+    "a.osm.pbf",
+    "a.zip",
+    "a.msdl",
+    "a.nvg",
+    "a.milxly",
+    "a.cot",
 ];
 
 /// The names of models.
