@@ -380,6 +380,18 @@ impl FindingCode {
         ROWS[self as usize].3
     }
 
+    /// Whether its findings say what a reader left out of a file, or guessed of it.
+    pub fn is_of_reading(self) -> bool {
+        matches!(
+            self,
+            Self::RecordsBroken
+                | Self::VectorRead
+                | Self::ElevationGuessed
+                | Self::HeightsInFeet
+                | Self::VerticalDatumsMixed
+        )
+    }
+
     /// `warning[unused-style]`.
     pub fn head(self) -> String {
         format!("{}[{}]", self.severity().word(), self.word())

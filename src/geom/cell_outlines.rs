@@ -20,7 +20,11 @@ pub struct CellOutline {
 
 /// The parts of the cells for which `is_inside` holds, of a grid of so many columns and rows, in the order of their first cell; cells
 /// that share an edge are of one part.
-pub fn cell_outlines(columns: usize, rows: usize, is_inside: impl Fn(usize, usize) -> bool) -> Vec<CellOutline> {
+pub fn cell_outlines(
+    columns: usize,
+    rows: usize,
+    is_inside: impl Fn(usize, usize) -> bool,
+) -> Vec<CellOutline> {
     let labels = labels(columns, rows, &is_inside);
     let label = |x: i32, y: i32| {
         let (x, y) = (usize::try_from(x).ok()?, usize::try_from(y).ok()?);
@@ -47,7 +51,8 @@ pub fn cell_outlines(columns: usize, rows: usize, is_inside: impl Fn(usize, usiz
     let mut parts: BTreeMap<usize, CellOutline> = BTreeMap::new();
     while let Some(ring) = next_ring(&mut edges) {
         let (corners, part) = ring;
-        let outline = parts.entry(part).or_insert_with(|| CellOutline { exterior: Vec::new(), holes: Vec::new() });
+        let outline =
+            parts.entry(part).or_insert_with(|| CellOutline { exterior: Vec::new(), holes: Vec::new() });
         if doubled_area(&corners) > 0 {
             outline.exterior = corners;
         } else {
@@ -84,7 +89,10 @@ fn next_ring(edges: &mut BTreeMap<(i32, i32), Vec<(IVec2, usize)>>) -> Option<(V
         at += along;
         if at == start {
             // The start is a corner unless the ring goes straight through it.
-            if corners.len() > 1 && corners[1] - corners[0] != IVec2::ZERO && direction(corners[0], corners[1]) == along {
+            if corners.len() > 1
+                && corners[1] - corners[0] != IVec2::ZERO
+                && direction(corners[0], corners[1]) == along
+            {
                 corners.remove(0);
             }
             return Some((corners, part));
@@ -104,7 +112,8 @@ fn doubled_area(ring: &[IVec2]) -> i64 {
 /// Numbers from 1 of the parts of the cells inside, 0 for those outside.
 fn labels(columns: usize, rows: usize, is_inside: &impl Fn(usize, usize) -> bool) -> Vec<usize> {
     let mut labels = vec![0; columns * rows];
-    let inside: Vec<bool> = (0..columns * rows).map(|cell| is_inside(cell % columns, cell / columns)).collect();
+    let inside: Vec<bool> =
+        (0..columns * rows).map(|cell| is_inside(cell % columns, cell / columns)).collect();
     let (mut parts, mut open) = (0, Vec::new());
     for first in 0..inside.len() {
         if !inside[first] || labels[first] > 0 {
@@ -159,7 +168,10 @@ mod tests {
         let parts = outlines(&["#####", "#...#", "#.#.#", "#...#", "#####"]);
         let areas: Vec<i64> = parts.iter().map(area).collect();
         assert_eq!(areas, [16, 1]);
-        assert_eq!(parts[0].holes, [vec![IVec2::new(1, 1), IVec2::new(1, 4), IVec2::new(4, 4), IVec2::new(4, 1)]]);
+        assert_eq!(
+            parts[0].holes,
+            [vec![IVec2::new(1, 1), IVec2::new(1, 4), IVec2::new(4, 4), IVec2::new(4, 1)]]
+        );
     }
 
     #[test]
@@ -183,7 +195,10 @@ mod tests {
                 })
                 .collect();
             let parts = cell_outlines(17, 13, |x, y| cells[y * 17 + x]);
-            assert_eq!(parts.iter().map(area).sum::<i64>(), cells.iter().filter(|cell| **cell).count() as i64);
+            assert_eq!(
+                parts.iter().map(area).sum::<i64>(),
+                cells.iter().filter(|cell| **cell).count() as i64
+            );
             assert!(parts.iter().all(|part| doubled_area(&part.exterior) > 0));
             for ring in parts.iter().flat_map(|part| std::iter::once(&part.exterior).chain(&part.holes)) {
                 let mut corners: Vec<[i32; 2]> = ring.iter().map(IVec2::to_array).collect();

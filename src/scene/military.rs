@@ -101,8 +101,10 @@ fn symbol_at(
     let world = frame.point(at, table.crs.as_ref())?;
     let ground = frame.on_ground(lattice, at, world)?;
     let text = |field| stated_text(table, field).map(|text| text.as_str());
-    let fields = TEXT_FIELDS.iter().filter_map(|row| Some((row.field, text(row.field)?.to_owned()))).collect();
-    let found = FoundSymbol { code, symbol, texts: placed(text), fields, name: name(text, &table.sidc), ground };
+    let fields =
+        TEXT_FIELDS.iter().filter_map(|row| Some((row.field, text(row.field)?.to_owned()))).collect();
+    let found =
+        FoundSymbol { code, symbol, texts: placed(text), fields, name: name(text, &table.sidc), ground };
     Ok(found.finished(table, &Attributes::default(), findings))
 }
 

@@ -201,14 +201,8 @@ impl<'a> Overlay<'a> {
             text(attributes, schema::NAME).filter(|_| field(SymbolText::UniqueDesignation).is_none());
         let called = called.unwrap_or_else(|| name(field, stated));
         let notes = placed(field);
-        let found = FoundSymbol {
-            code,
-            symbol,
-            texts: notes,
-            fields: texts,
-            name: called,
-            ground: ground.as_vec3(),
-        };
+        let found =
+            FoundSymbol { code, symbol, texts: notes, fields: texts, name: called, ground: ground.as_vec3() };
         let look = SymbolLook {
             direction_deg: number(attributes, schema::DIRECTION),
             size: SymbolSize::stated(self.table.size, self.table.extent),

@@ -178,6 +178,28 @@ fn elevations_beside_coordinates_in_feet_are_told_to_be_taken_for_meters() {
     assert!(info.contains(told), "{info}");
     let heights = run_in(scratch.folder(), &["height", "a.asc", "--at", "2700010,250010"]);
     assert!(heights.err.contains(told), "{}", heights.err);
+    let in_feet = ["height", "a.asc", "--at", "2700005,250005", "--vertical-unit", "us-ft"];
+    let heights = run_in(scratch.folder(), &in_feet);
+    let out = heights.out.clone();
+    assert!(
+        heights.err.is_empty() && out.contains(&format!("{},Ok", 1200.0 * (1200.0 / 3937.0))),
+        "{heights:?}"
+    );
+    let refused = run_in(scratch.folder(), &["height", "a.asc", "--at", "0,0", "--vertical-unit", "ell"]);
+    assert!(refused.code == 2 && refused.err.contains("m, ft or us-ft"), "{refused:?}");
+}
+
+#[test]
+fn heights_and_profiles_tell_what_reading_the_file_left_out() {
+    let scratch = Scratch::new();
+    scratch.write("a.xyz", "0 10 1\n5 10 2\n0 0 deep\n5 0 4\n");
+    for arguments in
+        [&["height", "a.xyz", "--at", "0,10"][..], &["profile", "a.xyz", "--line", "0,10", "5,10"]]
+    {
+        let ran = run_in(scratch.folder(), arguments);
+        let told = "note: a.xyz: left out: 1 line that is no point: line 3 is '0 0 deep'\n";
+        assert!(ran.code == 0 && ran.err.contains(told), "{ran:?}");
+    }
 }
 
 #[test]
