@@ -165,7 +165,7 @@ impl Dataset {
     pub fn reading_notes(&self) -> Vec<String> {
         match &self.content {
             DatasetContent::Scene(ground) => ground.reading_notes.clone(),
-            _ => self.header().notes.iter().map(|note| format!("{}: {note}", self.name)).collect(),
+            _ => dem::reading_notes(Path::new(&self.name), &self.header()),
         }
     }
 

@@ -190,15 +190,24 @@ fn elevations_beside_coordinates_in_feet_are_told_to_be_taken_for_meters() {
 }
 
 #[test]
-fn heights_and_profiles_tell_what_reading_the_file_left_out() {
+fn every_command_on_elevation_tells_what_reading_the_file_left_out() {
     let scratch = Scratch::new();
-    scratch.write("a.xyz", "0 10 1\n5 10 2\n0 0 deep\n5 0 4\n");
-    for arguments in
-        [&["height", "a.xyz", "--at", "0,10"][..], &["profile", "a.xyz", "--line", "0,10", "5,10"]]
-    {
+    let point = |index: u32| match (index % 4, index / 4) {
+        (2, 2) => "10 deep\n".to_owned(),
+        (column, row) => format!("{} {} {}\n", 5 * column, 5 * row, column + row),
+    };
+    scratch.write("a.xyz", (0..16).map(point).collect::<String>());
+    for arguments in [
+        &["height", "a.xyz", "--at", "0,10"][..],
+        &["profile", "a.xyz", "--line", "0,0", "5,5"],
+        &["los", "a.xyz", "--from", "0,0", "--to", "5,5"],
+        &["viewshed", "a.xyz", "--at", "5,5", "-o", "seen.tif"],
+        &["mesh", "a.xyz", "-o", "a.obj"],
+        &["lod", "a.xyz", "--frames", "2"],
+    ] {
         let ran = run_in(scratch.folder(), arguments);
-        let told = "note: a.xyz: left out: 1 line that is no point: line 3 is '0 0 deep'\n";
-        assert!(ran.code == 0 && ran.err.contains(told), "{ran:?}");
+        let told = "note: a.xyz: left out: 1 line that is no point: line 11 is '10 deep'\n";
+        assert!(ran.code == 0 && ran.err.contains(told), "{arguments:?}: {ran:?}");
     }
 }
 
