@@ -202,7 +202,7 @@ fn every_command_on_elevation_tells_what_reading_the_file_left_out() {
         &["profile", "a.xyz", "--line", "0,0", "5,5"],
         &["los", "a.xyz", "--from", "0,0", "--to", "5,5"],
         &["viewshed", "a.xyz", "--at", "5,5", "-o", "seen.tif"],
-        &["mesh", "a.xyz", "-o", "a.obj"],
+        &["mesh", "a.xyz", "--max-error", "1", "-o", "a.obj"],
         &["lod", "a.xyz", "--frames", "2"],
     ] {
         let ran = run_in(scratch.folder(), arguments);
