@@ -86,7 +86,7 @@ table! {
         /// Name for the legend.
         name: Option<String> = key::text(), otherwise "none";
         /// Where the observers are; ground is in sight where one of them sees it.
-        observers: Stated<Vec<Position>> = key::points(1), required;
+        observers: Stated<Vec<Stated<Position>>> = key::places(1), required;
         /// Coordinate system of `observers`.
         crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`";
         /// Height of their eyes above the ground.
@@ -108,7 +108,7 @@ table! {
         /// Where the observer is.
         observer: Stated<Position> = key::point(), required;
         /// Where the lines lead.
-        targets: Stated<Vec<Position>> = key::points(1), required;
+        targets: Stated<Vec<Stated<Position>>> = key::places(1), required;
         /// Coordinate system of `observer` and `targets`.
         crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`";
         /// Height of the observer's eyes above the ground.

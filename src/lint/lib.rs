@@ -12,6 +12,7 @@ mod context;
 mod definitions;
 mod elevation;
 mod feet;
+mod flights;
 mod ground_line;
 mod heights;
 mod imagery;
@@ -65,6 +66,7 @@ const CHECKS: &[(&str, LintCheck)] = &[
     ("junctions", junctions::check),
     ("models", models::check),
     ("cameras", cameras::check),
+    ("flights", flights::check),
     ("views", unseen::check),
     ("tolerance", tolerance::check),
     ("labels", labels::check),

@@ -15,6 +15,8 @@ mod conform;
 mod earthworks;
 mod fences;
 mod left_out;
+mod left_out_models;
+mod left_out_rasters;
 mod level_ground;
 mod overlay_files;
 mod roads;

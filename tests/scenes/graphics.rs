@@ -307,6 +307,26 @@ fn layers_of_sight_off_the_ground_are_refused_by_their_place() {
     assert!(error.contains("100 follows 200"), "{error}");
 }
 
+#[test]
+fn every_observer_target_and_place_off_the_ground_is_told_by_its_own_place() {
+    let text = "[[viewshed]]\nobservers = [[5000, 5000], [99000, 0], [6000, 6000], [0, 77000]]\n\
+                [[sight]]\nobserver = [-5000, 5000]\ntargets = [[5000, 5000], [-9000, 5000],\n[9000, -50]]\n\
+                [[range]]\nat = [99000, 5000]\ndistances = [200, 100]\n";
+    let error = scene(text).map(|_| ()).expect_err("off the ground");
+    for told in [
+        "scene.toml:4:28: ",
+        "scene.toml:4:54: ",
+        "scene.toml:6:12: ",
+        "scene.toml:7:26: ",
+        "scene.toml:8:1: ",
+        "scene.toml:10:6: ",
+        "100 follows 200",
+    ] {
+        assert!(error.contains(told), "{told} in {error}");
+    }
+    assert_eq!(error.matches("lies off the elevation model").count(), 6, "{error}");
+}
+
 /// The part of `scenes/SYMBOLS.md` on graphics.
 fn graphics_page() -> String {
     let mut page = String::from(

@@ -112,6 +112,7 @@ class Dem:
         crs: _Crs | None = None,
         nodata: float | None = None,
         vertical_datum: str | None = None,
+        vertical_unit: float | None = None,
         height_scale: float | None = None,
         height_offset: float | None = None,
         cell: float | None = None,
@@ -135,6 +136,8 @@ class Dem:
     def crs(self) -> str | None: ...
     @property
     def vertical_datum(self) -> str | None: ...
+    @property
+    def notes(self) -> tuple[str, ...]: ...
     def to_numpy(self) -> NDArray[np.float32] | NDArray[np.float64]: ...
     def heights(
         self,
