@@ -154,6 +154,13 @@ impl ViewerApp {
                     let now = ui.input(|input| input.time);
                     self.notices.tell(now, "this feature lies nowhere on the ground of the scene");
                 }
+                Some(TreeEvent::GoToPosition(position)) => {
+                    let now = ui.input(|input| input.time);
+                    match opened.go_to_position(&position) {
+                        Ok(text) => self.notices.tell(now, text),
+                        Err(error) => self.notices.tell(now, error),
+                    }
+                }
                 Some(TreeEvent::GoTo(_)) | None => {}
             }
         });
