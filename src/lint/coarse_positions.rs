@@ -23,14 +23,44 @@ const SIGN_SIDE_M: f64 = 100.0;
 
 /// Positions of a key, with the largest square that they may name.
 struct KeyPositions<'a> {
-    /// What stands there.
+    /// What lies there.
     noun: &'static str,
     positions: &'a [Position],
     span: Range<usize>,
     most_m: f64,
 }
 
-/// Finds grid references whose squares are too large for what stands in their middles.
+impl<'a> KeyPositions<'a> {
+    fn one(noun: &'static str, at: &'a Stated<Position>, most_m: f64) -> Self {
+        let span = at.span().unwrap_or_default();
+        Self { noun, positions: std::slice::from_ref(&**at), span, most_m }
+    }
+
+    fn many(noun: &'static str, points: &'a Stated<Vec<Position>>, most_m: f64) -> Self {
+        Self { noun, positions: points, span: points.span().unwrap_or_default(), most_m }
+    }
+
+    /// What is told of grid references that are too coarse; `None` where none is.
+    fn message(&self) -> Option<String> {
+        let sides_m = self.positions.iter().filter_map(Position::side_m);
+        let coarse: Vec<f64> = sides_m.filter(|side_m| *side_m > self.most_m).collect();
+        let side_m = coarse.iter().copied().max_by(f64::total_cmp)?;
+        let (noun, side, most) = (self.noun, length(side_m), length(self.most_m));
+        let off = length(side_m * std::f64::consts::FRAC_1_SQRT_2);
+        Some(match (coarse.len(), self.positions.len()) {
+            (1, 1) => format!(
+                "the grid reference of {noun} names a square of {side}, whose middle is taken; the place may be {off} from there, \
+                 where squares of {most} would do"
+            ),
+            (count, all) => format!(
+                "of the {all} positions of {noun}, grid references of squares of up to {side}: {count}; their middles are taken, \
+                 and the places may be {off} from there, where squares of {most} would do"
+            ),
+        })
+    }
+}
+
+/// Finds grid references whose squares are too large for what lies in their middles.
 pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     for (span, message) in coarse_positions(context.document) {
         let help = "write more digits: 16SGF50001800 names 10 m, 16SGF5000018000 names 1 m";
@@ -40,56 +70,35 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
 
 /// The places and messages of grid references that are too coarse, by key.
 fn coarse_positions(document: &Document) -> Vec<(Range<usize>, String)> {
-    let mut found = Vec::new();
-    let mut look = |KeyPositions { noun, positions, span, most_m }: KeyPositions<'_>| {
-        let coarse: Vec<f64> =
-            positions.iter().filter_map(Position::side_m).filter(|side_m| *side_m > most_m).collect();
-        let Some(side_m) = coarse.iter().copied().max_by(f64::total_cmp) else { return };
-        let (side, most) = (length(side_m), length(most_m));
-        let message = match (coarse.len(), positions.len()) {
-            (1, 1) => format!(
-                "the grid reference of {noun} names a square of {side}, whose middle is taken; it may lie up to {} from \
-                 there, where {most} would do",
-                length(off_m(side_m))
-            ),
-            (count, all) => format!(
-                "{count} of the {all} positions of {noun} are grid references of squares of up to {side}, whose middles are \
-                 taken; they may lie up to {} from there, where {most} would do",
-                length(off_m(side_m))
-            ),
-        };
-        found.push((span, message));
-    };
-    let one = |noun, at: &Stated<Position>, most_m| (noun, vec![**at], at.span().unwrap_or_default(), most_m);
-    let many =
-        |noun, at: &Stated<Vec<Position>>, most_m| (noun, at.to_vec(), at.span().unwrap_or_default(), most_m);
+    let tables = table_sources(document);
     let mut all = Vec::new();
-    for table in table_sources(document) {
+    for table in &tables {
         let most_m = if is_sign(table.noun) { SIGN_SIDE_M } else { GROUND_SIDE_M };
-        all.extend(table.source.points.as_ref().map(|points| many(table.noun, points, most_m)));
+        all.extend(table.source.points.iter().map(|points| KeyPositions::many(table.noun, points, most_m)));
     }
-    let at = document.models.iter().filter_map(|table| table.at.as_ref());
-    all.extend(at.map(|at| one("a model", at, GROUND_SIDE_M)));
     for table in &document.viewsheds {
-        all.push(many("observers", &table.observers, GROUND_SIDE_M));
+        all.push(KeyPositions::many("observers", &table.observers, GROUND_SIDE_M));
     }
     for table in &document.sights {
-        all.push(one("an observer", &table.observer, GROUND_SIDE_M));
-        all.push(many("targets", &table.targets, GROUND_SIDE_M));
+        all.push(KeyPositions::one("an observer", &table.observer, GROUND_SIDE_M));
+        all.push(KeyPositions::many("targets", &table.targets, GROUND_SIDE_M));
     }
-    all.extend(document.ranges.iter().map(|table| one("a range", &table.at, SIGN_SIDE_M)));
-    let at = document.labels.iter().filter_map(|table| table.at.as_ref());
-    all.extend(at.map(|at| one("a label", at, SIGN_SIDE_M)));
-    let at = document.symbols.iter().filter_map(|table| table.at.as_ref());
-    all.extend(at.map(|at| one("a symbol", at, SIGN_SIDE_M)));
-    let eyes = document.cameras.iter().filter_map(|table| table.eye.as_ref());
-    all.extend(eyes.map(|eye| one("an eye", eye, GROUND_SIDE_M)));
     for table in &document.flights {
-        all.extend(table.source.points.as_ref().map(|points| many("a flight", points, SIGN_SIDE_M)));
+        all.extend(
+            table.source.points.iter().map(|points| KeyPositions::many("a flight", points, SIGN_SIDE_M)),
+        );
     }
-    for (noun, positions, span, most_m) in &all {
-        look(KeyPositions { noun, positions, span: span.clone(), most_m: *most_m });
-    }
+    let models = document.models.iter().filter_map(|table| table.at.as_ref());
+    all.extend(models.map(|at| KeyPositions::one("a model", at, GROUND_SIDE_M)));
+    let eyes = document.cameras.iter().filter_map(|table| table.eye.as_ref());
+    all.extend(eyes.map(|eye| KeyPositions::one("an eye", eye, GROUND_SIDE_M)));
+    all.extend(document.ranges.iter().map(|table| KeyPositions::one("a range", &table.at, SIGN_SIDE_M)));
+    let labels = document.labels.iter().filter_map(|table| table.at.as_ref());
+    all.extend(labels.map(|at| KeyPositions::one("a label", at, SIGN_SIDE_M)));
+    let symbols = document.symbols.iter().filter_map(|table| table.at.as_ref());
+    all.extend(symbols.map(|at| KeyPositions::one("a symbol", at, SIGN_SIDE_M)));
+    let found = all.iter().filter_map(|key| Some((key.span.clone(), key.message()?)));
+    let mut found: Vec<_> = found.collect();
     found.sort_by_key(|(span, _)| span.start);
     found
 }
@@ -97,11 +106,6 @@ fn coarse_positions(document: &Document) -> Vec<(Range<usize>, String)> {
 /// Whether a table's features are drawn over the ground and are not themselves the ground or a thing on it.
 fn is_sign(noun: &str) -> bool {
     ["graphics", "labels", "symbols", "overlays"].contains(&noun)
-}
-
-/// How far the corner of a square is from its middle.
-fn off_m(side_m: f64) -> f64 {
-    side_m * std::f64::consts::FRAC_1_SQRT_2
 }
 
 fn length(meters: f64) -> String {
@@ -130,8 +134,8 @@ mod tests {
         let coarse = found(&symbol("16S GF 50 18"));
         assert_eq!(coarse.len(), 1, "{coarse:?}");
         assert_eq!(coarse[0].0, "\"16S GF 50 18\"");
-        let expected = "the grid reference of a symbol names a square of 1 km, whose middle is taken; it may lie up to 707 m from \
-                        there, where 100 m would do";
+        let expected = "the grid reference of a symbol names a square of 1 km, whose middle is taken; the place may be 707 m \
+                        from there, where squares of 100 m would do";
         assert_eq!(coarse[0].1, expected);
         for fine in ["16SGF500180", "16SGF5000018000", "16N 750050 4018050", "36.277N 84.215W"] {
             assert_eq!(found(&symbol(fine)), [], "{fine}");
@@ -155,9 +159,7 @@ mod tests {
         let coarse = found(road);
         assert_eq!(coarse.len(), 1, "{coarse:?}");
         assert!(
-            coarse[0]
-                .1
-                .starts_with("2 of the 3 positions of roads are grid references of squares of up to 1 km")
+            coarse[0].1.contains("of the 3 positions of roads, grid references of squares of up to 1 km: 2;")
         );
         let sight = "[[sight]]\nobserver = \"16SGF5118\"\ntargets = [\"16SGF5000018000\"]\n";
         assert!(found(sight)[0].1.contains("an observer names a square of 1 km"));

@@ -156,10 +156,8 @@ impl ViewerApp {
                 }
                 Some(TreeEvent::GoToPosition(position)) => {
                     let now = ui.input(|input| input.time);
-                    match opened.go_to_position(&position) {
-                        Ok(text) => self.notices.tell(now, text),
-                        Err(error) => self.notices.tell(now, error),
-                    }
+                    let text = opened.go_to_position(&position).unwrap_or_else(|refusal| refusal);
+                    self.notices.tell(now, text);
                 }
                 Some(TreeEvent::GoTo(_)) | None => {}
             }
