@@ -276,7 +276,7 @@ mod tests {
         }
         let grid = read("positions=usng").location(DVec2::new(-84.215, 36.277));
         let json = serde_json::to_string(&grid).expect("JSON");
-        assert_eq!(json, r#"{"lat":36.277,"lng":-84.215,"position":"16S GF 50101 18107"}"#);
+        assert_eq!(json, r#"{"lat":36.277,"lng":-84.215,"position":"16S GF 50154 18271"}"#);
         let beyond = read("positions=mgrs").location(DVec2::NAN);
         assert!(!serde_json::to_string(&beyond).expect("JSON").contains("position"));
         assert!(!serde_json::to_string(&read("").location(at)).expect("JSON").contains("position"));
