@@ -81,6 +81,10 @@ finding_codes! {
     CrsOverridden = "crs-overridden", Warning,
         "A file states its coordinate system, and the scene states another in its place, which puts the file a meter or more \
          elsewhere, or on a datum from which no shift is known. The scene is believed. Leave `crs` out, unless the file is known to state the wrong system.";
+    CoarsePosition = "coarse-position", Warning,
+        "A grid reference of few digits names a square that is large for what stands there, and the middle of the square is \
+         taken: more than 100 m for symbols, graphics and labels, more than 10 m for what lies or stands on the ground, for \
+         observers and eyes. Write more digits, where they are known.";
     NoSystem = "no-system", Note,
         "Neither the elevation file nor the scene names a coordinate system: coordinates are meters in a plane without a place on \
          Earth, so that data in other systems cannot be added.";

@@ -8,6 +8,7 @@
 //! only where a scene is checked; what building finds out anyway is in [`SceneModel::findings`].
 
 mod cameras;
+mod coarse_positions;
 mod context;
 mod definitions;
 mod elevation;
@@ -51,6 +52,7 @@ type LintCheck = fn(&LintContext<'_>, &mut FindingSink);
 /// All checks, each with what it is about.
 const CHECKS: &[(&str, LintCheck)] = &[
     ("definitions", definitions::check),
+    ("coarse positions", coarse_positions::check),
     ("elevation", elevation::check),
     ("feet", feet::check),
     ("heights", heights::check),

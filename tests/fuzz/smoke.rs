@@ -189,6 +189,20 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
             // A lake all of whose points are one.
             any.chain([b"\xf8\xff\xff\x9a\x9a\x90\xff\xff".to_vec()]).collect()
         }
+        "positions" => [
+            "750000,4018000",
+            "16S GF 50000 18000",
+            "ZAH12345678",
+            "33T 500000 5200000",
+            "33 south 500000 5200000",
+            "Z 2100000 1900000",
+            "36.277N 84.215W",
+            "W 84\u{b0}12'54\" N 36\u{b0}16'37\"",
+            "36 16.62 N 84 12.9 W",
+            "3616N08412W",
+        ]
+        .map(|words| words.as_bytes().to_vec())
+        .to_vec(),
         "http_request" => {
             const UTM: &str = "crs=EPSG:32616";
             let asked = |choice: u8, words: &str| text(choice, words);

@@ -15,6 +15,8 @@ use sandtable_dem::{points, read as elevation};
 use sandtable_description::expression::Expression;
 use sandtable_description::parse::parse_bytes;
 use sandtable_geom::crs::Crs;
+use sandtable_geom::position::notation::PositionForm;
+use sandtable_geom::position::{Position, wgs84};
 use sandtable_model::Companions;
 use sandtable_model::error::CompanionError;
 use sandtable_model::read as models;
@@ -30,7 +32,7 @@ pub type Target = (&'static str, fn(&[u8]));
 
 /// All targets.
 #[allow(dead_code, reason = "each fuzz target is a program that uses one of them")]
-pub const TARGETS: [Target; 14] = [
+pub const TARGETS: [Target; 15] = [
     ("elevation", elevation),
     ("points", points),
     ("vectors", vectors),
@@ -44,6 +46,7 @@ pub const TARGETS: [Target; 14] = [
     ("scene_picture", scene_picture),
     ("walk", walk),
     ("words", words),
+    ("positions", positions),
     ("http_request", http_request),
 ];
 
@@ -199,6 +202,27 @@ pub fn walk(bytes: &[u8]) {
 pub fn words(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     let _ = (Expression::parse(text), Crs::parse(text), SymbolCode::parse(text));
+}
+
+/// Positions that a user writes: what is read lies on Earth, and is read again from every form in which it is written.
+pub fn positions(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let Ok(position) = Position::parse(text) else { return };
+    assert!(position.side_m().is_none_or(|side_m| side_m > 0.0), "a square without a side");
+    if position.numbers().is_some() {
+        return;
+    }
+    let Ok(place) = position.in_system(wgs84()) else { return };
+    assert!(
+        place.x.abs() <= 180.0 + 1e-9 && place.y.abs() <= 90.0 + 1e-9,
+        "{text:?} is off the Earth: {place}"
+    );
+    for (form, word, _) in PositionForm::WORDS {
+        let Ok(written) = form.write(wgs84(), place) else { continue };
+        let again = Position::parse(&written).unwrap_or_else(|error| panic!("{text:?} as {word}: {error}"));
+        let again = again.in_system(wgs84()).unwrap_or_else(|error| panic!("{text:?} as {word}: {error}"));
+        assert!((again.y - place.y).abs() < 2e-5, "{text:?} as {word} is {written:?}, at {again}");
+    }
 }
 
 /// Requests to the service.
