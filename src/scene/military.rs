@@ -107,8 +107,6 @@ fn symbol_at(
         TEXT_FIELDS.iter().filter_map(|row| Some((row.field, text(row.field)?.to_owned()))).collect();
     let symbol = engaged(symbol, &code, EngagementBar::of(text), &texts);
     let found = FoundSymbol { code, symbol, texts, fields, name: name(text, &table.sidc), ground };
-    let found =
-        FoundSymbol { code, symbol, texts: placed(text), fields, name: name(text, &table.sidc), ground };
     Ok(found.finished(table, &Attributes::default(), findings))
 }
 

@@ -203,7 +203,6 @@ impl<'a> Overlay<'a> {
         let called = called.unwrap_or_else(|| name(field, stated));
         let notes = placed_for(&code, field);
         let symbol = engaged(symbol, &code, EngagementBar::of(field), &notes);
-        let notes = placed(field);
         let found =
             FoundSymbol { code, symbol, texts: notes, fields: texts, name: called, ground: ground.as_vec3() };
         let look = SymbolLook {
