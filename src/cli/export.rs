@@ -70,14 +70,14 @@ impl ExportArguments {
 
 /// What a file is exported as.
 #[derive(Clone, Copy, Debug)]
-enum ExportKind {
+enum ExportTarget {
     Scene(ExportFormat),
     Page,
     Print(PrintFormat),
     Features(FeatureFormat),
 }
 
-impl ExportKind {
+impl ExportTarget {
     fn from_extension(extension: &str) -> Option<Self> {
         let page = ["html", "htm"].iter().any(|page| extension.eq_ignore_ascii_case(page));
         let scene = ExportFormat::from_extension(extension).map(Self::Scene).or(page.then_some(Self::Page));
@@ -92,24 +92,26 @@ pub fn run(arguments: &ExportArguments) -> Result<(), CliError> {
     let unused = |option: &str, kind: &str| {
         Err(CliError::Usage(format!("--{option} has no effect on {kind}; remove it")))
     };
-    let kind = output_format(out, from_ref(&scene.scene), ExportKind::from_extension, written)?;
-    let has_system = matches!(kind, ExportKind::Features(format) if !format.is_geographic());
+    let kind = output_format(out, from_ref(&scene.scene), ExportTarget::from_extension, written)?;
+    let has_system = matches!(kind, ExportTarget::Features(format) if !format.is_geographic());
     if arguments.crs.is_some() && !has_system {
         return unused("crs", "this format, whose system is fixed");
     }
     match kind {
-        ExportKind::Scene(_) if arguments.side.is_some() => unused("side", "a .glb or .obj"),
-        ExportKind::Scene(_) if arguments.bed.is_some() => unused("bed", "a .glb or .obj"),
-        ExportKind::Page if arguments.side.is_some() => unused("side", "a page"),
-        ExportKind::Page if arguments.bed.is_some() => unused("bed", "a page"),
-        ExportKind::Features(_) if arguments.max_error.is_some() => unused("max-error", "a file of features"),
-        ExportKind::Features(_) if arguments.side.is_some() => unused("side", "a file of features"),
-        ExportKind::Features(_) if arguments.bed.is_some() => unused("bed", "a file of features"),
-        ExportKind::Features(format) => run_features(arguments, format),
-        ExportKind::Print(_) if arguments.max_error.is_some() => unused("max-error", "a model to print"),
-        ExportKind::Scene(format) => run_scene(arguments, format),
-        ExportKind::Page => run_page(arguments),
-        ExportKind::Print(format) => run_print(arguments, format),
+        ExportTarget::Scene(_) if arguments.side.is_some() => unused("side", "a .glb or .obj"),
+        ExportTarget::Scene(_) if arguments.bed.is_some() => unused("bed", "a .glb or .obj"),
+        ExportTarget::Page if arguments.side.is_some() => unused("side", "a page"),
+        ExportTarget::Page if arguments.bed.is_some() => unused("bed", "a page"),
+        ExportTarget::Features(_) if arguments.max_error.is_some() => {
+            unused("max-error", "a file of features")
+        }
+        ExportTarget::Features(_) if arguments.side.is_some() => unused("side", "a file of features"),
+        ExportTarget::Features(_) if arguments.bed.is_some() => unused("bed", "a file of features"),
+        ExportTarget::Features(format) => run_features(arguments, format),
+        ExportTarget::Print(_) if arguments.max_error.is_some() => unused("max-error", "a model to print"),
+        ExportTarget::Scene(format) => run_scene(arguments, format),
+        ExportTarget::Page => run_page(arguments),
+        ExportTarget::Print(format) => run_print(arguments, format),
     }
 }
 

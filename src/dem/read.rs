@@ -317,7 +317,7 @@ mod tests {
         VERT_DATUM[\"North American Vertical Datum 1988\",2005],UNIT[\"US survey foot\",0.304800609601219]]]";
 
     #[test]
-    fn the_unit_of_elevations_is_the_callers_else_the_files_else_that_of_the_projection_beside_it() {
+    fn the_unit_of_elevations_is_stated_or_the_files_or_that_of_the_projection_beside() {
         let grid = b"ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n5\n";
         let beside = |name: &str| (name == "a.prj").then(|| IN_FEET.to_vec());
         let unit = |name: &str, stated: Option<f64>| {

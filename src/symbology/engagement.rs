@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bar_is_over_the_echelon_as_wide_as_its_text_needs_and_has_the_color_of_its_stage() {
+    fn a_bar_is_over_the_echelon_as_wide_as_its_text_in_the_color_of_its_stage() {
         let code = SymbolCode::parse("10061000161211000000").expect("a battalion");
         let symbol = MilitarySymbol::new(&code).expect("a frame");
         let top = symbol.bounds.min.y;

@@ -166,7 +166,7 @@ fn tiles_of_which_one_has_an_odd_sample_name_it() {
 }
 
 #[test]
-fn a_file_of_lines_that_shape_the_ground_tells_the_heights_of_a_scene_what_it_left_out() {
+fn lines_that_shape_the_ground_tell_heights_what_was_left_out() {
     let scratch = Scratch::new();
     scratch.write("a.asc", ascii("105"));
     let line = |coordinates: &str| {

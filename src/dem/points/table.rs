@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn as_many_lines_that_are_no_points_as_points_are_refused_with_the_number_of_the_first() {
+    fn as_many_wrong_lines_as_points_are_refused_with_the_first() {
         for (text, wanted) in [
             ("x,y,z\n1,2,3\n3,north,1\n", "line 3: found '3,north,1'"),
             ("1 2 3\n4 5\n", "line 2: found '4 5'"),

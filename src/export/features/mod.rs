@@ -3,15 +3,15 @@
 //! ```text
 //!  SceneModel ─► layers    symbols, graphics, roads, water, contours, sight ... as points, lines and polygons
 //!                   ├─► geopackage   every layer a table, with styles for QGIS
-//!                   ├─► geojson      every feature with the name of its layer
+//!                   ├─► json         every feature with the name of its layer
 //!                   ├─► kmz          a folder a layer, symbols as pictures
 //!                   ├─► msdl         units, equipment and graphics of sides
 //!                   └─► nvg          points, lines and polygons with codes and styles
 //! ```
 
 mod features_of;
-mod geojson;
 mod geopackage;
+mod json;
 mod kmz;
 mod layers;
 mod msdl;
@@ -192,7 +192,7 @@ pub fn export_features(
     let title = scene.title.as_deref().unwrap_or("A scene");
     let made = match format {
         FeatureFormat::GeoPackage => geopackage::file(&layers, system, scene)?,
-        FeatureFormat::GeoJson => geojson::file(&layers, title),
+        FeatureFormat::GeoJson => json::file(&layers, title),
         FeatureFormat::Kmz => kmz::file(&layers, title, scene)?,
         FeatureFormat::Msdl => msdl::file(&layers, title, scene)?,
         FeatureFormat::Nvg => nvg::file(&layers)?,

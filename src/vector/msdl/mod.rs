@@ -273,26 +273,26 @@ impl UnitLinks {
 /// the parents run in a circle. Every thing is looked at a few times, however long a chain is.
 fn nearest(parents: &[Option<usize>], holds: impl Fn(usize) -> bool) -> Vec<Option<usize>> {
     #[derive(Clone, Copy, PartialEq)]
-    enum Visit {
+    enum ChainState {
         New,
         Open,
         Done,
     }
     let mut found: Vec<Option<usize>> = vec![None; parents.len()];
-    let mut visits = vec![Visit::New; parents.len()];
+    let mut visits = vec![ChainState::New; parents.len()];
     let mut path = Vec::new();
     for start in 0..parents.len() {
         let mut at = Some(start);
         let mut answer = None;
         while let Some(index) = at {
             match visits[index] {
-                Visit::Done => answer = found[index],
-                Visit::Open => {}
-                Visit::New if holds(index) => {
-                    (found[index], visits[index], answer) = (Some(index), Visit::Done, Some(index));
+                ChainState::Done => answer = found[index],
+                ChainState::Open => {}
+                ChainState::New if holds(index) => {
+                    (found[index], visits[index], answer) = (Some(index), ChainState::Done, Some(index));
                 }
-                Visit::New => {
-                    visits[index] = Visit::Open;
+                ChainState::New => {
+                    visits[index] = ChainState::Open;
                     path.push(index);
                     at = parents[index];
                     continue;
@@ -301,7 +301,7 @@ fn nearest(parents: &[Option<usize>], holds: impl Fn(usize) -> bool) -> Vec<Opti
             break;
         }
         for index in path.drain(..) {
-            (found[index], visits[index]) = (answer, Visit::Done);
+            (found[index], visits[index]) = (answer, ChainState::Done);
         }
     }
     found

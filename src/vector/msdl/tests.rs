@@ -105,7 +105,7 @@ fn places_in_all_four_systems_are_one() {
 }
 
 #[test]
-fn things_without_a_place_are_with_the_unit_above_them_also_where_a_file_runs_in_a_circle() {
+fn things_without_a_place_are_with_the_unit_above_them_also_in_a_circle() {
     let body = unit("a", "S-G-UCI-------G", &at("GDC", &GDC), &of_side("r"))
         + &unit("b", "S-G-UCI-------G", "", &under("a"))
         + &unit("c", "S-G-UCI-------G", "", &under("d"))

@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn a_position_with_two_readings_is_refused_with_both_and_a_name_without_a_feature_is_none() {
+    fn a_position_with_two_readings_is_refused_with_both() {
         let harness = entered("16S 755447 4024162");
         assert!(harness.state().events.is_empty());
         assert!(harness.query_by_label_contains("can be read as zone 16, band S").is_some());

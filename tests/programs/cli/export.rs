@@ -110,7 +110,9 @@ fn a_name_of_no_format_and_the_scene_s_own_name_are_refused() {
     let scratch = Scratch::new();
     let said = export(&scratch, "scenes/lake.toml", "scene.fbx").failed(2);
     assert!(
-        said.contains("scene.fbx: scenes are exported as .glb, .obj or .html, or as .3mf or .stl to print"),
+        said.contains(
+            "scene.fbx: scenes are exported as .glb, .obj or .html, as .3mf or .stl to print, or as .gpkg"
+        ),
         "{said}"
     );
     assert_eq!(scratch.names(), Vec::<String>::new());
