@@ -62,6 +62,7 @@ pub use crate::api::elevation::Elevation;
 pub use crate::api::error::Error;
 pub use crate::api::plan::{GatheredPlan, WorkPlan};
 pub use crate::api::scene::{Picture, Scene, SceneOptions, View};
+pub use crate::api::symbol::Symbol;
 pub use crate::api::terrain::Terrain;
 pub use sandtable_base::limits::set_limit::set_limit;
 pub use sandtable_base::limits::work_limit::LimitError;

@@ -62,6 +62,7 @@ pub mod svg;
 mod symbol_drawing;
 mod symbol_field;
 mod symbol_list;
+pub mod symbol_picture;
 mod symbol_stack;
 mod symbols;
 mod text;

@@ -13,7 +13,7 @@ use crate::text::{TextStyle, TypesetLine};
 use sandtable_draw::color::Srgba;
 use sandtable_symbology::drawing::{PathStep, SymbolMark, SymbolPen};
 use sandtable_symbology::symbol::MilitarySymbol;
-use sandtable_symbology::texts::{SymbolNote, TextPlace};
+use sandtable_symbology::texts::{ROW_PITCH, SymbolNote, TEXT_GAP, TEXT_SIZE, TextPlace};
 
 /// Outlines of strokes are approximated to this fraction of a pixel.
 const STROKE_PRECISION: f32 = 4.0;
@@ -21,12 +21,6 @@ const STROKE_PRECISION: f32 = 4.0;
 const THINNEST: f32 = 1.1;
 /// How far the halo reaches around a symbol, in design pixels: it parts a frame from the ground.
 const HALO_REACH: f32 = 1.6;
-/// Size of the text round a frame, in units of the symbol's box: five rows are little higher than a frame.
-const TEXT_SIZE: f32 = 36.0;
-/// From one row of text to the next, in sizes of the text.
-const ROW_PITCH: f32 = 1.08;
-/// Between frame and text, in units.
-const TEXT_GAP: f32 = 9.0;
 /// The greatest width of a line of text, in units: longer ones end with an ellipsis.
 const WIDEST_TEXT: f32 = 420.0;
 
@@ -52,7 +46,7 @@ impl SymbolBlock {
         let mut drawing = symbol_marks(&symbol.symbol, unit_px, Some(halo), composer);
         let area = PixelBox { min: pixels(symbol.symbol.bounds.min), max: pixels(symbol.symbol.bounds.max) };
         let around = area.grown(halo + 2.0 * unit_px);
-        let texts = draw_texts(symbol, texts, unit_px, composer);
+        let texts = draw_texts(&symbol.symbol, texts, unit_px, composer);
         let bounds = around.union(texts.bounds());
         drawing.append(texts);
         Self { drawing, bounds, symbol: around, anchor: pixels(symbol.symbol.anchor), unit_px }
@@ -81,12 +75,12 @@ pub(crate) fn symbol_marks(
                     shape.draw(&mut drawing);
                 }
             }
-            SymbolMark::Text { text, center, size } => {
+            SymbolMark::Text { text, center, size, color: [red, green, blue] } => {
                 let style = TextStyle::new(size * unit_px, TextStyle::BOLD);
                 let line = composer.line(text, style);
                 let at = (*center - Vec2::splat(100.0)) * unit_px;
                 let at = at + Vec2::new(-line.advance * 0.5, style.cap_px() * 0.5);
-                drawing.write(&line, at, Srgba::opaque(0, 0, 0));
+                drawing.write(&line, at, Srgba::opaque(*red, *green, *blue));
             }
         }
     }
@@ -94,13 +88,13 @@ pub(crate) fn symbol_marks(
 }
 
 /// The lines of text round the frame.
-fn draw_texts(
-    symbol: &PictureSymbol,
+pub(crate) fn draw_texts(
+    symbol: &MilitarySymbol,
     texts: &[SymbolNote],
     unit_px: f32,
     composer: &mut Composer,
 ) -> Drawing {
-    let frame = symbol.symbol.frame;
+    let frame = symbol.frame;
     let style = TextStyle::new((TEXT_SIZE * unit_px).max(composer.sheet.type_px(10.0)), TextStyle::BOLD);
     let (gap, halo) = (TEXT_GAP * unit_px, composer.sheet.px(2.0).max(1.4));
     let pitch = style.size_px * ROW_PITCH;
@@ -115,8 +109,14 @@ fn draw_texts(
             TextPlace::Left(row) => Vec2::new(left - line.advance, row_y(*row)),
             TextPlace::Right(row) => Vec2::new(right, row_y(*row)),
             TextPlace::Above => {
-                let top = (symbol.symbol.bounds.min.y - 100.0) * unit_px;
+                let top = (symbol.bounds.min.y - 100.0) * unit_px;
                 Vec2::new(-line.advance * 0.5, top - gap)
+            }
+            // The bar is a mark of the symbol.
+            TextPlace::Bar => continue,
+            TextPlace::Below => {
+                let bottom = (symbol.bounds.max.y - 100.0) * unit_px;
+                Vec2::new(-line.advance * 0.5, bottom + gap + style.cap_px())
             }
             TextPlace::Inside => Vec2::new(-line.advance * 0.5, middle + style.cap_px() * 0.5),
         };

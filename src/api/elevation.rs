@@ -92,6 +92,11 @@ impl Elevation {
         self.dataset.warning()
     }
 
+    /// What reading the files left out or guessed, a sentence each; of a scene only of files that its ground is made of.
+    pub fn notes(&self) -> Vec<String> {
+        self.dataset.reading_notes()
+    }
+
     /// The surface of most queries: the source of a file, the ground of a scene.
     pub fn default_surface(&self) -> Surface {
         self.dataset.default_surface()

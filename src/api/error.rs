@@ -20,6 +20,7 @@ use sandtable_raster::answer::Status;
 use sandtable_scene::scene_file::OpenSceneError;
 use sandtable_shards::error::ShardError;
 use sandtable_sheet::picture::PictureError;
+use sandtable_symbology::labeled::LabeledSymbolError;
 use sandtable_view::camera::CameraError;
 
 /// Why an operation failed. The operation's own error is the source, or the error itself where nothing is to add.
@@ -62,6 +63,9 @@ pub enum Error {
     /// A picture cannot be made.
     #[error(transparent)]
     Picture(#[from] PictureError),
+    /// A code or fields make no military symbol.
+    #[error(transparent)]
+    Symbol(#[from] LabeledSymbolError),
     /// A plan cannot be read, a shard cannot be done, or the product cannot be written.
     #[error(transparent)]
     Plan(Box<ShardError>),

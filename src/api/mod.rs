@@ -5,4 +5,5 @@ pub mod elevation;
 pub mod error;
 pub mod plan;
 pub mod scene;
+pub mod symbol;
 pub mod terrain;

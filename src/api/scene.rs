@@ -130,6 +130,10 @@ impl View {
 }
 
 impl Picture {
+    pub(crate) fn new(pixels: Pixels) -> Self {
+        Self { pixels }
+    }
+
     /// Pixels across and down.
     pub fn size(&self) -> (u32, u32) {
         (self.pixels.width(), self.pixels.height())

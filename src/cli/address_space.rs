@@ -45,7 +45,7 @@ fn floor_of(command: &Command) -> Option<u64> {
         | Command::Viewshed(_)
         | Command::Plan { .. }
         | Command::Gather(_) => Some(50),
-        Command::Profile(_) | Command::Los(_) => Some(25),
+        Command::Profile(_) | Command::Los(_) | Command::Symbol(_) => Some(25),
         Command::Dem { command: DemCommand::Info(_) | DemCommand::Convert(_) | DemCommand::Grid(_) }
         | Command::Model { .. }
         | Command::Height(_)

@@ -23,6 +23,7 @@ use crate::profile::ProfileArguments;
 use crate::render::RenderArguments;
 use crate::report::ReportArguments;
 use crate::serve::ServeArguments;
+use crate::symbol::SymbolArguments;
 use crate::view::ViewArguments;
 use crate::viewshed::ViewshedArguments;
 use crate::work::WorkArguments;
@@ -59,6 +60,8 @@ pub enum Command {
     Explain(ExplainArguments),
     /// Write a first scene file for an elevation file and vector files
     New(NewArguments),
+    /// Draw one military symbol: PNG or SVG
+    Symbol(SymbolArguments),
     /// Print the JSON Schema of scene files, with which editors complete and check them
     Schema,
     /// Print the licenses of what this program is made of

@@ -11,10 +11,12 @@ use crate::output::{print_lines, row};
 use crate::output_format::output_format;
 use crate::progress::StepTimer;
 use crate::values::number;
+use sandtable_export::features::{ExportedFeatures, FeatureFormat, export_features};
 use sandtable_export::print_model::{self, PrintFormat, PrintModel, PrintSize, print_model};
 use sandtable_export::scene_export::{ExportFormat, export};
 use sandtable_export::scene_page::export_page;
 use sandtable_files::disk;
+use sandtable_geom::crs::Crs;
 use sandtable_scene::scene_file::{open_scene, open_scene_true_to_scale};
 
 /// The largest error of exported ground in meters, where none is stated.
@@ -33,17 +35,24 @@ const BED_MM: f64 = 200.0;
                   A .html is a page that any browser opens without a server or a network: the scene as in its pictures, to turn, to\n\
                   fly through and to ask for heights. Its light is that of the first camera.\n\n\
                   A .3mf or .stl is a solid to print in millimeters, with the scene's exaggeration: what is seen from above, on a\n\
-                  base. A model larger than the bed is cut into pieces with pegs and sockets; as .stl each is a file of its own."
+                  base. A model larger than the bed is cut into pieces with pegs and sockets; as .stl each is a file of its own.\n\n\
+                  A .gpkg, .geojson or .kmz holds what the scene shows, layer by layer: roads and water as laid, cut and fill,\n\
+                  contours, spot heights, buildings, viewsheds, lines of sight, graphics and symbols. A .gpkg opens in QGIS with\n\
+                  its styles, a .kmz in Google Earth. A .msdl or .nvg holds units and graphics."
 )]
 pub struct ExportArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// Write the scene to this file; the extension names the format: .glb, .obj, .html for browsers, .3mf or .stl to print
-    #[arg(short, long, value_name = "OUT.glb|.obj|.html|.3mf|.stl")]
+    /// Write the scene to this file; the extension names the format: .glb, .obj, .html for browsers, .3mf or .stl to print;
+    /// its features as .gpkg, .geojson, .kmz, .msdl or .nvg
+    #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
     /// The largest error of the ground at any post, in meters [default: 1; for a page 0.5 or more, by its size]
     #[arg(long, value_name = "METERS", value_parser = number::<f64>(0.0.., "write meters as a number from 0 on"))]
     pub max_error: Option<f64>,
+    /// The coordinate system of a .gpkg, such as EPSG:32616 [default: the scene's]
+    #[arg(long, value_name = "CRS", value_parser = Crs::parse)]
+    pub crs: Option<Crs>,
     /// The longer side of a printed model, in millimeters [default: 180]
     #[arg(long, value_name = "MM", value_parser = number::<f64>(20.0..=4000.0, "write millimeters as a number from 20 to 4000"))]
     pub side: Option<f64>,
@@ -65,27 +74,38 @@ enum ExportKind {
     Scene(ExportFormat),
     Page,
     Print(PrintFormat),
+    Features(FeatureFormat),
 }
 
 impl ExportKind {
     fn from_extension(extension: &str) -> Option<Self> {
         let page = ["html", "htm"].iter().any(|page| extension.eq_ignore_ascii_case(page));
         let scene = ExportFormat::from_extension(extension).map(Self::Scene).or(page.then_some(Self::Page));
-        scene.or_else(|| PrintFormat::from_extension(extension).map(Self::Print))
+        let print = || PrintFormat::from_extension(extension).map(Self::Print);
+        scene.or_else(print).or_else(|| FeatureFormat::from_extension(extension).map(Self::Features))
     }
 }
 
 pub fn run(arguments: &ExportArguments) -> Result<(), CliError> {
     let (scene, out) = (&arguments.scene, &arguments.output);
-    let written = "scenes are exported as .glb, .obj or .html, or as .3mf or .stl to print";
+    let written = "scenes are exported as .glb, .obj or .html, as .3mf or .stl to print, or as .gpkg, .geojson, .kmz, .msdl or .nvg";
     let unused = |option: &str, kind: &str| {
         Err(CliError::Usage(format!("--{option} has no effect on {kind}; remove it")))
     };
-    match output_format(out, from_ref(&scene.scene), ExportKind::from_extension, written)? {
+    let kind = output_format(out, from_ref(&scene.scene), ExportKind::from_extension, written)?;
+    let has_system = matches!(kind, ExportKind::Features(format) if !format.is_geographic());
+    if arguments.crs.is_some() && !has_system {
+        return unused("crs", "this format, whose system is fixed");
+    }
+    match kind {
         ExportKind::Scene(_) if arguments.side.is_some() => unused("side", "a .glb or .obj"),
         ExportKind::Scene(_) if arguments.bed.is_some() => unused("bed", "a .glb or .obj"),
         ExportKind::Page if arguments.side.is_some() => unused("side", "a page"),
         ExportKind::Page if arguments.bed.is_some() => unused("bed", "a page"),
+        ExportKind::Features(_) if arguments.max_error.is_some() => unused("max-error", "a file of features"),
+        ExportKind::Features(_) if arguments.side.is_some() => unused("side", "a file of features"),
+        ExportKind::Features(_) if arguments.bed.is_some() => unused("bed", "a file of features"),
+        ExportKind::Features(format) => run_features(arguments, format),
         ExportKind::Print(_) if arguments.max_error.is_some() => unused("max-error", "a model to print"),
         ExportKind::Scene(format) => run_scene(arguments, format),
         ExportKind::Page => run_page(arguments),
@@ -109,6 +129,19 @@ fn run_scene(arguments: &ExportArguments, format: ExportFormat) -> Result<(), Cl
     let notes: Vec<&str> =
         scene.notes().into_iter().chain(exported.notes.iter().map(String::as_str)).collect();
     print_lines(&summary(&exported.files, &facts, &notes))
+}
+
+fn run_features(arguments: &ExportArguments, format: FeatureFormat) -> Result<(), CliError> {
+    let (scene, out) = (&arguments.scene, &arguments.output);
+    let steps = StepTimer::default();
+    let progress = |step| steps.begin(step);
+    let scene = open_scene_true_to_scale(&scene.scene, &scene.access.allow, &progress)?;
+    let exported = export_features(&scene, out, format, arguments.crs.as_ref(), &progress)?;
+    steps.finish();
+    let ExportedFeatures { layers, notes } = exported;
+    let facts: Vec<String> = layers.iter().map(|(name, count)| row(15, name, count)).collect();
+    let notes: Vec<&str> = scene.notes().into_iter().chain(notes.iter().map(String::as_str)).collect();
+    print_lines(&summary(&[out], &facts, &notes))
 }
 
 fn run_page(arguments: &ExportArguments) -> Result<(), CliError> {

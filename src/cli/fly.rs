@@ -79,9 +79,11 @@ pub fn run(arguments: &FlyArguments, gpu: Option<OtherRenderer>) -> Result<(), C
     };
     bar.finish_and_clear();
     let length = format!("{:.2} km in {seconds:.1} s", flight.length_m() / 1000.0);
-    print_lines(&[
+    let mut lines = vec![
         arguments.output.display().to_string(),
         row(9, "flight", format!("{}: {length}", flight.name)),
         row(9, "frames", count),
-    ])
+    ];
+    lines.extend(scene.notes().into_iter().map(|note| row(9, "note", note)));
+    print_lines(&lines)
 }

@@ -40,6 +40,7 @@ mod serve;
 mod signals;
 #[cfg(unix)]
 mod supervisor;
+mod symbol;
 mod threads;
 mod values;
 mod view;
@@ -112,6 +113,7 @@ fn run(arguments: &Arguments, programs: BuiltInPrograms) -> Result<(), CliError>
         Command::Check(arguments) => check::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),
         Command::New(arguments) => new::run(arguments),
+        Command::Symbol(arguments) => symbol::run(arguments),
         Command::Schema => schema::run(),
         Command::Licenses => licenses::run(),
         Command::Dem { command: DemCommand::Info(arguments) } => dem_info::run(arguments),

@@ -85,6 +85,7 @@ pub fn run(arguments: &LodArguments) -> Result<(), CliError> {
     steps.begin("reading elevation");
     let mosaic = dem::open(&arguments.file, &arguments.heights.dem_options())?;
     let warning = dem::warning(&arguments.file, &mosaic);
+    let notes = dem::reading_notes(&arguments.file, &mosaic.raster);
     let ground = MetricGround::from_raster(&mosaic.raster).map_err(FileError::at(&arguments.file))?;
     let cameras = arguments.flight.cameras(arguments.frames as usize, &ground.lattice)?;
     steps.begin("measuring terrain");
@@ -104,6 +105,7 @@ pub fn run(arguments: &LodArguments) -> Result<(), CliError> {
     let reports: Vec<FlightReport> = methods.iter().map(fly).collect();
     steps.finish();
     warning.iter().for_each(|warning| warn(&format!("warning: {warning}")));
+    notes.iter().for_each(|note| warn(&format!("note: {note}")));
     if arguments.json {
         let reports: Value = reports.iter().map(json).collect();
         print(&format!("{reports}\n"))

@@ -70,7 +70,8 @@ pub fn run(arguments: &MeshArguments) -> Result<(), CliError> {
             let ground = PartedElevation::new(elevation).map_err(|error| failed(arguments, error))?;
             let (lattice, crs) = (ground.frame().clone(), ground.crs().clone());
             let header = ground.header().without_samples();
-            let place = MeshPlace { header, lattice: &lattice, crs, warning: None };
+            let warning = dem::header_warning(&arguments.file, &header);
+            let place = MeshPlace { header, lattice: &lattice, crs, warning };
             steps.begin("building the mesh");
             let range = ground.height_range();
             let bounded = BoundedMesh::of_parts(ground, range, arguments.max_error);
@@ -125,6 +126,8 @@ where
     written?;
     steps.finish();
     warning.iter().for_each(|warning| warn(&format!("warning: {warning}")));
+    let notes = dem::reading_notes(&arguments.file, header);
+    notes.iter().for_each(|note| warn(&format!("note: {note}")));
     if let Some(note) = resampled(header, lattice, crs) {
         warn(&format!("note: {}: {note}", arguments.file.display()));
     }

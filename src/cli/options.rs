@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::error::CliError;
 use crate::output::warn;
-use crate::values::picture_size;
+use crate::values::{length_unit, picture_size};
 use sandtable_dem::formats::height_encoding::HeightEncoding;
 use sandtable_dem::formats::raw_layout::RawLayout;
 use sandtable_dem::hints::DemOptions;
@@ -54,6 +54,9 @@ pub struct HeightArguments {
     /// The vertical datum of the heights: egm96, ellipsoid or a name [default: the file's]
     #[arg(long, value_name = "DATUM")]
     pub vertical_datum: Option<String>,
+    /// The unit of the heights: m, ft or us-ft [default: the file's, or meters]
+    #[arg(long, value_name = "UNIT", value_parser = length_unit, conflicts_with_all = ["height_scale", "height_encoding"])]
+    pub vertical_unit: Option<f64>,
     /// The layout of a RAW file: 1201x1201:i16be, then :skip=BYTES and :nodata=VALUE
     #[arg(long, value_name = "WxH:TYPE")]
     pub raw: Option<RawLayout>,
@@ -95,6 +98,7 @@ impl HeightArguments {
             height_encoding: self.height_encoding,
             raw: self.raw,
             vertical_datum: self.vertical_datum.as_deref().map(full_datum_name),
+            vertical_unit: self.vertical_unit,
             ..DemOptions::default()
         }
     }
@@ -112,10 +116,11 @@ impl DatasetArguments {
         DatasetOptions { dem, allowed, ..DatasetOptions::default() }
     }
 
-    /// Opens the dataset; prints its warning.
+    /// Opens the dataset; prints its warning, and what reading its files left out or guessed.
     pub fn open(&self) -> Result<Dataset, CliError> {
         let dataset = Dataset::open(&self.file, &self.options())?;
         dataset.warning().into_iter().for_each(|warning| warn(&format!("warning: {warning}")));
+        dataset.reading_notes().iter().for_each(|note| warn(&format!("note: {note}")));
         Ok(dataset)
     }
 

@@ -7,6 +7,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use sandtable_base::message::choice::Choice;
 use sandtable_query::positions::PositionArgument;
+use sandtable_raster::units::length_of_name;
 use sandtable_sheet::picture::PictureSize;
 
 /// Parses one of the words of a [`Choice`].
@@ -41,6 +42,12 @@ pub fn picture_size(text: &str) -> Result<PictureSize, &'static str> {
         [width @ 16..=16384, height @ 16..=16384] => Ok(PictureSize { width, height }),
         _ => Err("each side must lie between 16 and 16384 pixels"),
     }
+}
+
+/// Parses a unit of length, such as `ft`; returns its meters.
+pub fn length_unit(text: &str) -> Result<f64, &'static str> {
+    let known = length_of_name(text).filter(|_| !text.is_empty());
+    known.ok_or("write m, ft or us-ft")
 }
 
 /// Parses a pixel's column and row, such as `960,540`.

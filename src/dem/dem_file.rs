@@ -9,6 +9,7 @@ use sandtable_geom::crs::Crs;
 use sandtable_raster::error::DemErrorKind;
 use sandtable_raster::georef;
 use sandtable_raster::raster::{Raster, north_up};
+use sandtable_raster::vertical;
 
 /// An elevation file while it is read: its name, bytes and hints.
 pub(crate) struct DemFile<'a> {
@@ -90,6 +91,33 @@ impl DemFile<'_> {
         Ok(Raster { georeferenced: cell.is_some(), ..raster.placed(north_up(corner, size)) })
     }
 
+    /// `raster`, of which the samples may be absent, with the unit of elevations that the caller states; else with the file's own;
+    /// and where that states none, with the one of the vertical part of a `.prj` beside it. A note says where the caller's
+    /// is another than the file's.
+    pub fn with_unit(&self, raster: Raster) -> Result<Raster, DemErrorKind> {
+        let options = &self.hints.options;
+        let is_sound = |unit_m: f64| unit_m.is_finite() && unit_m > 0.0;
+        let stated =
+            checked("vertical_unit", options.vertical_unit, is_sound, "a positive number of meters")?;
+        if options.height_scale.is_some() || options.height_encoding.is_some() {
+            return Ok(raster);
+        }
+        let states_own = raster.states_z_unit || raster.meters_per_z != 1.0;
+        let own_m = if states_own {
+            Some(raster.meters_per_z)
+        } else {
+            self.companion("prj").and_then(vertical_unit)
+        };
+        let Some(meters_per_z) = stated.or(own_m) else { return Ok(raster) };
+        let mut notes = raster.notes;
+        if let Some(own_m) = own_m.filter(|own_m| *own_m != meters_per_z) {
+            notes.push(format!(
+                "the unit of its elevations is {own_m} m by the file, and {meters_per_z} m is stated in its place"
+            ));
+        }
+        Ok(Raster { meters_per_z, states_z_unit: true, notes, ..raster })
+    }
+
     /// The hinted meters per value, checked.
     pub fn height_scale(&self) -> Result<Option<f64>, DemErrorKind> {
         let is_sound = |scale: f64| scale.is_finite() && scale != 0.0;
@@ -108,6 +136,11 @@ impl DemFile<'_> {
         let is_sound = |cell: f64| cell.is_finite() && cell > 0.0;
         checked("cell", self.hints.options.cell, is_sound, "a positive number of meters")
     }
+}
+
+/// Meters in the unit of the vertical part of a `.prj`; `None` without one.
+fn vertical_unit(prj: Vec<u8>) -> Option<f64> {
+    vertical::unit_of_wkt(&String::from_utf8_lossy(&prj))
 }
 
 fn checked(

@@ -19,6 +19,9 @@ pub struct DemOptions {
     pub raw: Option<RawLayout>,
     /// The vertical datum, in place of the file's.
     pub vertical_datum: Option<String>,
+    /// Meters in the unit of elevations, in place of the file's. It has no effect on heights that `height_scale` or
+    /// `height_encoding` bring to meters.
+    pub vertical_unit: Option<f64>,
     /// The distance between samples of a file without georeference, whose south-west sample is then at (0, 0); and of tiles
     /// whose cells do not nest when they are joined.
     pub cell: Option<f64>,

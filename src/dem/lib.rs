@@ -22,6 +22,7 @@ mod vrt_frame;
 pub mod vrt_source;
 pub mod write;
 pub mod written;
+mod wrong_lines;
 
 /// The program of the README runs as a test.
 #[cfg(doctest)]

@@ -63,10 +63,14 @@ pub fn open_windows(
     let Some(open) = format_of(&file).ok().and_then(|format| format.windows) else { return Ok(None) };
     let windows =
         open(&file, content, cache_bytes).map_err(|kind| DemError { name: name.to_owned(), kind })?;
-    if hints.options.vertical_datum.is_none() && hints.options.nodata.is_none() {
+    let own = windows.metadata();
+    let with_unit =
+        file.with_unit(own.without_samples()).map_err(|kind| DemError { name: name.to_owned(), kind })?;
+    let is_own = (with_unit.meters_per_z, with_unit.states_z_unit) == (own.meters_per_z, own.states_z_unit);
+    if is_own && hints.options.vertical_datum.is_none() && hints.options.nodata.is_none() {
         return Ok(Some(windows));
     }
-    let header = with_stated_datum(windows.metadata().without_samples(), hints);
+    let header = with_stated_datum(with_unit, hints);
     Ok(Some(Box::new(StatedWindows { windows, header, nodata: hints.options.nodata })))
 }
 
@@ -100,7 +104,9 @@ impl<W: Windows + Send> Windows for StatedWindows<W> {
     fn overview(&self, step: u32) -> Option<(u32, Box<dyn Windows + Send + '_>)> {
         let (held, windows) = self.windows.overview(step)?;
         let vertical_datum = self.header.vertical_datum.clone();
-        let header = Raster { vertical_datum, ..windows.metadata().without_samples() };
+        let Raster { meters_per_z, states_z_unit, .. } = self.header;
+        let own = windows.metadata().without_samples();
+        let header = Raster { vertical_datum, meters_per_z, states_z_unit, ..own };
         Some((held, Box::new(StatedWindows { windows, header, nodata: self.nodata })))
     }
 
@@ -174,7 +180,7 @@ fn of_unpacking(error: ArchiveError) -> DemErrorKind {
 }
 
 fn read_unpacked(file: &DemFile) -> Result<Raster, DemErrorKind> {
-    (format_of(file)?.reader)(file)
+    file.with_unit((format_of(file)?.reader)(file)?)
 }
 
 /// The most bytes that a packed file unpacks to; the bytes of `head` are its first.
@@ -249,6 +255,7 @@ fn describe(bytes: &[u8], extension: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::hints::DemOptions;
     use sandtable_base::archive::zip;
 
     #[test]
@@ -301,5 +308,48 @@ mod tests {
         let raster = read("dir.d/a.asc", grid, &hints).expect("a small grid");
         assert_eq!(raster.crs.and_then(|crs| crs.epsg()), Some(32612));
         assert!(read("b.asc", grid, &hints).expect("a small grid").crs.is_none());
+    }
+
+    /// A vertical part of a system in US survey feet.
+    const IN_FEET: &[u8] =
+        b"COMPD_CS[\"x\",GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563]],\
+        PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]],VERT_CS[\"NAVD88 height (ftUS)\",\
+        VERT_DATUM[\"North American Vertical Datum 1988\",2005],UNIT[\"US survey foot\",0.304800609601219]]]";
+
+    #[test]
+    fn the_unit_of_elevations_is_the_callers_else_the_files_else_that_of_the_projection_beside_it() {
+        let grid = b"ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n5\n";
+        let beside = |name: &str| (name == "a.prj").then(|| IN_FEET.to_vec());
+        let unit = |name: &str, stated: Option<f64>| {
+            let options = DemOptions { vertical_unit: stated, ..DemOptions::default() };
+            let hints = DemHints { companions: &beside, ..DemHints::from(options) };
+            let raster = read(name, grid, &hints).expect("a small grid");
+            (raster.meters_per_z, raster.states_z_unit, raster.notes.len())
+        };
+        assert_eq!(unit("a.asc", None), (0.304_800_609_601_219, true, 0));
+        assert_eq!(unit("b.asc", None), (1.0, false, 0));
+        assert_eq!(unit("b.asc", Some(0.3048)), (0.3048, true, 0));
+        assert_eq!(unit("a.asc", Some(1.0)), (1.0, true, 1), "another unit than the file's is told");
+        let bad = DemOptions { vertical_unit: Some(0.0), ..DemOptions::default() };
+        let refused = read("b.asc", grid, &bad.into()).expect_err("no unit").to_string();
+        assert!(refused.contains("vertical_unit"), "{refused}");
+    }
+
+    #[test]
+    fn windows_have_the_unit_that_the_whole_file_has() {
+        let raster = Raster { georeferenced: true, ..Raster::new(2, Samples::F32(vec![1.0, 2.0, 3.0, 4.0])) };
+        let format = DemFormat::to_write("tif").expect("a GeoTIFF");
+        let bytes = crate::write::write(&raster, format, "a.tif").expect("written").bytes;
+        let beside = |name: &str| (name == "a.prj").then(|| IN_FEET.to_vec());
+        for stated in [None, Some(0.3048)] {
+            let options = DemOptions { vertical_unit: stated, ..DemOptions::default() };
+            let hints = DemHints { companions: &beside, ..DemHints::from(options) };
+            let content = Box::new(std::io::Cursor::new(bytes.clone()));
+            let windows = open_windows("a.tif", &bytes, content, &hints, 1 << 16).expect("opened");
+            let windows = windows.expect("a format with windows");
+            let whole = read("a.tif", &bytes, &hints).expect("read");
+            assert_eq!(windows.metadata().meters_per_z, whole.meters_per_z);
+            assert_eq!(whole.meters_per_z, stated.unwrap_or(0.304_800_609_601_219));
+        }
     }
 }

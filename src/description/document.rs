@@ -61,6 +61,7 @@ use crate::table_key;
 use crate::unused::UnusedDefinitions;
 use crate::words::{
     CameraProjection, GridName, HeightEncodingWord, LabelKind, PaperName, SheetLayout, StylePreset, TableTop,
+    VerticalUnitWord,
 };
 use sandtable_geom::crs::Crs;
 use sandtable_geom::position::Position;
@@ -167,6 +168,9 @@ table! {
         raw: Option<Stated<String>> = key::filled_text(), otherwise "the file is not RAW";
         /// What heights are counted from, such as `NAVD88`: printed; `height --above` needs `EGM96 geoid` or `WGS 84 ellipsoid`.
         vertical_datum: Option<String> = key::filled_text(), otherwise "what the file names, if anything";
+        /// The unit of the samples' values. With `height_scale` or `height_encoding`, which state meters, it has no place.
+        vertical_unit: Option<Stated<VerticalUnitWord>> = key::word::<VerticalUnitWord>(),
+            otherwise "what the file or the `.prj` beside it states, or meters";
         /// Whether samples without data that others enclose are filled by a membrane, up to 100000 at a place; `true` fills
         /// the source as well, so that height queries on it see no voids.
         fill_voids: Option<bool> = key::switch(), otherwise "the ground is filled, the source stays as it is read";

@@ -17,8 +17,8 @@ table! {
     struct FeatureSource [const LEAST: usize] {
         /// Inline coordinates, each in ±10⁹. The last point of a ring may repeat its first.
         points: Option<Stated<Vec<Position>>> = key::points(LEAST), otherwise "by `file`", unless ["file"];
-        /// A vector file, or its address: GeoJSON, shapefile, GeoPackage, FlatGeobuf, GPX, KML, CityJSON, OpenStreetMap, or a
-        /// table: CSV, TSV, xlsx, ods.
+        /// A vector file, or its address: GeoJSON, shapefile, GeoPackage, FlatGeobuf, GPX, KML, CityJSON, LandXML, DXF or OpenStreetMap,
+        /// or a table: CSV, TSV, xlsx or ods.
         file: Option<Stated<String>> = key::file(), otherwise "by `points`", unless ["points"];
         /// With `file`: the layer of a file that holds several.
         layer: Option<Stated<String>> = key::filled_text(), otherwise "the file's only layer", unless ["points"];

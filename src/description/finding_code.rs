@@ -81,6 +81,10 @@ finding_codes! {
     CrsOverridden = "crs-overridden", Warning,
         "A file states its coordinate system, and the scene states another in its place, which puts the file a meter or more \
          elsewhere, or on a datum from which no shift is known. The scene is believed. Leave `crs` out, unless the file is known to state the wrong system.";
+    CoarsePosition = "coarse-position", Warning,
+        "A grid reference of few digits names a square that is large for what stands there, and the middle of the square is \
+         taken: more than 100 m for symbols, graphics and labels, more than 10 m for what lies or stands on the ground, for \
+         observers and eyes. Write more digits, where they are known.";
     NoSystem = "no-system", Note,
         "Neither the elevation file nor the scene names a coordinate system: coordinates are meters in a plane without a place on \
          Earth, so that data in other systems cannot be added.";
@@ -102,8 +106,8 @@ finding_codes! {
          Most likely one of the two is counted from the ellipsoid and the other from a geoid. Bring both to one datum.";
     HeightsInFeet = "heights-in-feet", Warning,
         "Heights are read as meters, and something says that they are feet: coordinates in feet beside elevations whose unit \
-         nothing states, the vertical unit of a `.prj`, the name of a vertical datum or of a file; or the heights of a file are 3.28 times the ground's, or the other way round. Convert them, or let the \
-         file state its unit.";
+         nothing states, the vertical unit of a `.prj`, the name of a vertical datum or of a file; or the heights of a file are 3.28 times the ground's, or the other way round. State \
+         the unit with `vertical_unit` under `[terrain]`, or let the file state it.";
     NoPlaceOnEarth = "no-place-on-earth", Warning,
         "The scene names no coordinate system, so that a grid, magnetic north or the sun of a date cannot be computed. State \
          `crs` under `[terrain]`.";
@@ -117,8 +121,9 @@ finding_codes! {
          without data that the file does not declare. State the value as `nodata`, or cut the margin off with `extent`.";
     ElevationGuessed = "elevation-guessed", Note,
         "What an elevation file holds was guessed, or a part of it is not read: a band of opacity was taken as a mask, other bands \
-         are not read, words stand in place of heights, or a no-data value is no number. The message says which. Write the file \
-         again with one band and a number for no data where that is wrong.";
+         are not read, words stand in place of heights, lines are no points, a no-data value is no number, or the scene states \
+         another unit than the file. The message says which. Write the file again with one band and a number for no data where \
+         that is wrong.";
     UnmarkedVoid = "unmarked-void", Warning,
         "Inside the elevation model a region of one value ends in a step all around, as holes do that were filled with a number. \
          It is drawn as ground. State the value as `nodata` where no ground has it, so that the hole is filled.";
@@ -378,6 +383,18 @@ impl FindingCode {
     /// The explanation in sentences: what it means, why it matters and what to do.
     pub fn text(self) -> &'static str {
         ROWS[self as usize].3
+    }
+
+    /// Whether its findings say what a reader left out of a file, or guessed of it.
+    pub fn is_of_reading(self) -> bool {
+        matches!(
+            self,
+            Self::RecordsBroken
+                | Self::VectorRead
+                | Self::ElevationGuessed
+                | Self::HeightsInFeet
+                | Self::VerticalDatumsMixed
+        )
     }
 
     /// `warning[unused-style]`.

@@ -22,9 +22,10 @@ table! {
     struct GraphicTable {
         /// Name for messages and the feature list.
         name: Option<String> = key::text(), otherwise "the property `name`";
-        /// What it is: one of the words of `scenes/SYMBOLS.md`, such as `phase_line`, or six digits of symbol set 25.
+        /// What it is: one of the words of `scenes/SYMBOLS.md`, such as `phase_line`, or six digits of symbol
+        /// set 25, or eight that begin with the set.
         kind: Option<Stated<String>> = key::filled_text(), otherwise "by `sidc`; with `file` the property `kind`";
-        /// Symbol identification code of symbol set 25, 20 or 30 digits: its kind, side, status and echelon.
+        /// Symbol identification code of symbol set 25, 45 or 46, 20 or 30 digits: its kind, side, status and echelon.
         sidc: Option<Stated<String>> = key::filled_text(), otherwise "by `kind`; with `file` the property `sidc`";
         /// Its points, in the order of its draw rule (`scenes/SYMBOLS.md` says what each is); of a file's feature those of its
         /// shape.
@@ -50,6 +51,14 @@ table! {
         hostile: Option<String> = key::text(), otherwise "`ENY` on areas of the hostile side; with `file` the property `hostile`";
         /// Field H: further text.
         further: Option<String> = key::text(), otherwise "with `file` the property `further`";
+        /// Field V: type of equipment, such as the vehicles of a convoy.
+        equipment as "type": Option<String> = key::text(), otherwise "with `file` the property `type`";
+        /// Field C: how many, or how strong an event was.
+        quantity: Option<String> = key::text(), otherwise "with `file` the property `quantity`";
+        /// Field Y: where it is, in words.
+        location: Option<String> = key::text(), otherwise "with `file` the property `location`";
+        /// Field Q: the direction in which an event moves, as an arrow.
+        direction: Option<f64> = key::number(Bounds::DIRECTION, "°"), otherwise "no arrow; with `file` the property `direction`";
         /// Field AP: number of a target.
         target: Option<String> = key::text(), otherwise "with `file` the property `target`";
         /// Field W: the time from which it holds.
@@ -60,10 +69,10 @@ table! {
         elevations: Option<[f64; 2]> = key::number_range(Bounds::ELEVATION, "m"), otherwise "on the ground";
         /// Field AM: radius of a circle, the rising ranges of a fan, or the half axes of an ellipse, and length and width of a
         /// rectangle, the one along its azimuth first.
-        distances: Option<Stated<Vec<f64>>> = key::numbers(REACH, "m"), otherwise "none";
+        distances: Option<Stated<Vec<f64>>> = key::numbers(REACH, "m"), otherwise "none; with `file` the property `distances`";
         /// Field AN: of a sector, the left and the right azimuth of each range; of an ellipse or rectangle that of its first
         /// distance.
-        azimuths: Option<Stated<Vec<f64>>> = key::numbers(Bounds::DIRECTION, "°"), otherwise "none";
+        azimuths: Option<Stated<Vec<f64>>> = key::numbers(Bounds::DIRECTION, "°"), otherwise "none; with `file` the property `azimuths`";
     }
     check(reader) {
         reader.exclude("sidc", "kind");
@@ -77,7 +86,7 @@ table! {
         /// Name for the legend.
         name: Option<String> = key::text(), otherwise "none";
         /// Where the observers are; ground is in sight where one of them sees it.
-        observers: Stated<Vec<Position>> = key::points(1), required;
+        observers: Stated<Vec<Stated<Position>>> = key::places(1), required;
         /// Coordinate system of `observers`.
         crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`";
         /// Height of their eyes above the ground.
@@ -99,7 +108,7 @@ table! {
         /// Where the observer is.
         observer: Stated<Position> = key::point(), required;
         /// Where the lines lead.
-        targets: Stated<Vec<Position>> = key::points(1), required;
+        targets: Stated<Vec<Stated<Position>>> = key::places(1), required;
         /// Coordinate system of `observer` and `targets`.
         crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`";
         /// Height of the observer's eyes above the ground.

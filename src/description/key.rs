@@ -12,6 +12,7 @@ use crate::declaration::KeyKind;
 use crate::expression::Expression;
 use crate::feature_value::{FeatureValue, FeatureWord};
 use crate::selection::Selection;
+use crate::stated::Stated;
 use crate::value::KeyValue;
 use crate::words::declarations;
 use sandtable_base::message::choice::Choice;
@@ -95,6 +96,8 @@ keys! {
     /// At least `least` positions; the last one of a ring, of `least` 3, is not counted where it repeats the
     /// first.
     points(least: usize) -> Vec<Position> = KeyKind::Points(least);
+    /// As `points`, each position with its place in the scene file.
+    places(least: usize) -> Vec<Stated<Position>> = KeyKind::Points(least);
     /// The name of a color ramp, or its stops from low to high.
     ramp() -> RampChoice = KeyKind::Ramp;
     /// Which features of a file are meant: a table of properties and their values, or an expression.

@@ -18,8 +18,8 @@ table! {
     struct OverlayTable {
         /// Name for messages and the legend.
         name: Option<String> = key::text(), otherwise "the file's name";
-        /// A scenario or an overlay, or its address: ORBAT Mapper, MSDL, NVG, MilX, Cursor on Target, KML, GeoJSON or any other
-        /// vector file.
+        /// A scenario or an overlay, or its address: ORBAT Mapper, MSDL, NVG, MilX, Cursor on Target, KML, GeoJSON, a table
+        /// (CSV, xlsx, ods) or any other vector file.
         file: Stated<String> = key::file(), required;
         /// The layer of a file that holds several.
         layer: Option<Stated<String>> = key::filled_text(), otherwise "all, or the file's only layer";

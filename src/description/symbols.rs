@@ -73,6 +73,30 @@ table! {
         speed: Option<Stated<String>> = key::filled_text(), otherwise "none";
         /// Field AA: the name of a special headquarters, in the frame.
         special_headquarters: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field L: `!` for detectable electronic signatures.
+        signature_equipment: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field N: `ENY` for equipment of the enemy.
+        hostile: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field AS: the country; that of a code of 30 digits without one stated.
+        country: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field AD: the type of platform, such as `ELNOT` or `CENOT`.
+        platform_type: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field AE: how long it takes to take the equipment down, in minutes.
+        teardown_time: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field AF: what the equipment is commonly called, such as `HAWK`.
+        common_identifier: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field AH: what element of the headquarters it is, below the frame.
+        headquarters_element: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field AI: what parts the installation has.
+        installation_composition: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field AQ: the ship that is guarded.
+        guarded_unit: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field AR: a special track, such as `NRT` or `SIG`.
+        special_designator: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field AO: what the bar over the symbol says, such as `A:PTRIOT-02`.
+        engagement_bar: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// The color of the engagement bar: `target`, `non-target` or `expired`; else that of the frame.
+        engagement: Option<Stated<String>> = key::filled_text(), otherwise "none";
     }
     check(reader) {
         reader.exclude("file", "at");
@@ -91,7 +115,7 @@ table! {
 }
 
 /// The keys that are texts, or with a file expressions.
-const TEXT_KEYS: [&str; 16] = [
+const TEXT_KEYS: [&str; 28] = [
     "sidc",
     "quantity",
     "reinforced",
@@ -108,6 +132,18 @@ const TEXT_KEYS: [&str; 16] = [
     "location",
     "speed",
     "special_headquarters",
+    "signature_equipment",
+    "hostile",
+    "country",
+    "platform_type",
+    "teardown_time",
+    "common_identifier",
+    "headquarters_element",
+    "installation_composition",
+    "guarded_unit",
+    "special_designator",
+    "engagement_bar",
+    "engagement",
 ];
 
 impl SymbolTable {
@@ -117,7 +153,7 @@ impl SymbolTable {
     }
 
     /// The fields of text with their texts or expressions, as the table of text fields has their keys.
-    pub fn texts(&self) -> [(&'static str, &Option<Stated<String>>); 15] {
+    pub fn texts(&self) -> [(&'static str, &Option<Stated<String>>); 27] {
         [
             ("quantity", &self.quantity),
             ("reinforced", &self.reinforced),
@@ -134,6 +170,18 @@ impl SymbolTable {
             ("location", &self.location),
             ("speed", &self.speed),
             ("special_headquarters", &self.special_headquarters),
+            ("signature_equipment", &self.signature_equipment),
+            ("hostile", &self.hostile),
+            ("country", &self.country),
+            ("platform_type", &self.platform_type),
+            ("teardown_time", &self.teardown_time),
+            ("common_identifier", &self.common_identifier),
+            ("headquarters_element", &self.headquarters_element),
+            ("installation_composition", &self.installation_composition),
+            ("guarded_unit", &self.guarded_unit),
+            ("special_designator", &self.special_designator),
+            ("engagement_bar", &self.engagement_bar),
+            ("engagement", &self.engagement),
         ]
     }
 }

@@ -15,6 +15,7 @@ use crate::feature_value::{FeatureValue, FeatureWord};
 use crate::finding_code::FindingCode;
 use crate::include::joined;
 use crate::scalar::Scalar;
+use crate::stated::Stated;
 use crate::table_name::TableName;
 use sandtable_base::limits::INLINE_POINTS;
 use sandtable_base::limits::SCENE_LIST;
@@ -326,11 +327,11 @@ impl<'t> KeyValue<'_, 't> {
     }
 
     pub fn named_files(self) -> Option<BTreeMap<String, String>> {
-        self.text_table(KeyValue::file)
+        self.text_table(|name| name.file())
     }
 
     pub fn named_texts(self) -> Option<BTreeMap<String, String>> {
-        self.text_table(KeyValue::filled_text)
+        self.text_table(|text| text.filled_text())
     }
 
     fn text_table(
@@ -453,7 +454,11 @@ impl<'t> KeyValue<'_, 't> {
         }
     }
 
-    pub fn points(mut self, least: usize) -> Option<Vec<Position>> {
+    pub fn points(self, least: usize) -> Option<Vec<Position>> {
+        Some(self.places(least)?.into_iter().map(Stated::into_value).collect())
+    }
+
+    pub fn places(mut self, least: usize) -> Option<Vec<Stated<Position>>> {
         let help = format!("write at least {least} points as [[x1, y1], [x2, y2], ...]");
         let DeValue::Array(list) = self.value.get_ref() else {
             return self.wrong_type("a list of points", help);
@@ -465,8 +470,13 @@ impl<'t> KeyValue<'_, 't> {
                 format!("put them in a GeoJSON file and name it with `file`, or {INLINE_POINTS:#}"),
             );
         }
-        let points = self.each(list, |point| point.point())?;
-        let closed = least > 2 && points.len() > 1 && points.first() == points.last();
+        let stated = |point: KeyValue<'_, '_>| {
+            let span = point.value.span();
+            Some(Stated::new(point.point()?, span))
+        };
+        let points = self.each(list, stated)?;
+        let ends = points.first().zip(points.last()).filter(|_| points.len() > 1);
+        let closed = least > 2 && ends.is_some_and(|(first, last)| **first == **last);
         let count = points.len() - usize::from(closed);
         if count < least {
             return self.wrong(format!("`{}` has {count} of the {least} points it needs", self.key), help);

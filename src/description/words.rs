@@ -145,6 +145,13 @@ words! {
         Terrarium = "terrarium": "Mapzen Terrarium",
     }
 
+    /// The unit of elevations.
+    enum VerticalUnitWord {
+        Meters = "m": "meters",
+        Feet = "ft": "international feet of 0.3048 m",
+        SurveyFeet = "us-ft": "US survey feet of 1200/3937 m",
+    }
+
     /// How two segments of a road meet.
     enum Join {
         Miter = "miter": "both edges run on until they meet",

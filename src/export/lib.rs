@@ -11,6 +11,7 @@
 //! ```
 
 mod bake;
+pub mod features;
 pub mod glb;
 mod inlay;
 pub mod obj;

@@ -19,10 +19,11 @@ const HEIGHT_PX: f32 = 44.0;
 
 /// The symbols of a scene, each standing over its place. Arrows of movement are left out: a page turns.
 pub fn symbol_pictures(scene: &SceneModel) -> Vec<PageSymbol> {
-    scene.military.iter().filter_map(|symbol| picture(scene, symbol)).collect()
+    scene.military.iter().filter_map(|symbol| symbol_picture(scene, symbol)).collect()
 }
 
-fn picture(scene: &SceneModel, symbol: &SceneSymbol) -> Option<PageSymbol> {
+/// One symbol, standing over its place; `None` of one that draws nothing.
+pub fn symbol_picture(scene: &SceneModel, symbol: &SceneSymbol) -> Option<PageSymbol> {
     let [on_white, on_black] =
         [Srgba::WHITE, Srgba::opaque(0, 0, 0)].map(|paper| painted(scene, symbol, paper));
     let seen = |x: u32, y: u32| unpainted(on_white.at(x, y), on_black.at(x, y));

@@ -12,7 +12,6 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use crate::compound_crs::horizontal_code;
 use crate::crs_fault::CrsFault;
 use crate::datum_shift::DatumShift;
 use crate::proj_string::ProjString;
@@ -97,12 +96,11 @@ pub enum CrsError {
 }
 
 impl Crs {
-    /// The system with an EPSG code; of a compound one its horizontal part.
+    /// The system with an EPSG code.
     ///
     /// # Errors
     /// [`CrsError::Unknown`] where the code is not in the table.
     pub fn from_epsg(code: u32) -> Result<Self, CrsError> {
-        let code = horizontal_code(code).unwrap_or(code);
         let name = format!("EPSG:{code}");
         let text = epsg_text(code).ok_or_else(|| unknown(&name, CrsFault::NoSuchCode))?;
         Self::build(name, Some(code), text)

@@ -33,6 +33,16 @@ impl Geodesic {
         Some(Self::between(place(one)?, place(other)?))
     }
 
+    /// Its bearing at its start, degrees clockwise from north.
+    pub fn bearing_deg(&self) -> f64 {
+        self.bearing_deg
+    }
+
+    /// Its end; longitude within ±180°.
+    pub fn end(&self) -> DVec2 {
+        self.at(self.length_m)
+    }
+
     /// Its length in meters.
     pub fn length_m(&self) -> f64 {
         self.length_m

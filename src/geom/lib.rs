@@ -2,16 +2,19 @@
 
 pub mod aabb;
 pub mod axis;
+pub mod cell_outlines;
 pub mod chebyshev;
-pub mod compound_crs;
 pub mod convex;
 pub mod crs;
 pub mod crs_fault;
 pub mod datum_shift;
 pub mod declination;
 pub mod distance_field;
+pub mod geocentric;
 pub mod geodesic;
 pub mod geoid;
+pub mod ground_band;
+pub mod ground_shape;
 pub mod isolines;
 pub mod join;
 pub mod leg_tree;

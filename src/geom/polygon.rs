@@ -40,13 +40,17 @@ pub fn is_within(edges: impl Iterator<Item = (DVec2, DVec2)>, point: DVec2) -> b
     crossed.count() % 2 == 1
 }
 
-/// Cuts the polygon with `exterior` and `holes` into counter-clockwise triangles (ear clipping).
+/// Cuts the polygon with the outer `ring` and `holes` into counter-clockwise triangles (ear clipping).
 ///
 /// Rings that cross themselves give some triangulation of their vertices, never a panic; those of less than three vertices
-/// none.
-pub fn triangulate(exterior: &[DVec2], holes: &[Vec<DVec2>]) -> Vec<[DVec2; 3]> {
-    let Some(exterior) = closed(exterior) else { return Vec::new() };
-    let polygon = geo::Polygon::new(exterior, holes.iter().filter_map(|hole| closed(hole)).collect());
+/// or with one that is not finite none. A hole that reaches beyond the box around the outer ring is none.
+pub fn triangulate(ring: &[DVec2], holes: &[Vec<DVec2>]) -> Vec<[DVec2; 3]> {
+    let Some(exterior) = closed(ring) else { return Vec::new() };
+    // The cut sorts vertices by their place in that box, and panics on one outside.
+    let around = bounds(ring);
+    let is_within = |hole: &&Vec<DVec2>| hole.iter().all(|at| around.contains(*at));
+    let polygon =
+        geo::Polygon::new(exterior, holes.iter().filter(is_within).filter_map(|hole| closed(hole)).collect());
     let corner = |at: geo::Coord| DVec2::new(at.x, at.y);
     polygon
         .earcut_triangles()
@@ -82,8 +86,11 @@ pub fn triangulate_ring(ring: &[DVec2]) -> Vec<[usize; 3]> {
 }
 
 /// The ring with its first vertex at the end as well; `None` where it has less than three, which `geo` takes for a mistake of
-/// its caller.
+/// its caller, or one that is not finite.
 fn closed(ring: &[DVec2]) -> Option<geo::LineString> {
+    if ring.iter().any(|at| !at.is_finite()) {
+        return None;
+    }
     let mut line: geo::LineString = ring.iter().map(|at| (at.x, at.y)).collect();
     line.close();
     (line.0.len() > 3).then_some(line)
@@ -203,6 +210,31 @@ mod tests {
 
     fn square(low: f64, high: f64) -> Vec<DVec2> {
         vec![DVec2::new(low, low), DVec2::new(high, low), DVec2::new(high, high), DVec2::new(low, high)]
+    }
+
+    #[test]
+    fn a_hole_beyond_the_ring_and_vertices_that_are_not_finite_do_not_panic() {
+        // So many vertices that the cut sorts them.
+        let at = |index: usize, radius: f64| {
+            let angle = index as f64 * std::f64::consts::TAU / 100.0;
+            DVec2::new(libm::cos(angle), libm::sin(angle)) * radius
+        };
+        let ring: Vec<DVec2> = (0..100).map(|index| at(index, 9.0)).collect();
+        let hole: Vec<DVec2> = (0..100).rev().map(|index| at(index, 3.0)).collect();
+        let far = vec![DVec2::splat(-20.0), DVec2::splat(-30.0), DVec2::new(-20.0, -30.0)];
+        let area = |holes: &[Vec<DVec2>]| {
+            triangulate(&ring, holes).into_iter().map(doubled_triangle_area).sum::<f64>() / 2.0
+        };
+        let whole = area(&[]);
+        assert!((area(&[hole.clone(), far]) - whole * 8.0 / 9.0).abs() < 1e-6);
+        let mut broken = ring.clone();
+        broken[7].x = f64::NAN;
+        assert!(
+            triangulate(&broken, std::slice::from_ref(&hole)).is_empty()
+                && triangulate_ring(&broken).is_empty()
+        );
+        let lost = [DVec2::new(f64::INFINITY, 0.0), DVec2::ZERO, DVec2::ONE];
+        assert!((area(&[lost.to_vec()]) - whole).abs() < 1e-6);
     }
 
     #[test]

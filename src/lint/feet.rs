@@ -26,7 +26,7 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     let terrain = &context.document.terrain;
     let snapshot = context.scene.heights.snapshot();
     let raster = snapshot.source();
-    if raster.meters_per_z != 1.0 || terrain.height_scale.is_some() {
+    if raster.meters_per_z != 1.0 || terrain.height_scale.is_some() || terrain.vertical_unit.is_some() {
         return;
     }
     let is_found = |file: &str| {
@@ -44,7 +44,7 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
             "the elevations of '{}' are read as meters, and {evidence}: they would be 3.28 times too high",
             quoted(file)
         );
-        let help = "convert them, for example with: gdal_calc.py -A IN --calc=\"A*0.3048\" --outfile=OUT";
+        let help = "say `vertical_unit = \"ft\"` or \"us-ft\" under [terrain], or \"m\" if they are meters";
         let span = terrain.dem.span().unwrap_or_default();
         sink.add(context.finding(FindingCode::HeightsInFeet, span, message).with_help(help));
     }

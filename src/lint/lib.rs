@@ -8,10 +8,12 @@
 //! only where a scene is checked; what building finds out anyway is in [`SceneModel::findings`].
 
 mod cameras;
+mod coarse_positions;
 mod context;
 mod definitions;
 mod elevation;
 mod feet;
+mod flights;
 mod ground_line;
 mod heights;
 mod imagery;
@@ -50,6 +52,7 @@ type LintCheck = fn(&LintContext<'_>, &mut FindingSink);
 /// All checks, each with what it is about.
 const CHECKS: &[(&str, LintCheck)] = &[
     ("definitions", definitions::check),
+    ("coarse positions", coarse_positions::check),
     ("elevation", elevation::check),
     ("feet", feet::check),
     ("heights", heights::check),
@@ -65,6 +68,7 @@ const CHECKS: &[(&str, LintCheck)] = &[
     ("junctions", junctions::check),
     ("models", models::check),
     ("cameras", cameras::check),
+    ("flights", flights::check),
     ("views", unseen::check),
     ("tolerance", tolerance::check),
     ("labels", labels::check),

@@ -7,6 +7,7 @@
 //! | TIGER/Line (United States Census Bureau) | the feature class code `MTFCC` |
 //! | OS OpenMap Local, Open Roads and Open Rivers (Ordnance Survey) | the road classification; `form` |
 //! | BD TOPO (IGN, France) | `NATURE` and the names of its layers |
+//! | CityJSON; LandXML | the types of its objects; stations |
 //!
 //! A condition names values that no other schema has, so that no two rules take the same feature, but one of them its name.
 
@@ -194,6 +195,7 @@ pub(super) static RULES: &[TableRule] = &[
     )
     .keys(&["level_rule = \"lowest\""])
     .named(&["surface_hydrographique", "surface_eau", "plan_d_eau"]),
+    rule("lake", "Water (CityJSON)", "polygons", "type = 'WaterBody'").keys(&["level_rule = \"lowest\""]),
     // Running water.
     rule("river", "Streams", "lines", "(waterway ?? fclass) in ('stream', 'ditch', 'drain', 'brook')")
         .keys(&["width = 3"])
@@ -266,6 +268,8 @@ pub(super) static RULES: &[TableRule] = &[
         "(highway ?? fclass) in ('secondary', 'secondary_link', 'tertiary', 'tertiary_link')",
     )
     .keys(&["width = 7", OSM_SURFACE]),
+    rule("road", "Alignments (LandXML)", "lines", "station_end > station_start")
+        .keys(&["width = 7", "profile = \"own\""]),
     rule(
         "road",
         "Country roads (OS)",
@@ -314,6 +318,14 @@ pub(super) static RULES: &[TableRule] = &[
     )
     .keys(&["height = 7"])
     .named(&["bgt_pand"]),
+    rule(
+        "building",
+        "Buildings (CityJSON)",
+        "polygons",
+        "type in ('Building', 'BuildingPart', 'BuildingInstallation', 'BuildingConstructiveElement', 'Bridge', \
+         'BridgePart', 'BridgeInstallation', 'OtherConstruction') and not has(identificatieBAGPND ?? \
+         identificatie_bag_pnd ?? bag_pnd ?? bouwjaar)",
+    ),
     rule("building", "Buildings (BD TOPO)", "polygons", "has(HAUTEUR ?? hauteur) and not highway")
         .keys(&["height = \"HAUTEUR ?? hauteur ?? 6\""])
         .named(&["batiment", "bati_"]),
@@ -384,6 +396,8 @@ pub(super) static RULES: &[TableRule] = &[
             most: 6,
             is_title: false,
         }),
+    // Units of a table or of another file whose features have symbol codes.
+    rule("overlay", "Military symbols", "points", "has(sidc)"),
 ];
 
 #[cfg(test)]

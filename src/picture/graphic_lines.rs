@@ -69,6 +69,7 @@ const MOST_STRETCH: f64 = 2.5;
 #[derive(Default)]
 pub struct GraphicPen {
     drawn: BTreeMap<(FeatureId, [u8; 4]), [PlanMesh; 2]>,
+    grounds: BTreeMap<(FeatureId, [u8; 4]), PlanMesh>,
 }
 
 impl GraphicPen {
@@ -77,9 +78,17 @@ impl GraphicPen {
         &mut self.drawn.entry((feature, color.0)).or_default()[1]
     }
 
-    /// The plans of casings, and of lines.
+    /// The plan of ground of a color, which lies under all lines.
+    pub fn ground(&mut self, color: Srgba, feature: FeatureId) -> &mut PlanMesh {
+        self.grounds.entry((feature, color.0)).or_default()
+    }
+
+    /// The plans of grounds and casings, and of lines.
     pub fn into_plans(self) -> [Vec<LinePlan>; 2] {
-        let (mut casings, mut lines) = (Vec::new(), Vec::new());
+        let grounds = self.grounds.into_iter();
+        let ground = |((feature, color), plan)| LinePlan { plan, color: Srgba(color), feature };
+        let (mut casings, mut lines): (Vec<LinePlan>, Vec<LinePlan>) =
+            (grounds.map(ground).collect(), Vec::new());
         for ((feature, color), [casing, line]) in self.drawn {
             casings.push(LinePlan { plan: casing, color: CASING, feature });
             lines.push(LinePlan { plan: line, color: Srgba(color), feature });
@@ -87,14 +96,16 @@ impl GraphicPen {
         [casings, lines]
     }
 
-    /// The lines draped on the displayed ground: casings, then lines.
+    /// The lines draped on the displayed ground: grounds and casings, then lines.
     pub fn draped(&self, displayed: &dyn TriangleSurface) -> [Vec<DrapedPart>; 2] {
         let part = |plan: &PlanMesh, color: Srgba, feature: FeatureId| {
             let mut mesh = DrawMesh::default();
             drape(plan, displayed, &mut mesh);
             DrapedPart { color, mesh, feature }
         };
+        let grounds = self.grounds.iter().map(|((feature, color), plan)| part(plan, Srgba(*color), *feature));
         let casings = self.drawn.iter().map(|((feature, _), plans)| part(&plans[0], CASING, *feature));
+        let casings = grounds.chain(casings);
         let lines =
             self.drawn.iter().map(|((feature, color), plans)| part(&plans[1], Srgba(*color), *feature));
         [casings.collect(), lines.collect()]

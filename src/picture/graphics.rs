@@ -110,12 +110,12 @@ fn drawn(graphic: &SceneGraphic, view: &GraphicView<'_>) -> Option<(GraphicPen, 
         );
     }
     for fill in &drawing.fills {
-        let color = match fill.ink {
-            FillInk::Own => own,
-            FillInk::Opposing => other,
-            FillInk::Ground(color) => ground_color(color),
+        let plan = match fill.ink {
+            FillInk::Own => pen.plan(own, graphic.feature),
+            FillInk::Opposing => pen.plan(other, graphic.feature),
+            FillInk::Ground(color) => pen.ground(ground_color(color), graphic.feature),
         };
-        area::fill(&counter_clockwise(&fill.ring), &[], 1.0, pen.plan(color, graphic.feature));
+        area::fill(&counter_clockwise(&fill.ring), &[], 1.0, plan);
     }
     let texts = drawing
         .texts
@@ -132,6 +132,7 @@ fn drawn(graphic: &SceneGraphic, view: &GraphicView<'_>) -> Option<(GraphicPen, 
             text: text.text,
             color: own,
             feature: graphic.feature,
+            is_repeat: text.is_repeat,
         })
         .collect();
     Some((pen, texts))

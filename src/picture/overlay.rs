@@ -31,6 +31,7 @@ pub(super) fn planned(
         texts.extend(more);
     }
     casings.extend(lines);
+    names_first(&mut texts);
     (casings, texts)
 }
 
@@ -65,5 +66,11 @@ pub(super) fn add(
     lines.extend(more_lines);
     texts.extend(more);
     add_parts(list, casings.into_iter().chain(lines));
+    names_first(&mut texts);
     texts
+}
+
+/// Puts what graphics can do without after the names of all of them.
+fn names_first(texts: &mut [PlacedText]) {
+    texts.sort_by_key(|text| text.is_repeat);
 }

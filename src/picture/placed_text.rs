@@ -20,6 +20,8 @@ pub struct PlacedText {
     pub color: Srgba,
     /// The feature it belongs to.
     pub feature: FeatureId,
+    /// Whether names of any graphic come before it.
+    pub is_repeat: bool,
 }
 
 /// The way in which a text follows a line on the ground: the parts of it that are in the frustum, their vertices close

@@ -316,7 +316,7 @@ fn level_text(
     feature: FeatureId,
 ) -> PlacedText {
     let at = view.on_ground(at);
-    PlacedText { text, at, toward: at, course: PlacedCourse::Level, color, feature }
+    PlacedText { text, at, toward: at, course: PlacedCourse::Level, color, feature, is_repeat: false }
 }
 
 fn distance_text(radius_m: f64) -> String {

@@ -160,6 +160,15 @@ impl Dataset {
         self.warning.as_deref()
     }
 
+    /// What reading the files left out or guessed, a sentence each for the user, of a scene only of files that the ground
+    /// is made of.
+    pub fn reading_notes(&self) -> Vec<String> {
+        match &self.content {
+            DatasetContent::Scene(ground) => ground.reading_notes.clone(),
+            _ => dem::reading_notes(Path::new(&self.name), &self.header()),
+        }
+    }
+
     /// A note for the user where the ground lies in another system than [`Dataset::crs`] because lengths in that are not
     /// true. It does not concern heights of the source.
     pub fn ground_note(&self) -> Option<String> {

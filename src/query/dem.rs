@@ -275,7 +275,12 @@ pub fn warning(path: &Path, mosaic: &Mosaic) -> Option<String> {
     (!notes.is_empty()).then(|| format!("{}: {}", path.display(), notes.join("; ")))
 }
 
-/// The same of a file that is read where queries need it; `raster` may lack its samples.
+/// What reading the file at `path` left out or guessed, a sentence each for the user.
+pub fn reading_notes(path: &Path, raster: &Raster) -> Vec<String> {
+    raster.notes.iter().map(|note| format!("{}: {note}", path.display())).collect()
+}
+
+/// The same as [`warning`] of a file that is read where queries need it; `raster` may lack its samples.
 pub fn header_warning(path: &Path, raster: &Raster) -> Option<String> {
     unstated_unit::note(raster).map(|note| format!("{}: {note}", path.display()))
 }

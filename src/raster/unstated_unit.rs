@@ -37,17 +37,8 @@ pub fn note(raster: &Raster) -> Option<String> {
 }
 
 /// How a user has them read in their unit.
-pub fn remedy(raster: &Raster) -> &'static str {
-    match raster.driver {
-        "GTiff" => {
-            "let the file state its unit, for example with: gdal_edit.py -units ft FILE, or -units m if they are meters"
-        }
-        _ => {
-            "convert them to a GeoTIFF that states its unit, for example with: gdal_translate FILE OUT.tif, then gdal_edit.py \
-              -units ft OUT.tif, or -units m if they are meters"
-        }
-    }
-}
+pub const REMEDY: &str =
+    "say `vertical_unit = \"ft\"` or \"us-ft\" under [terrain], or \"m\" if they are meters";
 
 #[cfg(test)]
 mod tests {

@@ -58,6 +58,8 @@ pub struct SceneGround {
     pub stated_crs: Crs,
     /// A note where that is not the ground's, because its lengths are not true.
     pub scale_note: Option<String>,
+    /// What reading its files left out or guessed, a sentence each.
+    pub reading_notes: Vec<String>,
     /// The files it was made of, besides the scene file itself.
     pub files: Vec<std::path::PathBuf>,
 }
@@ -70,9 +72,11 @@ pub struct SceneGround {
 pub fn build_ground(document: &Document, assets: &Assets) -> Result<SceneGround, Diagnostic> {
     let mut loaded = ground::load(document, assets, ElevationNeed::All)?;
     let decks = shape_loaded(document, assets, &mut loaded)?;
-    let LoadedGround { source, lattice, crs, stated_crs, scale_note, .. } = loaded;
+    let LoadedGround { source, lattice, crs, stated_crs, scale_note, findings, .. } = loaded;
+    let of_reading = findings.into_vec().into_iter().filter(|finding| finding.code.is_of_reading());
+    let reading_notes = of_reading.map(|finding| finding.message).collect();
     let heights = height_service(document, source, crs, Arc::new(lattice), &decks)?;
-    Ok(SceneGround { heights, stated_crs, scale_note, files: assets.files_read() })
+    Ok(SceneGround { heights, stated_crs, scale_note, reading_notes, files: assets.files_read() })
 }
 
 /// Builds the scene that `document` describes, with all samples of its elevation that fit into the memory. `progress` is called

@@ -123,6 +123,7 @@ pub(super) fn lay_out(
     collected: &mut SceneBuilder,
 ) -> Result<CityPlots, Diagnostic> {
     let span = building.source.span();
+    note_unused_keys(building, collected);
     let polygons = sources.polygons(&building.source)?;
     let crs = sources.features(&building.source)?.0;
     let takes_all = building.source.selection.is_none();
@@ -198,6 +199,23 @@ pub(super) fn lay_out(
     }
     tally.note(span, &mut collected.findings);
     Ok(CityPlots { table, groups })
+}
+
+/// Reports keys of footprints that are raised, which say nothing of surfaces.
+fn note_unused_keys(building: &BuildingTable, collected: &mut SceneBuilder) {
+    let keys = [
+        ("height", building.height.is_some()),
+        ("roof", building.roof.is_some()),
+        ("roof_height", building.roof_height.is_some()),
+        ("roof_direction", building.roof_direction.is_some()),
+    ];
+    let stated: Vec<String> =
+        keys.iter().filter(|(_, is_stated)| *is_stated).map(|(key, _)| format!("`{key}`")).collect();
+    if !stated.is_empty() {
+        let message =
+            format!("without effect on CityJSON, whose own surfaces are drawn: {}", stated.join(", "));
+        collected.findings.add(FindingCode::DefaultTaken, building.source.span(), message);
+    }
 }
 
 /// The footprints of an object.

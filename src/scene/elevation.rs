@@ -17,6 +17,7 @@ use crate::planned_pictures::ElevationNeed;
 use crate::reduced_elevation::{ReducedElevation, reduced_as_needed};
 use crate::scene_findings::SceneFindings;
 use sandtable_base::limits::{COMPANION_BYTES, PICTURED_SAMPLES, RASTER_SAMPLES};
+use sandtable_base::message::choice::Choice;
 use sandtable_base::message::suggest::quoted;
 use sandtable_dem::formats::height_encoding::HeightEncoding;
 use sandtable_dem::formats::raw_layout::{RawLayout, RawLayoutError};
@@ -39,6 +40,7 @@ use sandtable_raster::mosaic_windows::MosaicWindows;
 use sandtable_raster::raised::RaisedWindows;
 use sandtable_raster::raster::Raster;
 use sandtable_raster::reduced_windows::ReducedWindows;
+use sandtable_raster::units::length_of_name;
 use sandtable_raster::unstated_unit;
 use sandtable_raster::warp::metric_crs::{OffScale, metric_crs, off_scale};
 use sandtable_raster::warp::metric_windows::MetricSystem;
@@ -475,10 +477,30 @@ fn stated(document: &Document) -> Result<DemOptions, Diagnostic> {
         }),
         raw: raw_layout(document)?,
         vertical_datum: terrain.vertical_datum.clone(),
+        vertical_unit: vertical_unit(document)?,
         cell: terrain.cell,
         crs: terrain.crs.clone(),
         surface: terrain.surface.clone(),
     })
+}
+
+/// Meters in the unit that the document states of elevations.
+fn vertical_unit(document: &Document) -> Result<Option<f64>, Diagnostic> {
+    let terrain = &document.terrain;
+    let Some(stated) = &terrain.vertical_unit else { return Ok(None) };
+    let rival = [
+        ("height_scale", terrain.height_scale.is_some()),
+        ("height_encoding", terrain.height_encoding.is_some()),
+    ];
+    match rival.iter().find(|(_, is_stated)| *is_stated) {
+        Some((rival, _)) => {
+            let message =
+                format!("`vertical_unit` has no effect beside `{rival}`, which gives heights in meters");
+            let error = document.error(stated, message).with_code(FindingCode::NoEffect);
+            Err(error.with_help("remove one of them"))
+        }
+        None => Ok(length_of_name(stated.word())),
+    }
 }
 
 /// The elevation that takes the place of the document's files.
@@ -514,12 +536,7 @@ fn check_tile(
     }
     if let Some(note) = unstated_unit::note(tile).filter(|_| terrain.height_scale.is_none()) {
         let message = format!("the elevations of '{}': {note}", quoted(name));
-        findings.add_with_help(
-            FindingCode::HeightsInFeet,
-            span.clone(),
-            message,
-            unstated_unit::remedy(tile),
-        );
+        findings.add_with_help(FindingCode::HeightsInFeet, span.clone(), message, unstated_unit::REMEDY);
     }
     let Some(stated) = &terrain.vertical_datum else { return };
     if let Some(own) = tile.vertical_datum.as_deref().filter(|own| !own.eq_ignore_ascii_case(stated)) {

@@ -7,12 +7,14 @@ use glam::{DVec2, Vec3};
 
 use crate::assets::Assets;
 use crate::near::MERGE_M;
+use crate::scene_findings::SceneFindings;
 use crate::scene_model::SceneModel;
 use crate::scene_view::{SceneView, ViewAim};
 use crate::sources::Sources;
 use crate::world_frame::WorldFrame;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::{Document, FlightTable};
+use sandtable_description::finding::Finding;
 use sandtable_geom::polyline::Polyline;
 use sandtable_geom::profile::Profile;
 use sandtable_geom::smooth::smoothed;
@@ -40,6 +42,8 @@ pub struct SceneFlight {
     pub name: String,
     /// How long it takes.
     pub seconds: f64,
+    /// What reading its file left out, or took for something else.
+    pub findings: Vec<Finding>,
     path: Polyline,
     /// World Z of the eye along the path.
     eye_z: Profile,
@@ -65,6 +69,8 @@ pub fn flight(
     let frame = &WorldFrame::new(document, &scene.crs, &scene.stated_crs, lattice.origin());
     let sources = Sources::new(frame, assets);
     let lines = sources.lines(&table.source)?;
+    let mut findings = SceneFindings::new(document);
+    sources.report_reading(&mut findings);
     let paths = lines.into_iter().filter_map(|line| Polyline::new(line.shape, MERGE_M));
     let path = paths.reduce(|best, next| if next.length() > best.length() { next } else { best });
     let Some(path) = path else {
@@ -106,6 +112,7 @@ pub fn flight(
         .map(|at| frame.on_ground(lattice, at, frame.point(at, table.source.crs.as_ref())?));
     Ok(SceneFlight {
         name: table.name.to_string(),
+        findings: findings.into_vec(),
         seconds: table.speed.map_or(SECONDS, |speed| path.length() / speed),
         eye_z,
         pitch_rad: table.pitch.to_radians(),

@@ -1,5 +1,7 @@
 //! Tactical graphics: from the tables of a scene file to points in world space, checked against their draw rules.
 
+use std::ops::RangeInclusive;
+
 use glam::DVec2;
 
 use crate::attributes::Attributes;
@@ -31,6 +33,11 @@ use sandtable_vector::feature::Geometry;
 
 /// The mark of the enemy (field N).
 const ENEMY: &str = "ENY";
+
+/// The distances that a property may list, as those of the keys.
+const LISTED_DISTANCES_M: RangeInclusive<f64> = 1e-3..=1e7;
+/// The greatest width that a property may state, as the key.
+const WIDEST_M: f64 = 1e6;
 
 /// Adds the document's graphics to `collected`; those of files that lie off the ground are left out with a note. It keeps an
 /// error where a source cannot be had, or a graphic does not fit its draw rule.
@@ -102,10 +109,9 @@ pub(super) fn graphic(
         Some(Scalar::Number(number)) => Some(number.to_string()),
         _ => None,
     };
-    let number = |key: &str| match attributes.get(key) {
-        Some(Scalar::Number(number)) => Some(number),
-        Some(Scalar::Text(text)) => text.trim().parse().ok(),
-        _ => None,
+    let number = |key: &str| attributes.get(key).and_then(|value| value.number());
+    let listed = |key: &str, range: RangeInclusive<f64>| {
+        property(key).map_or_else(|| Ok(Vec::new()), |text| numbers_of(key, &text, range))
     };
     let text =
         |stated: &Option<String>, key: &str| stated.clone().or_else(|| property(key)).unwrap_or_default();
@@ -148,17 +154,29 @@ pub(super) fn graphic(
         country: text(&table.country, "country"),
         hostile,
         further: text(&table.further, "further"),
+        equipment: text(&table.equipment, "type"),
+        quantity: text(&table.quantity, "quantity"),
+        location: text(&table.location, "location"),
+        direction_deg: table.direction.or_else(|| number("direction")),
         target: text(&table.target, "target"),
         from: text(&table.from, "from"),
         until: text(&table.until, "until"),
         heights: heights.map(Vec::from).unwrap_or_default(),
-        distances_m: numbers(&table.distances, document)?,
-        azimuths_deg: table.azimuths.as_deref().cloned().unwrap_or_default(),
+        distances_m: match &table.distances {
+            Some(stated) => numbers(stated, document)?,
+            None => {
+                listed("distances", LISTED_DISTANCES_M).map_err(|(message, help)| failed(message, help))?
+            }
+        },
+        azimuths_deg: match table.azimuths.as_deref() {
+            Some(stated) => stated.clone(),
+            None => listed("azimuths", -360.0..=360.0).map_err(|(message, help)| failed(message, help))?,
+        },
     };
     if kind.is_area() && points.len() > 1 && points.first() == points.last() {
         points.pop();
     }
-    let width_m = table.width.or_else(|| number("width")).filter(|width| *width > 0.0);
+    let width_m = table.width.or_else(|| number("width")).filter(|width| *width > 0.0 && *width < WIDEST_M);
     let order =
         table.order.or_else(|| attributes.get("order").and_then(|word| GraphicOrder::from_scalar(&word, ())));
     if order == Some(GraphicOrder::Drawn) && !kind.leads_from_tip() {
@@ -194,8 +212,7 @@ pub(super) fn graphic(
 }
 
 /// The stated distances, as many as a graphic may have.
-fn numbers(stated: &Option<Stated<Vec<f64>>>, document: &Document) -> Result<Vec<f64>, Diagnostic> {
-    let Some(distances) = stated else { return Ok(Vec::new()) };
+fn numbers(distances: &Stated<Vec<f64>>, document: &Document) -> Result<Vec<f64>, Diagnostic> {
     if distances.len() > MOST_RANGES {
         let message = format!("{} distances are more than the {MOST_RANGES} allowed", distances.len());
         return Err(document.error(distances, message).with_help("leave some of them out"));
@@ -203,8 +220,28 @@ fn numbers(stated: &Option<Stated<Vec<f64>>>, document: &Document) -> Result<Vec
     Ok(distances.to_vec())
 }
 
+/// The numbers that a property of a file's feature lists, separated by spaces, commas or semicolons.
+fn numbers_of(key: &str, text: &str, range: RangeInclusive<f64>) -> Result<Vec<f64>, (String, String)> {
+    /// More than the ranges of a fan, and their azimuths.
+    const MOST_NUMBERS: usize = 2 * MOST_RANGES;
+    let words = text.split([' ', ',', ';']).filter(|word| !word.is_empty());
+    let numbers: Result<Vec<f64>, &str> = words
+        .take(MOST_NUMBERS)
+        .map(|word| word.parse().ok().filter(|number: &f64| range.contains(number)).ok_or(word))
+        .collect();
+    numbers.map_err(|word| {
+        let message = format!("the property `{key}` lists '{}'", quoted(word));
+        (message, format!("write it as `500, 1000`, each from {} to {}", range.start(), range.end()))
+    })
+}
+
 fn kind_of_word(word: &str) -> Result<&'static GraphicKind, (String, String)> {
-    if let Some(kind) = GraphicKind::of_word(word).or_else(|| GraphicKind::of_code(25, word)) {
+    // Six digits are of symbol set 25; eight begin with the set.
+    let of_digits = || match word.split_at_checked(2) {
+        Some((set, entity)) if entity.len() == 6 => GraphicKind::of_code(set.parse().ok()?, entity),
+        _ => GraphicKind::of_code(25, word),
+    };
+    if let Some(kind) = GraphicKind::of_word(word).or_else(of_digits) {
         return Ok(kind);
     }
     let near = nearest(word, GRAPHIC_KINDS.iter().map(|kind| kind.word));

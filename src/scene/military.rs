@@ -20,8 +20,9 @@ use sandtable_description::symbols::SymbolTable;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::position::Position;
 use sandtable_symbology::code::SymbolCode;
+use sandtable_symbology::engagement::EngagementBar;
 use sandtable_symbology::symbol::MilitarySymbol;
-use sandtable_symbology::texts::{SymbolNote, SymbolText, TEXT_FIELDS, placed};
+use sandtable_symbology::texts::{SymbolNote, SymbolText, TEXT_FIELDS, placed_for};
 use sandtable_terrain::lattice::Lattice;
 
 /// A symbol at its place.
@@ -33,6 +34,8 @@ pub struct SceneSymbol {
     pub symbol: MilitarySymbol,
     /// The lines of text round it.
     pub texts: Vec<SymbolNote>,
+    /// Its texts by field.
+    pub fields: Vec<(SymbolText, String)>,
     /// What reports call it: its designation, else its code.
     pub name: String,
     /// The position on the ground, world space, displayed height.
@@ -99,7 +102,11 @@ fn symbol_at(
     let world = frame.point(at, table.crs.as_ref())?;
     let ground = frame.on_ground(lattice, at, world)?;
     let text = |field| stated_text(table, field).map(|text| text.as_str());
-    let found = FoundSymbol { code, symbol, texts: placed(text), name: name(text, &table.sidc), ground };
+    let texts = placed_for(&code, text);
+    let fields =
+        TEXT_FIELDS.iter().filter_map(|row| Some((row.field, text(row.field)?.to_owned()))).collect();
+    let symbol = engaged(symbol, &code, EngagementBar::of(text), &texts);
+    let found = FoundSymbol { code, symbol, texts, fields, name: name(text, &table.sidc), ground };
     Ok(found.finished(table, &Attributes::default(), findings))
 }
 
@@ -141,7 +148,9 @@ fn read_features(
             .filter_map(|(field, text)| Some((*field, written(&attributes.evaluated(text)?)?)))
             .collect();
         let text = |field| texts.iter().find(|text| text.0 == field).map(|text| text.1.as_str());
-        let found = FoundSymbol { code, symbol, texts: placed(text), name: name(text, &stated), ground };
+        let (lines, name) = (placed_for(&code, text), name(text, &stated));
+        let symbol = engaged(symbol, &code, EngagementBar::of(text), &lines);
+        let found = FoundSymbol { code, symbol, texts: lines, fields: texts, name, ground };
         symbols.push(found.finished(table, &attributes, findings));
         if symbols.len() > SCENE_SYMBOLS.count() {
             break;
@@ -173,6 +182,19 @@ fn stated_text(table: &SymbolTable, field: SymbolText) -> Option<&Stated<String>
     table.texts().into_iter().find(|(name, _)| *name == key)?.1.as_ref()
 }
 
+/// The symbol with its engagement bar, if it has one.
+pub(super) fn engaged(
+    symbol: MilitarySymbol,
+    code: &SymbolCode,
+    bar: Option<EngagementBar<'_>>,
+    texts: &[SymbolNote],
+) -> MilitarySymbol {
+    match bar {
+        Some(bar) => symbol.with_engagement_bar(code, bar, texts),
+        None => symbol,
+    }
+}
+
 /// What reports call a symbol.
 pub(super) fn name<'a>(text: impl Fn(SymbolText) -> Option<&'a str>, code: &str) -> String {
     match (text(SymbolText::UniqueDesignation), text(SymbolText::HigherFormation)) {
@@ -187,6 +209,7 @@ pub(super) struct FoundSymbol {
     pub code: SymbolCode,
     pub symbol: MilitarySymbol,
     pub texts: Vec<SymbolNote>,
+    pub fields: Vec<(SymbolText, String)>,
     pub name: String,
     pub ground: Vec3,
 }
@@ -218,7 +241,7 @@ impl FoundSymbol {
 
     /// The symbol of the scene; what its code has that is not drawn is told at the bytes `span` of the scene file.
     pub fn looking(self, look: SymbolLook, span: &Range<usize>, findings: &mut SceneFindings) -> SceneSymbol {
-        let Self { code, symbol, texts, name, ground } = self;
+        let Self { code, symbol, texts, fields, name, ground } = self;
         for note in &symbol.notes {
             let message = format!("symbol {name}: {note}");
             if !findings.state(&message) {
@@ -227,7 +250,7 @@ impl FoundSymbol {
         }
         let SymbolLook { direction_deg, size, rank } = look;
         let direction_rad = direction_deg.map(|degrees| degrees.to_radians() as f32);
-        SceneSymbol { code, symbol, texts, name, ground, direction_rad, size, rank }
+        SceneSymbol { code, symbol, texts, fields, name, ground, direction_rad, size, rank }
     }
 }
 

@@ -17,7 +17,7 @@ use crate::attributes::{Attributes, written};
 use crate::builder::SceneBuilder;
 use crate::feature::FeatureKind;
 use crate::graphics::graphic;
-use crate::military::{FoundSymbol, SceneSymbol, SymbolLook, SymbolSize, frameless, name};
+use crate::military::{FoundSymbol, SceneSymbol, SymbolLook, SymbolSize, engaged, frameless, name};
 use crate::scene_graphic::SceneGraphic;
 use crate::shape_place::place;
 use crate::sources::Sources;
@@ -34,10 +34,11 @@ use sandtable_description::words::{GraphicSide, GraphicStatus};
 use sandtable_geom::crs::Crs;
 use sandtable_geom::rect::Rect;
 use sandtable_symbology::code::SymbolCode;
+use sandtable_symbology::engagement::EngagementBar;
 use sandtable_symbology::fields::SymbolSet;
 use sandtable_symbology::graphic::kind::GraphicKind;
 use sandtable_symbology::symbol::MilitarySymbol;
-use sandtable_symbology::texts::{SymbolText, TEXT_FIELDS, placed};
+use sandtable_symbology::texts::{SymbolText, TEXT_FIELDS, placed_for};
 use sandtable_terrain::lattice::Lattice;
 use sandtable_vector::feature::{Geometry, Polygon};
 use sandtable_vector::moment::Moment;
@@ -200,8 +201,10 @@ impl<'a> Overlay<'a> {
         let called =
             text(attributes, schema::NAME).filter(|_| field(SymbolText::UniqueDesignation).is_none());
         let called = called.unwrap_or_else(|| name(field, stated));
+        let notes = placed_for(&code, field);
+        let symbol = engaged(symbol, &code, EngagementBar::of(field), &notes);
         let found =
-            FoundSymbol { code, symbol, texts: placed(field), name: called, ground: ground.as_vec3() };
+            FoundSymbol { code, symbol, texts: notes, fields: texts, name: called, ground: ground.as_vec3() };
         let look = SymbolLook {
             direction_deg: number(attributes, schema::DIRECTION),
             size: SymbolSize::stated(self.table.size, self.table.extent),
@@ -314,6 +317,10 @@ impl<'a> Overlay<'a> {
             from: text(attributes, schema::DTG),
             until: text(attributes, schema::DTG_2),
             elevations: None,
+            equipment: text(attributes, schema::TYPE),
+            quantity: text(attributes, schema::QUANTITY),
+            location: text(attributes, schema::LOCATION),
+            direction: number(attributes, schema::DIRECTION),
             distances: numbers(schema::DISTANCES),
             azimuths: numbers(schema::AZIMUTHS),
         }
@@ -377,7 +384,7 @@ fn at_time(features: Vec<Attributes>, time: Option<Moment>) -> Vec<Attributes> {
         return features.into_iter().filter(is_there).collect();
     }
     // The last state of each thing, in the place of its first.
-    let mut last: BTreeMap<String, (usize, Option<Moment>)> = BTreeMap::new();
+    let mut last: BTreeMap<String, (Vec<usize>, Option<Moment>)> = BTreeMap::new();
     let mut shown: Vec<Option<Attributes>> = Vec::new();
     for attributes in features {
         let begin = moment(&attributes, schema::BEGIN);
@@ -388,14 +395,19 @@ fn at_time(features: Vec<Attributes>, time: Option<Moment>) -> Vec<Attributes> {
             continue;
         };
         match last.get_mut(&id) {
-            Some((place, known)) => {
-                if begin >= *known {
-                    *known = begin;
-                    shown[*place] = Some(attributes);
-                }
+            Some((places, known)) if begin > *known => {
+                // The first place is kept; other shapes of the state before are gone.
+                places.drain(1..).for_each(|place| shown[place] = None);
+                *known = begin;
+                shown[places[0]] = Some(attributes);
             }
+            Some((places, known)) if begin == *known => {
+                places.push(shown.len());
+                shown.push(Some(attributes));
+            }
+            Some(_) => {}
             None => {
-                last.insert(id, (shown.len(), begin));
+                last.insert(id, (vec![shown.len()], begin));
                 shown.push(Some(attributes));
             }
         }

@@ -1,4 +1,5 @@
-//! Places the viewsheds, lines of sight and ranges of a document; where the picture's ground holds means of samples, computes
+//! Places the viewsheds, lines of sight and ranges of a document, and tells every observer and target that has no place;
+//! where the picture's ground holds means of samples, computes
 //! visibility here, on all samples within reach.
 
 use glam::DVec2;
@@ -39,15 +40,15 @@ pub(super) fn lay(exact: &ExactGround<'_>, collected: &mut SceneBuilder) -> Sigh
     let mut layers = SightLayers::default();
     for table in &document.viewsheds {
         let layer = viewshed(table, exact, collected);
-        layers.viewsheds.extend(collected.errors.keep(layer));
+        layers.viewsheds.extend(collected.errors.keep(layer).flatten());
     }
     for table in &document.sights {
         let layer = sight(table, exact, collected);
-        layers.sights.extend(collected.errors.keep(layer));
+        layers.sights.extend(collected.errors.keep(layer).flatten());
     }
     for table in &document.ranges {
         let layer = range(table, exact, collected);
-        layers.ranges.extend(collected.errors.keep(layer));
+        layers.ranges.extend(collected.errors.keep(layer).flatten());
     }
     layers
 }
@@ -56,14 +57,18 @@ fn sector(azimuths: Option<[f64; 2]>) -> Sector {
     azimuths.map_or(Sector::ALL, |[from, to]| Sector::between(from, to))
 }
 
+/// A viewshed; `None` where `collected` has the errors of its observers.
 fn viewshed(
     table: &ViewshedTable,
     exact: &ExactGround<'_>,
     collected: &mut SceneBuilder,
-) -> Result<SceneViewshed, Diagnostic> {
-    let (frame, lattice) = (exact.frame, exact.lattice);
+) -> Result<Option<SceneViewshed>, Diagnostic> {
+    let frame = exact.frame;
     let document = frame.document;
-    let observers = places(frame, lattice, &table.observers, table.crs.as_ref(), MOST_OBSERVERS)?;
+    check_count(document, &table.observers, MOST_OBSERVERS)?;
+    let Some(observers) = places(exact, &table.observers, table.crs.as_ref(), collected) else {
+        return Ok(None);
+    };
     let options = |at: &DVec2| ViewshedOptions {
         target_above_m: table.target_height,
         range_m: table.range.unwrap_or(f64::INFINITY),
@@ -86,17 +91,20 @@ fn viewshed(
         let span = table.observers.span().unwrap_or_default();
         collected.findings.add_with_help(FindingCode::RangeMissing, span, message, help);
     }
-    Ok(layer)
+    Ok(Some(layer))
 }
 
+/// Lines of sight; `None` where `collected` has the errors of their ends.
 fn sight(
     table: &SightTable,
     exact: &ExactGround<'_>,
     collected: &mut SceneBuilder,
-) -> Result<SceneSight, Diagnostic> {
-    let (frame, lattice) = (exact.frame, exact.lattice);
-    let observer = place(frame, lattice, &table.observer, table.crs.as_ref())?;
-    let targets = places(frame, lattice, &table.targets, table.crs.as_ref(), MOST_TARGETS)?;
+) -> Result<Option<SceneSight>, Diagnostic> {
+    let (frame, crs) = (exact.frame, table.crs.as_ref());
+    check_count(frame.document, &table.targets, MOST_TARGETS)?;
+    let observer = collected.errors.keep(place(exact, &table.observer, crs));
+    let targets = places(exact, &table.targets, crs, collected);
+    let Some((observer, targets)) = observer.zip(targets) else { return Ok(None) };
     let name = table.name.clone().unwrap_or_default();
     let origin = FeatureOrigin::stated(table.observer.span());
     let mut layer = SceneSight {
@@ -108,18 +116,20 @@ fn sight(
     };
     let help = "look less far";
     find_sight(&mut layer, exact).map_err(|error| failed(frame.document, &table.targets, error, help))?;
-    Ok(layer)
+    Ok(Some(layer))
 }
 
+/// Rings and fans; `None` where `collected` has the errors of their place and distances.
 fn range(
     table: &RangeTable,
     exact: &ExactGround<'_>,
     collected: &mut SceneBuilder,
-) -> Result<SceneRange, Diagnostic> {
-    let (frame, lattice) = (exact.frame, exact.lattice);
+) -> Result<Option<SceneRange>, Diagnostic> {
+    let frame = exact.frame;
     let document = frame.document;
-    let at = place(frame, lattice, &table.at, table.crs.as_ref())?;
-    let distances_m = distances(document, &table.distances)?;
+    let at = collected.errors.keep(place(exact, &table.at, table.crs.as_ref()));
+    let distances_m = collected.errors.keep(distances(document, &table.distances));
+    let Some((at, distances_m)) = at.zip(distances_m) else { return Ok(None) };
     let farthest_m = distances_m.last().copied().unwrap_or(0.0);
     let name = table.name.clone().unwrap_or_default();
     let feature = collected.add(FeatureKind::Sight, name.clone(), FeatureOrigin::stated(table.at.span()));
@@ -148,7 +158,7 @@ fn range(
             find_viewshed(&layer.sight, exact).map_err(|error| failed(document, &table.at, error, help))?;
         layer.found = part.map(|part| layer.seen_on(&part, frame.origin));
     }
-    Ok(layer)
+    Ok(Some(layer))
 }
 
 /// Finds what is in sight on all samples where the picture's ground is of means of them, and gives the ground that this
@@ -199,31 +209,35 @@ fn end(frame: &WorldFrame<'_>, world: DVec2, above_m: f64) -> SightEnd {
 }
 
 /// A place on the ground, world X and Y.
-fn place(
-    frame: &WorldFrame<'_>,
-    lattice: &Lattice,
-    at: &Stated<Position>,
-    crs: Option<&Crs>,
-) -> Result<DVec2, Diagnostic> {
-    let world = frame.point(at, crs)?;
-    frame.on_ground(lattice, at, world)?;
+fn place(exact: &ExactGround<'_>, at: &Stated<Position>, crs: Option<&Crs>) -> Result<DVec2, Diagnostic> {
+    let world = exact.frame.point(at, crs)?;
+    exact.frame.on_ground(exact.lattice, at, world)?;
     Ok(world)
 }
 
-/// Places on the ground, at most `most`.
-fn places(
-    frame: &WorldFrame<'_>,
-    lattice: &Lattice,
-    stated: &Stated<Vec<Position>>,
-    crs: Option<&Crs>,
+/// Checks that there are no more than `most` places.
+fn check_count(
+    document: &Document,
+    stated: &Stated<Vec<Stated<Position>>>,
     most: usize,
-) -> Result<Vec<DVec2>, Diagnostic> {
-    if stated.len() > most {
-        let message = format!("{} places are more than the {most} allowed here", stated.len());
-        return Err(frame.document.error(stated, message).with_help("state fewer, or use several tables"));
+) -> Result<(), Diagnostic> {
+    if stated.len() <= most {
+        return Ok(());
     }
-    let span = stated.span().unwrap_or_default();
-    stated.iter().map(|&at| place(frame, lattice, &Stated::new(at, span.clone()), crs)).collect()
+    let message = format!("{} places are more than the {most} allowed here", stated.len());
+    Err(document.error(stated, message).with_help("state fewer, or use several tables"))
+}
+
+/// Places on the ground; `None` where some of them have none, with an error for each of these in `collected`.
+fn places(
+    exact: &ExactGround<'_>,
+    stated: &[Stated<Position>],
+    crs: Option<&Crs>,
+    collected: &mut SceneBuilder,
+) -> Option<Vec<DVec2>> {
+    let placed = stated.iter().filter_map(|at| collected.errors.keep(place(exact, at, crs)));
+    let placed: Vec<DVec2> = placed.collect();
+    (placed.len() == stated.len()).then_some(placed)
 }
 
 fn distances(document: &Document, stated: &Stated<Vec<f64>>) -> Result<Vec<f64>, Diagnostic> {

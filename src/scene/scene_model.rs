@@ -77,7 +77,7 @@ pub struct SceneModel {
     /// The posts under water, which earthworks leave as they are.
     pub held: Arc<HeldPosts>,
     /// The posts that its earthworks changed, with their heights before.
-    pub(crate) dug: Vec<Change>,
+    pub dug: Vec<Change>,
     /// Answers height queries in map coordinates.
     pub heights: HeightService,
     pub(crate) ramp: RampSource,

@@ -48,6 +48,8 @@ pub(super) fn shape_loaded(
     shape(document, &sources, &mut loaded.lattice, &mut collected);
     collected.errors.finish().map_err(BuildErrors::into_first)?;
     models::level_pads(&sources, &mut loaded.lattice)?;
+    sources.report_reading(&mut collected.findings);
+    loaded.findings = collected.findings;
     Ok(collected.decks)
 }
 

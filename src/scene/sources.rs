@@ -365,12 +365,7 @@ impl<'a> Sources<'a> {
     }
 
     /// The error of a file that cannot be read, at the key that caused it.
-    fn unread(
-        &self,
-        file: &Stated<String>,
-        source: &FeatureSource,
-        error: VectorError,
-    ) -> Diagnostic {
+    fn unread(&self, file: &Stated<String>, source: &FeatureSource, error: VectorError) -> Diagnostic {
         let document = self.frame.document;
         match (&error, &source.layer) {
             (VectorError::NoSuchLayer { wanted, suggestion, names }, Some(key)) => {

@@ -6,6 +6,7 @@ use crate::api::ApiNeed::{Optional, Required};
 use crate::api::ApiValue::{Count, Number, Text, Words};
 use crate::{health, ready};
 use sandtable_base::message::choice::Choice;
+use sandtable_geom::position::notation::PositionForm;
 use sandtable_query::service::{PathPrefix, ServiceLimits};
 use sandtable_raster::height_datum::HeightDatum;
 use sandtable_terrain::query::Interpolation;
@@ -103,6 +104,14 @@ const CRS: ApiParameter = parameter(
      16N 750050 4018050 or 36.277N 84.215W, are on WGS 84 and may take the place of any two numbers",
 );
 
+const POSITIONS: ApiParameter = parameter(
+    "positions",
+    Words(|| PositionForm::WORDS.map(|(_, word, _)| word).to_vec()),
+    Optional("numbers alone"),
+    "every location of the answer has its position on WGS 84 in this form, too: a grid reference without and with spaces, \
+     UTM, decimal degrees, with minutes, with seconds",
+);
+
 const OBSERVER_HEIGHT: ApiParameter =
     parameter("observer_height", Number(0.0, 100_000.0), Optional("2"), "meters of the eye above the ground");
 
@@ -162,6 +171,7 @@ pub const HEIGHTS: ApiAddress = ApiAddress {
             "heights above the WGS 84 ellipsoid or the EGM96 geoid",
         ),
         CRS,
+        POSITIONS,
     ],
 };
 
@@ -192,6 +202,7 @@ pub const LOS: ApiAddress = ApiAddress {
         REFRACTION,
         EARTH,
         CRS,
+        POSITIONS,
     ],
 };
 
@@ -209,6 +220,7 @@ pub const PROFILE: ApiAddress = ApiAddress {
             "the line's vertices; or an encoded polyline",
         ),
         CRS,
+        POSITIONS,
     ],
 };
 
@@ -243,6 +255,7 @@ pub const VIEWSHED: ApiAddress = ApiAddress {
             "every post, or how many of each kind",
         ),
         CRS,
+        POSITIONS,
     ],
 };
 

@@ -3,7 +3,8 @@
 //! Without `crs`, coordinates are WGS 84 latitude and longitude, latitude first, as in the Open Topo Data and Google
 //! APIs. With `crs=EPSG:n` they are x,y of that system: easting and northing, or longitude and latitude. With
 //! `crs=native` they are x,y of the dataset's own system, as in `sandtable height`. A position may also be a text that
-//! states its own system, WGS 84: a grid reference, UTM, or latitude and longitude with their letters.
+//! states its own system, WGS 84: a grid reference, UTM, or latitude and longitude with their letters. With
+//! `positions=FORM`, every location of the answer also has `position`, a text in that form, which is read back.
 
 use glam::DVec2;
 use serde::Serialize;
@@ -13,6 +14,7 @@ use crate::polyline;
 use crate::reply::{HttpError, quoted};
 use sandtable_geom::crs::Crs;
 use sandtable_geom::position::Position;
+use sandtable_geom::position::notation::PositionForm;
 use sandtable_query::dataset::check_datums;
 
 /// The coordinates of a request.
@@ -21,7 +23,12 @@ pub struct Coordinates {
     pub crs: Crs,
     /// Their order and names.
     pub axes: AxisOrder,
+    /// The form in which answers also write positions, on WGS 84; numbers alone where `None`.
+    pub form: Option<PositionForm>,
 }
+
+/// The most bytes that a position in a form adds to a location of an answer, with its key.
+pub const POSITION_BYTES: usize = 72;
 
 /// The order and names of two coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,30 +39,40 @@ pub enum AxisOrder {
 }
 
 /// A position in an answer.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Location {
     /// Degrees.
-    LatLng { lat: f64, lng: f64 },
+    LatLng {
+        lat: f64,
+        lng: f64,
+        /// In the form of the request.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        position: Option<String>,
+    },
     /// Coordinates of a named system.
     Xy {
         /// Easting or longitude.
         x: f64,
         /// Northing or latitude.
         y: f64,
+        /// In the form of the request.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        position: Option<String>,
     },
 }
 
 impl Coordinates {
-    /// Parses the parameter `crs`, for a dataset in the system `native`.
+    /// Parses the parameters `crs` and `positions`, for a dataset in the system `native`.
     pub fn read(parameters: &Parameters, native: &Crs, wgs84: &Crs) -> Result<Self, HttpError> {
+        let form = form(parameters, native)?;
         let coordinates = match parameters.get("crs") {
-            None => Self { crs: wgs84.clone(), axes: AxisOrder::LatLng },
-            Some("native") => return Ok(Self { crs: native.clone(), axes: AxisOrder::Xy }),
+            None => Self { crs: wgs84.clone(), axes: AxisOrder::LatLng, form },
+            Some("native") => return Ok(Self { crs: native.clone(), axes: AxisOrder::Xy, form }),
             Some(text) => {
                 let crs = Crs::from_epsg(epsg(text)?);
                 let crs = crs.map_err(|error| HttpError::wrong(format!("crs: {error}")))?;
-                Self { crs, axes: AxisOrder::Xy }
+                Self { crs, axes: AxisOrder::Xy, form }
             }
         };
         check_datums(&coordinates.crs, native).map_err(|error| {
@@ -105,11 +122,22 @@ impl Coordinates {
     }
 
     /// A position as a location of an answer.
-    pub fn location(&self, DVec2 { x, y }: DVec2) -> Location {
+    pub fn location(&self, at: DVec2) -> Location {
+        let (DVec2 { x, y }, position) = (at, self.written(&self.crs, at));
         match self.axes {
-            AxisOrder::LatLng => Location::LatLng { lat: y, lng: x },
-            AxisOrder::Xy => Location::Xy { x, y },
+            AxisOrder::LatLng => Location::LatLng { lat: y, lng: x, position },
+            AxisOrder::Xy => Location::Xy { x, y, position },
         }
+    }
+
+    /// A position in `crs` in the form of the request; `None` without one, and where it is no place on Earth.
+    pub fn written(&self, crs: &Crs, at: DVec2) -> Option<String> {
+        self.form.and_then(|form| form.write(crs, at).ok())
+    }
+
+    /// The most bytes that positions in the form of the request add to an answer of `count` locations.
+    pub fn form_bytes(&self, count: usize) -> usize {
+        if self.form.is_some() { count * POSITION_BYTES } else { 0 }
     }
 
     fn pair(&self, text: &str) -> Option<DVec2> {
@@ -168,6 +196,17 @@ fn is_in_words(text: &str) -> bool {
         }
 }
 
+/// The form that `positions` names, which needs a dataset that lies somewhere on Earth.
+fn form(parameters: &Parameters, native: &Crs) -> Result<Option<PositionForm>, HttpError> {
+    let form = parameters.word("positions", PositionForm::WORDS.map(|(form, word, _)| (word, form)))?;
+    if form.is_some() && *native == Crs::local() {
+        return Err(HttpError::wrong(
+            "positions: the dataset states no coordinate system, so that only its x and y are known",
+        ));
+    }
+    Ok(form)
+}
+
 fn epsg(text: &str) -> Result<u32, HttpError> {
     let code = text.split_once(':').filter(|(authority, _)| authority.eq_ignore_ascii_case("epsg"));
     code.and_then(|(_, code)| code.parse().ok()).ok_or_else(|| {
@@ -182,7 +221,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn lat_lng() -> Coordinates {
-        Coordinates { crs: Crs::wgs84(), axes: AxisOrder::LatLng }
+        Coordinates { crs: Crs::wgs84(), axes: AxisOrder::LatLng, form: None }
     }
 
     #[test]
@@ -196,7 +235,8 @@ mod tests {
 
     #[test]
     fn a_position_in_words_states_its_own_system() {
-        let zone = Coordinates { crs: Crs::from_epsg(32616).expect("a zone"), axes: AxisOrder::Xy };
+        let crs = Crs::from_epsg(32616).expect("a zone");
+        let zone = Coordinates { crs, axes: AxisOrder::Xy, form: None };
         let texts = "16SGF500180|16N 750050 4018050|750050,4018050";
         assert_eq!(zone.positions(texts, 9), Ok(vec![DVec2::new(750_050.0, 4_018_050.0); 3]));
         let expected = DVec2::new(-84.215, 36.277);
@@ -213,9 +253,39 @@ mod tests {
             let refusal = lat_lng().positions(wrong, 9).expect_err(wrong);
             assert!(refusal.reason().contains(part), "{refusal:?}");
         }
-        let native = Coordinates { crs: Crs::local(), axes: AxisOrder::Xy };
+        let native = Coordinates { crs: Crs::local(), axes: AxisOrder::Xy, form: None };
         let refusal = native.position("to", "16SGF500180").expect_err("no system");
         assert!(refusal.reason().contains("state no coordinate system"), "{refusal:?}");
+    }
+
+    #[test]
+    fn answers_write_positions_in_the_form_of_the_request_and_read_them_back() {
+        let crs = Crs::from_epsg(32616).expect("a zone");
+        let read = |query: &str| {
+            let read = Coordinates::read(&form(query), &crs, &Crs::wgs84());
+            read.unwrap_or_else(|error| panic!("{query}: {error:?}"))
+        };
+        let at = DVec2::new(750_050.0, 4_018_050.0);
+        for (_, word, _) in PositionForm::WORDS {
+            let zone = read(&format!("crs=EPSG:32616&positions={word}"));
+            let json = serde_json::to_value(zone.location(at)).expect("JSON");
+            let written = json["position"].as_str().unwrap_or_else(|| panic!("{word}: {json}"));
+            let again = zone.position("from", written).unwrap_or_else(|error| panic!("{word}: {error:?}"));
+            assert!(again.distance(at) < 0.75, "{word}: {written} is {again}");
+            assert!(written.len() + 14 <= POSITION_BYTES, "{written}");
+        }
+        let grid = read("positions=usng").location(DVec2::new(-84.215, 36.277));
+        let json = serde_json::to_string(&grid).expect("JSON");
+        assert_eq!(json, r#"{"lat":36.277,"lng":-84.215,"position":"16S GF 50154 18271"}"#);
+        let beyond = read("positions=mgrs").location(DVec2::NAN);
+        assert!(!serde_json::to_string(&beyond).expect("JSON").contains("position"));
+        assert!(!serde_json::to_string(&read("").location(at)).expect("JSON").contains("position"));
+
+        let wrong = Coordinates::read(&form("positions=osgb"), &crs, &Crs::wgs84()).expect_err("no form");
+        assert!(wrong.reason().contains("there are mgrs, usng, utm, dd, dm, dms"), "{wrong:?}");
+        let local = form("crs=native&positions=mgrs");
+        let local = Coordinates::read(&local, &Crs::local(), &Crs::wgs84()).expect_err("no system");
+        assert!(local.reason().contains("states no coordinate system"), "{local:?}");
     }
 
     #[test]

@@ -96,6 +96,7 @@ impl Datasets {
             let dataset = Dataset::open(file.path(), &options.dataset)?;
             let warn = |warning: &str| (options.write_line)(&format!("warning: {warning}"));
             dataset.warning().into_iter().for_each(warn);
+            dataset.reading_notes().iter().for_each(|note| (options.write_line)(&format!("note: {note}")));
             dataset.ground_note().iter().for_each(|note| (options.write_line)(&format!("note: {note}")));
             Ok(ServedDataset { name: file.name().to_owned(), dataset })
         };

@@ -13,6 +13,7 @@
 //! | `above` | heights above the WGS 84 `ellipsoid` or the `egm96` geoid, where the dataset says what it counts from |
 //! | `vertical_datum` per result | what the height is counted from, where that is known |
 //! | `crs` | coordinates in another system; see [`coordinates`](crate::coordinates) |
+//! | `positions` | each position also as text, such as a grid reference: `position` of a location, of the properties in GeoJSON |
 
 use std::io;
 
@@ -104,7 +105,11 @@ impl Query for HeightsQuery {
                 self.surface_of(served) == Surface::Source || served.dataset.prepared_ground().is_some();
             is_prepared && !served.dataset.reads_windows()
         });
-        if is_made && self.above.is_none() && self.positions.len() <= LIGHT_POINTS {
+        if is_made
+            && self.above.is_none()
+            && self.coordinates.form.is_none()
+            && self.positions.len() <= LIGHT_POINTS
+        {
             QueryWeight::Light
         } else {
             QueryWeight::Heavy
@@ -112,7 +117,7 @@ impl Query for HeightsQuery {
     }
 
     fn most_bytes(&self, _: &Service) -> usize {
-        self.positions.len() * RESULT_BYTES
+        self.positions.len() * RESULT_BYTES + self.coordinates.form_bytes(self.positions.len())
     }
 
     fn answer(self, service: &Service, _: &StopFlag) -> Result<Response, HttpError> {
@@ -148,6 +153,7 @@ impl Query for HeightsQuery {
                             status: found.answer.status(),
                             dataset: dataset(found),
                             vertical_datum: datum(found),
+                            position: self.coordinates.written(&self.coordinates.crs, at),
                         },
                     })),
                 },
@@ -364,4 +370,6 @@ struct FeatureProperties<'a> {
     dataset: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]
     vertical_datum: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    position: Option<String>,
 }

@@ -38,7 +38,7 @@ struct LookupResult {
 
 impl Query for LookupQuery {
     fn read(service: &Service, _: &str, parameters: &Parameters) -> Result<Self, HttpError> {
-        let coordinates = Coordinates { crs: service.wgs84.clone(), axes: AxisOrder::LatLng };
+        let coordinates = Coordinates { crs: service.wgs84.clone(), axes: AxisOrder::LatLng, form: None };
         let checks =
             service.datasets.all().iter().map(|served| check_datums(&coordinates.crs, &served.dataset.crs()));
         let checks: Vec<_> = checks.collect();

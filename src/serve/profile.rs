@@ -72,7 +72,8 @@ impl Query for ProfileQuery {
         // A warped ground has about as many posts; twice as many are enough for any.
         let on_leg = 4 * (source.width as usize + source.height as usize) + 4;
         let most = service.limits.max_points as usize * STATIONS_PER_POINT;
-        (self.vertices.len() * on_leg).min(most) * STATION_BYTES
+        let stations = (self.vertices.len() * on_leg).min(most);
+        stations * STATION_BYTES + self.ground.coordinates.form_bytes(stations)
     }
 
     fn answer(self, service: &Service, stop: &StopFlag) -> Result<Response, HttpError> {

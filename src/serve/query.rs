@@ -58,7 +58,7 @@ pub struct GroundQuery {
 }
 
 impl GroundQuery {
-    /// Reads `dataset` and `crs`; refuses parameters that the address does not have.
+    /// Reads `dataset`, `crs` and `positions`; refuses parameters that the address does not have.
     pub fn read(service: &Service, parameters: &Parameters, address: &ApiAddress) -> Result<Self, HttpError> {
         parameters.allow_only(&address.names())?;
         let dataset = service.datasets.find_one(parameters.get("dataset"))?;

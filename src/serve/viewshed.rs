@@ -116,14 +116,16 @@ impl Query for ViewshedQuery {
         })?;
         let viewshed = viewshed.ok_or_else(HttpError::stopped)?;
         let counts = window.counts(&viewshed);
-        let xy = |DVec2 { x, y }: DVec2| Location::Xy { x, y };
+        let south_west = lattice.map_position(window.0.first);
+        let position = self.ground.coordinates.written(&ground.crs, south_west);
+        let xy = |DVec2 { x, y }: DVec2, position| Location::Xy { x, y, position };
         Ok(Json(ViewshedAnswer {
             dataset: &served.name,
             crs: ground.crs.name(),
             columns: window.0.width() as u32,
             rows: window.0.height() as u32,
-            south_west: xy(lattice.map_position(window.0.first)),
-            cell: xy(lattice.cell()),
+            south_west: xy(south_west, position),
+            cell: xy(lattice.cell(), None),
             visible_area_m2: counts.visible as f64 * lattice.cell().element_product(),
             counts,
             runs: (self.detail == ViewshedDetail::Runs).then(|| window.runs(&viewshed, lattice.held().first)),

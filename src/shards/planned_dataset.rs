@@ -30,6 +30,9 @@ pub struct PlannedDataset {
     height_encoding: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     vertical_datum: Option<String>,
+    /// Meters in the unit of elevations.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    vertical_unit: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     raw: Option<String>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -49,7 +52,8 @@ pub struct QueriedDataset {
 impl PlannedDataset {
     /// The dataset at `file` for a plan in `folder`. `crs` is the stated system of positions.
     pub fn new(file: &Path, options: &DatasetOptions, crs: Option<&Crs>, folder: &Path) -> Self {
-        let DemOptions { height_scale, height_offset, nodata, height_encoding, raw, .. } = options.dem;
+        let DemOptions { height_scale, height_offset, nodata, height_encoding, vertical_unit, raw, .. } =
+            options.dem;
         Self {
             file: written(file, folder),
             crs: crs.map(|crs| crs.name().to_owned()),
@@ -58,6 +62,7 @@ impl PlannedDataset {
             nodata,
             height_encoding: height_encoding.map(|encoding| encoding.to_string()),
             vertical_datum: options.dem.vertical_datum.clone(),
+            vertical_unit,
             raw: raw.map(|raw| raw.to_string()),
             allow: options.allowed.iter().map(|allowed| written(allowed, folder)).collect(),
         }
@@ -88,6 +93,7 @@ impl PlannedDataset {
             height_encoding,
             raw,
             vertical_datum: self.vertical_datum.clone(),
+            vertical_unit: self.vertical_unit,
             ..DemOptions::default()
         };
         let allowed = self.allow.iter().map(|allowed| folder.join(allowed)).collect();

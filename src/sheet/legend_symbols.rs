@@ -49,7 +49,7 @@ fn entries(codes: impl Iterator<Item = SymbolCode>, is_print: bool) -> Vec<Legen
         let kind = code.kind();
         let side = SIDES.iter().position(|&side| side == code.identity).unwrap_or(SIDES.len());
         sides.entry(side).or_insert(SymbolCode { entity: 0, ..kind });
-        if entities::find(kind.set, kind.entity).is_some() {
+        if entities::of(&kind).is_some() {
             kinds.entry((kind.set.number(), kind.entity)).or_insert((0, kind)).0 += 1;
         }
     }
@@ -60,9 +60,7 @@ fn entries(codes: impl Iterator<Item = SymbolCode>, is_print: bool) -> Vec<Legen
     let is_told = sides.len() > 1;
     let sides = sides.into_values().filter(|_| is_told);
     let side = |code: SymbolCode| (code.identity.name().split(',').next().unwrap_or_default(), code);
-    let kind = |(_, code): (usize, SymbolCode)| {
-        entities::find(code.set, code.entity).map(|entity| (entity.name, code))
-    };
+    let kind = |(_, code): (usize, SymbolCode)| entities::of(&code).map(|entity| (entity.name, code));
     let entry = |(name, code): (&str, SymbolCode)| {
         let symbol = MilitarySymbol::new(&code)?;
         let symbol = if is_print { symbol.in_black_and_white() } else { symbol };

@@ -46,6 +46,8 @@ pub struct SymbolCode {
     /// Digit 23 of a code of 30 digits: 0 for the set's own frame, 1 space, 2 air, 3 land unit, 4 equipment or sea surface,
     /// 5 installation, 6 dismounted individual, 7 subsurface, 8 activity, 9 cyberspace.
     pub frame_shape: u8,
+    /// Digits 28 to 30 of a code of 30 digits: the number of the country; 0 for none.
+    pub country: u16,
     /// The function of a code of 15 letters that the table of letter codes lacks: the entity is unknown.
     pub unknown_function: Option<[u8; 6]>,
 }
@@ -146,6 +148,7 @@ impl SymbolCode {
             entity: number(11, 6),
             modifiers: [extended(21, 17), extended(22, 19)],
             frame_shape: if code.len() == 30 { number(23, 1) as u8 } else { 0 },
+            country: if code.len() == 30 { number(28, 3) as u16 } else { 0 },
             unknown_function: None,
         })
     }
@@ -180,9 +183,15 @@ impl SymbolCode {
             role: SymbolRole::None,
             amplifier: SymbolAmplifier::None,
             modifiers: [0; 2],
+            country: 0,
             unknown_function: None,
             ..*self
         }
+    }
+
+    /// The frame that digit 23 states, 0 for that of the set: only editions with the changes of 2525E have the digit.
+    pub fn stated_frame(&self) -> u8 {
+        if self.version.has_changes_of_e() { self.frame_shape } else { 0 }
     }
 
     /// Whether it is a joker or faker: a friend who plays a suspect or an enemy in an exercise.
@@ -228,6 +237,9 @@ mod tests {
     fn a_code_of_thirty_digits_gives_frame_shape_and_common_modifiers() {
         let code = SymbolCode::parse("130310001612110001041020000000").expect("valid");
         assert_eq!((code.version, code.modifiers, code.frame_shape), (SymbolVersion::E, [101, 4], 2));
+        assert_eq!((code.stated_frame(), code.country), (2, 0));
+        let code = SymbolCode::parse("100310001612110001041020000276").expect("valid");
+        assert_eq!((code.stated_frame(), code.country, code.kind().country), (0, 276, 0));
     }
 
     #[test]

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! drawing   := statement { ";" statement }
-//! statement := { "fill" | "solid" | "pale" | "light" | "thin" | "bold" | "broad" } ( path | circle | text | piece )
+//! statement := { style } ( path | circle | text | piece )
+//! style     := "fill" | "solid" | "pale" | "light" | "fine" | "thin" | "bold" | "broad" | "dashed" | "rimless" | COLOR | COLOR "-line"
 //! path      := "M" x,y { "M" x,y | "L" x,y | "Q" x,y x,y | "C" x,y x,y x,y | "A" center radii from to | "Z" }
 //! circle    := "circle" x,y radius
 //! text      := "text" size [ x,y ] WORD        centered; size of the em
@@ -11,7 +12,9 @@
 //!
 //! `A` is an arc of an axis-parallel ellipse, from one angle to another in degrees, clockwise from the right; a straight
 //! line leads to its start. A path is stroked in black; `fill` fills it in black instead, `solid` fills it in black under its
-//! stroke, `pale` in near white under its stroke and `light` in near white alone, and the others change the stroke's width. A piece may hold other pieces.
+//! stroke, `pale` in near white under its stroke and `light` in near white alone, a color in that color under its stroke or,
+//! after `rimless`, alone; the others change the stroke. Of a text a color is that of its letters. A piece may hold other
+//! pieces.
 
 use std::f32::consts::FRAC_PI_4;
 
@@ -22,6 +25,7 @@ use crate::pieces::piece;
 
 /// Width of the lines of an icon. The figures of the standard have about this share of the frame's height.
 const LINE: f32 = 3.0;
+const FINE: f32 = 1.2;
 const THIN: f32 = 2.0;
 const BOLD: f32 = 4.0;
 const BROAD: f32 = 6.0;
@@ -30,6 +34,20 @@ const BROAD: f32 = 6.0;
 pub const BLACK: [u8; 3] = [0, 0, 0];
 /// The light parts of civilian icons.
 pub const PALE: [u8; 3] = [239, 239, 239];
+
+/// Red, orange, yellow, green, bright green, cyan of mines, and the yellow of what is unknown.
+const COLORS: [(&str, [u8; 3]); 8] = [
+    ("red", [255, 0, 0]),
+    ("orange", [255, 141, 42]),
+    ("yellow", [255, 255, 0]),
+    ("green", [0, 130, 24]),
+    ("lime", [0, 255, 0]),
+    ("cyan", [0, 255, 255]),
+    ("cream", [255, 255, 128]),
+    ("pale", PALE),
+];
+/// Lengths of dash and gap of a dashed line.
+const DASH: [f32; 2] = [8.0, 4.0];
 
 /// Where a centered text stands that states no place: capitals look centered a little above the middle.
 const TEXT_CENTER: Vec2 = Vec2::new(100.0, 99.5);
@@ -93,6 +111,8 @@ pub enum SymbolMark {
         center: Vec2,
         /// The size of the em.
         size: f32,
+        /// Red, green, blue.
+        color: [u8; 3],
     },
 }
 
@@ -117,8 +137,8 @@ impl SymbolMark {
                 let steps = steps.into_iter().map(|step| step.map(place)).collect();
                 Self::Shape { steps, fill, stroke }
             }
-            Self::Text { text, center, size } => {
-                Self::Text { text, center: place(center), size: size * factor }
+            Self::Text { text, center, size, color } => {
+                Self::Text { text, center: place(center), size: size * factor, color }
             }
         }
     }
@@ -126,6 +146,7 @@ impl SymbolMark {
     fn with_line_scaled(mut self, factor: f32) -> Self {
         if let Self::Shape { stroke: Some(pen), .. } = &mut self {
             pen.width *= factor;
+            pen.dash = pen.dash.map(|dash| dash.map(|length| length * factor));
         }
         self
     }
@@ -165,34 +186,47 @@ pub fn circle(center: Vec2, radius: f32) -> Vec<PathStep> {
 
 #[derive(Clone, Copy)]
 struct DrawingStyle {
-    width: f32,
     fill: Option<[u8; 3]>,
     has_stroke: bool,
+    pen: SymbolPen,
 }
 
 impl Default for DrawingStyle {
     fn default() -> Self {
-        Self { width: LINE, fill: None, has_stroke: true }
+        Self { fill: None, has_stroke: true, pen: SymbolPen::black(LINE) }
     }
 }
 
 impl DrawingStyle {
     fn with(self, word: &str) -> Option<Self> {
+        let color = |name: &str| COLORS.iter().find(|row| row.0 == name).map(|row| row.1);
+        let pen = |pen: SymbolPen| Self { pen, ..self };
         Some(match word {
             "fill" => Self { fill: Some(BLACK), has_stroke: false, ..self },
             "solid" => Self { fill: Some(BLACK), has_stroke: true, ..self },
-            "pale" => Self { fill: Some(PALE), ..self },
             "light" => Self { fill: Some(PALE), has_stroke: false, ..self },
-            "thin" => Self { width: THIN, ..self },
-            "bold" => Self { width: BOLD, ..self },
-            "broad" => Self { width: BROAD, ..self },
-            _ => return None,
+            "fine" => pen(SymbolPen { width: FINE, ..self.pen }),
+            "thin" => pen(SymbolPen { width: THIN, ..self.pen }),
+            "bold" => pen(SymbolPen { width: BOLD, ..self.pen }),
+            "broad" => pen(SymbolPen { width: BROAD, ..self.pen }),
+            "dashed" => pen(SymbolPen { dash: Some(DASH), ..self.pen }),
+            "rimless" => Self { has_stroke: false, ..self },
+            _ => match word.strip_suffix("-line") {
+                Some(name) => pen(SymbolPen { color: color(name)?, ..self.pen }),
+                None => Self { fill: Some(color(word)?), ..self },
+            },
         })
     }
 
     fn mark(self, steps: Vec<PathStep>) -> SymbolMark {
-        let stroke = self.has_stroke.then(|| SymbolPen::black(self.width));
+        let stroke = self.has_stroke.then_some(self.pen);
         SymbolMark::Shape { steps, fill: self.fill, stroke }
+    }
+
+    /// A text; pale letters are written in black, so that they can be read on every fill.
+    fn text(self, text: &str, center: Vec2, size: &str) -> Option<SymbolMark> {
+        let color = self.fill.filter(|color| *color != PALE).unwrap_or(BLACK);
+        Some(SymbolMark::Text { text: text.to_owned(), center, size: size.parse().ok()?, color })
     }
 }
 
@@ -213,18 +247,22 @@ fn add(
             ["circle", center, radius] => {
                 marks.push(style.mark(circle(point(center)?, radius.parse().ok()?)))
             }
-            ["text", size, text] => marks.push(text_mark(text, TEXT_CENTER, size)?),
-            ["text", size, center, text] => marks.push(text_mark(text, point(center)?, size)?),
+            ["text", size, text] => marks.push(style.text(text, TEXT_CENTER, size)?),
+            ["text", size, center, text] => marks.push(style.text(text, point(center)?, size)?),
             [name, placement @ ..] if name.starts_with('@') => {
                 let drawing = piece(name.strip_prefix('@')?, shape)?;
+                let levels = levels.checked_sub(1)?;
                 let (offset, factor) = match placement {
-                    [] => (Vec2::ZERO, 1.0),
+                    [] => {
+                        add(drawing, style, shape, levels, marks)?;
+                        continue;
+                    }
                     [offset] => (point(offset)?, 1.0),
                     [offset, factor] => (point(offset)?, factor.parse().ok()?),
                     _ => return None,
                 };
                 let start = marks.len();
-                add(drawing, style, shape, levels.checked_sub(1)?, marks)?;
+                add(drawing, style, shape, levels, marks)?;
                 let piece = marks.split_off(start).into_iter();
                 marks.extend(piece.map(|mark| mark.placed(offset, factor).with_line_scaled(factor)));
             }
@@ -232,10 +270,6 @@ fn add(
         }
     }
     Some(())
-}
-
-fn text_mark(text: &str, center: Vec2, size: &str) -> Option<SymbolMark> {
-    Some(SymbolMark::Text { text: text.to_owned(), center, size: size.parse().ok()? })
 }
 
 fn steps(words: &[&str]) -> Option<Vec<PathStep>> {

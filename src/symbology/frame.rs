@@ -103,7 +103,7 @@ impl FrameShape {
             | SymbolSet::Ocean
             | SymbolSet::MeteorologicalSpace => return None,
         };
-        let family = match code.frame_shape {
+        let family = match code.stated_frame() {
             1 | 2 => Open(FrameOpening::Below),
             3 | 5 | 8 | 9 => Unit,
             4 => Equipment,
@@ -223,10 +223,39 @@ pub(super) fn fill(code: &SymbolCode) -> [u8; 3] {
 fn is_civilian(code: &SymbolCode) -> bool {
     let group = code.entity / 10_000;
     match code.set {
+        _ if code.stated_frame() != 0 => false,
         SymbolSet::LandCivilian => true,
-        SymbolSet::Air => group == 12,
+        SymbolSet::Air | SymbolSet::Space | SymbolSet::Subsurface => group == 12,
         SymbolSet::LandEquipment => group == 16,
         SymbolSet::SeaSurface => group == 14,
         _ => false,
+    }
+}
+
+/// How a frame is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum FrameInk {
+    /// A black line round a fill.
+    Filled([u8; 3]),
+    /// A line alone: mines have colors of their own inside.
+    Line([u8; 3]),
+    /// No frame: the track of one's own ship.
+    None,
+}
+
+impl FrameInk {
+    /// How the frame of a code is drawn.
+    pub(super) fn of(code: &SymbolCode) -> Self {
+        match (code.set, code.entity) {
+            (SymbolSet::SeaSurface, 150_000) => Self::None,
+            (SymbolSet::MineWarfare, _) => Self::Line(match code.identity {
+                SymbolIdentity::Suspect if code.version.has_changes_of_e() => [255, 188, 1],
+                SymbolIdentity::Suspect | SymbolIdentity::Hostile => [255, 0, 0],
+                SymbolIdentity::Neutral => [0, 255, 0],
+                SymbolIdentity::Friend | SymbolIdentity::AssumedFriend => [0, 255, 255],
+                SymbolIdentity::Pending | SymbolIdentity::Unknown => [255, 255, 0],
+            }),
+            _ => Self::Filled(fill(code)),
+        }
     }
 }

@@ -1,7 +1,11 @@
 //! Drawings that several entities share, by name, and those whose shape the frame decides: an icon that fills its frame
 //! touches the frame's edge, wherever that is.
 
+mod activity;
+mod industry;
 mod land;
+mod public_places;
+mod sea;
 
 use crate::frame::FrameShape;
 
@@ -13,8 +17,9 @@ pub(super) fn piece(name: &str, shape: FrameShape) -> Option<&'static str> {
 }
 
 /// The tables of pieces that are the same in every frame, and of those that the frame decides.
-const SHARED: &[&[SharedPiece]] = &[&COMMON, land::SHARED];
-const FRAMED: &[&[FramedPiece]] = &[&FRAME_FILLING, land::FRAMED];
+const SHARED: &[&[SharedPiece]] =
+    &[&COMMON, land::SHARED, industry::SHARED, public_places::SHARED, activity::SHARED, sea::SHARED];
+const FRAMED: &[&[FramedPiece]] = &[&FRAME_FILLING, land::FRAMED, activity::FRAMED];
 
 /// Name and drawing.
 type SharedPiece = (&'static str, &'static str);

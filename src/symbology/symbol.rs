@@ -13,10 +13,12 @@ use glam::Vec2;
 
 use crate::amplifiers::{Amplification, staff_foot};
 use crate::code::SymbolCode;
-use crate::drawing::{BLACK, PathStep, SymbolMark, SymbolPen, parse, path};
+use crate::control_point::control_point;
+use crate::drawing::{BLACK, PALE, SymbolMark, SymbolPen, parse};
 use crate::entities;
 use crate::fields::{SymbolContext, SymbolIdentity, SymbolSet, SymbolStatus};
-use crate::frame::{FRAME_LINE, FrameOpening, FrameShape, SymbolBox, fill};
+use crate::frame::{FRAME_LINE, FrameInk, FrameShape, SymbolBox, fill};
+use crate::frame_marks::{FrameAddition, frame_marks};
 use crate::modifiers;
 
 /// The light dashes over the frame of what is only assumed, and of what is planned: lengths of dash and gap.
@@ -32,6 +34,10 @@ const SPECIAL_ELEMENTS: [(u32, &str); 4] = [
     (97, "@corps-support"),
     (98, "@theater-support"),
 ];
+/// How much higher echelons are over the bar of an installation.
+const INSTALLATION_BAR: f32 = 15.0;
+/// The box of an icon without a frame.
+const BARE_ICON: SymbolBox = SymbolBox::new(50.0, 50.0, 150.0, 150.0);
 /// In the frame of a thing of an unknown set.
 const UNKNOWN_SET: &str = "text 80 ?";
 
@@ -51,20 +57,31 @@ pub struct MilitarySymbol {
 }
 
 impl MilitarySymbol {
-    /// The symbol of a code; `None` for a set whose symbols have no frames, such as control measures.
+    /// The symbol of a code; `None` for lines and areas, and for sets whose symbols have no frames, such as weather.
     pub fn new(code: &SymbolCode) -> Option<Self> {
-        let shape = FrameShape::of(code)?;
+        let Some(shape) = FrameShape::of(code) else { return control_point(code) };
         let (frame, mut notes) = (shape.bounds(), Vec::new());
         let outline = shape.outline();
-        let mut marks = vec![SymbolMark::filled(outline.clone(), fill(code))];
-        marks.extend(icon(code, shape, &mut notes));
-        marks.push(SymbolMark::stroke(outline.clone(), SymbolPen::black(FRAME_LINE)));
-        if let Some(dash) = frame_dash(code) {
-            let pen = SymbolPen { width: FRAME_LINE + 1.0, color: WHITE, dash: Some(dash) };
-            marks.push(SymbolMark::stroke(outline, pen));
-        }
-        let mut bounds = frame;
-        if let Some((inside, around)) = set_marks(code.set, shape) {
+        let drawn = icon(code, shape, &mut notes);
+        let mut marks = match FrameInk::of(code) {
+            FrameInk::None => in_color(drawn, fill(code)),
+            FrameInk::Line(color) => {
+                let pen = SymbolPen { color, dash: frame_dash(code), ..SymbolPen::black(FRAME_LINE) };
+                [vec![SymbolMark::stroke(outline, pen)], drawn].concat()
+            }
+            FrameInk::Filled(color) => {
+                let mut marks = vec![SymbolMark::filled(outline.clone(), color)];
+                marks.extend(drawn);
+                marks.push(SymbolMark::stroke(outline.clone(), SymbolPen::black(FRAME_LINE)));
+                marks.extend(frame_dash(code).map(|dash| {
+                    let pen = SymbolPen { width: FRAME_LINE + 1.0, color: WHITE, dash: Some(dash) };
+                    SymbolMark::stroke(outline, pen)
+                }));
+                marks
+            }
+        };
+        let mut bounds = if FrameInk::of(code) == FrameInk::None { BARE_ICON } else { frame };
+        if let Some((inside, around)) = frame_marks(code, shape) {
             marks.extend(inside);
             bounds = bounds.union(around);
         }
@@ -75,7 +92,12 @@ impl MilitarySymbol {
             _ => frame.max.y,
         };
         amplified.role(code.role, code.amplifier, shape);
-        amplified.echelon(code.amplifier, frame);
+        let over = if FrameAddition::of(code) == Some(FrameAddition::InstallationBar) {
+            SymbolBox { min: frame.min - Vec2::new(0.0, INSTALLATION_BAR), ..frame }
+        } else {
+            frame
+        };
+        amplified.echelon(code.amplifier, over);
         amplified.leader(code.amplifier, shape);
         amplified.condition(code.status, frame, bottom);
         marks.extend(amplified.marks);
@@ -95,10 +117,16 @@ impl MilitarySymbol {
     /// The symbol in black on white: frames tell friend from foe without their colors.
     pub fn in_black_and_white(mut self) -> Self {
         for mark in &mut self.marks {
-            if let SymbolMark::Shape { fill: Some(fill), .. } = mark
-                && *fill != BLACK
-            {
-                *fill = WHITE;
+            match mark {
+                SymbolMark::Shape { fill, stroke, .. } => {
+                    if let Some(fill) = fill.as_mut().filter(|fill| **fill != BLACK) {
+                        *fill = WHITE;
+                    }
+                    if let Some(pen) = stroke.as_mut().filter(|pen| ![WHITE, PALE].contains(&pen.color)) {
+                        pen.color = BLACK;
+                    }
+                }
+                SymbolMark::Text { color, .. } => *color = BLACK,
             }
         }
         self
@@ -128,10 +156,13 @@ fn icon(code: &SymbolCode, shape: FrameShape, notes: &mut Vec<String>) -> Vec<Sy
         let function = String::from_utf8_lossy(&function).into_owned();
         notes.push(format!("the function {function} of 2525C is not drawn: the frame stands alone"));
     } else if code.entity != 0 {
-        let (offset, factor) = modifiers::place_of_icon(code);
         match drawing_of(code) {
             Some((icon, line)) => {
-                marks.extend(drawn(icon).into_iter().map(|mark| mark.placed(offset, factor)));
+                let icon = drawn(icon).into_iter();
+                match modifiers::place_of_icon(code) {
+                    Some((offset, factor)) => marks.extend(icon.map(|mark| mark.placed(offset, factor))),
+                    None => marks.extend(icon),
+                }
                 marks.extend(line.map(drawn).unwrap_or_default());
             }
             None => notes.push(format!(
@@ -148,101 +179,39 @@ fn icon(code: &SymbolCode, shape: FrameShape, notes: &mut Vec<String>) -> Vec<Sy
 
 /// The drawing of the entity, and the line of a special element of it: a headquarters, or support of a level of command.
 fn drawing_of(code: &SymbolCode) -> Option<(&'static str, Option<&'static str>)> {
-    if let Some(entity) = entities::find(code.set, code.entity) {
+    if let Some(entity) = entities::of(code) {
         return Some((entity.drawing, None));
     }
     let line = SPECIAL_ELEMENTS.iter().find(|row| row.0 == code.entity % 100)?.1;
     Some((entities::find(code.set, code.entity / 100 * 100)?.drawing, Some(line)))
 }
 
+/// The icon of a symbol without a frame: its lines tell friend from foe.
+fn in_color(mut marks: Vec<SymbolMark>, color: [u8; 3]) -> Vec<SymbolMark> {
+    for mark in &mut marks {
+        if let SymbolMark::Shape { stroke: Some(pen), .. } = mark {
+            pen.color = color;
+        }
+    }
+    marks
+}
+
 fn frame_dash(code: &SymbolCode) -> Option<[f32; 2]> {
-    if code.status == SymbolStatus::Planned {
+    if is_pending_track(code) {
+        Some(ASSUMED_DASH)
+    } else if code.status == SymbolStatus::Planned {
         Some(PLANNED_DASH)
     } else {
         code.identity.is_assumed().then_some(ASSUMED_DASH)
     }
 }
 
-/// What a set adds to its frame, and the box around it.
-fn set_marks(set: SymbolSet, shape: FrameShape) -> Option<(Vec<SymbolMark>, SymbolBox)> {
-    let frame = shape.bounds();
-    let black = |text: &str| SymbolMark::filled(path(text), BLACK);
-    match set {
-        SymbolSet::LandInstallation => {
-            // The bar sits on the frame, and sinks to it on a diamond's tip and a quatrefoil's lobe.
-            let (top, bottom) = match shape {
-                FrameShape::Diamond => (frame.min.y - 10.0, frame.min.y + 14.0),
-                FrameShape::Quatrefoil => (frame.min.y - 10.0, frame.min.y + 2.0),
-                _ => (frame.min.y - 10.0, frame.min.y),
-            };
-            let bar = SymbolBox::new(83.0, top, 117.0, bottom);
-            let mut steps = match shape {
-                FrameShape::Diamond => path("M85,43 L85,18 L115,18 L115,43 L100,28"),
-                _ => path_of(&bar),
-            };
-            steps.push(PathStep::Close);
-            Some((vec![SymbolMark::filled(steps, BLACK)], bar))
-        }
-        SymbolSet::Activity => {
-            let corners = match shape {
-                FrameShape::Diamond => [
-                    "M100,28 L111,39 L100,50 L89,39 Z",
-                    "M172,100 L161,111 L150,100 L161,89 Z",
-                    "M100,172 L89,161 L100,150 L111,161 Z",
-                    "M28,100 L39,89 L50,100 L39,111 Z",
-                ],
-                FrameShape::Square => [
-                    "M45,45 L61,45 L61,61 L45,61 Z",
-                    "M155,45 L155,61 L139,61 L139,45 Z",
-                    "M155,155 L139,155 L139,139 L155,139 Z",
-                    "M45,155 L45,139 L61,139 L61,155 Z",
-                ],
-                FrameShape::Quatrefoil => [
-                    "M92,31 L108,31 L108,47 L92,47 Z",
-                    "M169,92 L169,108 L153,108 L153,92 Z",
-                    "M108,169 L92,169 L92,153 L108,153 Z",
-                    "M31,108 L31,92 L47,92 L47,108 Z",
-                ],
-                _ => [
-                    "M25,50 L41,50 L41,65 L25,65 Z",
-                    "M175,50 L175,65 L159,65 L159,50 Z",
-                    "M175,150 L159,150 L159,135 L175,135 Z",
-                    "M25,150 L25,135 L41,135 L41,150 Z",
-                ],
-            };
-            Some((corners.map(black).to_vec(), frame))
-        }
-        SymbolSet::Space | SymbolSet::SpaceMissile | SymbolSet::SignalsSpace => {
-            let top = match shape {
-                FrameShape::Arch(FrameOpening::Below) => {
-                    "M68.5,50 C75,38.5 87,30 100,30 C113,30 125,38.5 131.5,50 Z"
-                }
-                FrameShape::Tent(FrameOpening::Below) => "M67,50 L100,20 L133,50 Z",
-                FrameShape::OpenBox(FrameOpening::Below) => "M45,30 L155,30 L155,50 L45,50 Z",
-                FrameShape::Trefoil(FrameOpening::Below) => "M63.3,50 A100,57.4 37.4,37.4 -168.6 -11.4 Z",
-                _ => return None,
-            };
-            Some((vec![black(top)], frame))
-        }
-        SymbolSet::Cyberspace => {
-            let corner = match shape {
-                FrameShape::Diamond => "M150,78 L172,100 L150,122 Z",
-                FrameShape::Square => "M117,155 L155,117 L155,155 Z",
-                FrameShape::Quatrefoil => {
-                    "M150,66 C162,72 169.25,84 169.25,100 C169.25,116 162,128 150,134 Z"
-                }
-                _ => "M135,150 L175,110 L175,150 Z",
-            };
-            Some((vec![black(corner)], frame))
-        }
-        _ => None,
-    }
-}
-
-fn path_of(area: &SymbolBox) -> Vec<PathStep> {
-    let (min, max) = (area.min, area.max);
-    let corners = [Vec2::new(max.x, min.y), max, Vec2::new(min.x, max.y)];
-    [PathStep::Move(min)].into_iter().chain(corners.map(PathStep::Line)).collect()
+/// Fused tracks and tracks of electronic means alone are pending whatever their identity.
+fn is_pending_track(code: &SymbolCode) -> bool {
+    matches!(
+        (code.set, code.entity),
+        (SymbolSet::SeaSurface, 160_000) | (SymbolSet::Subsurface, 140_000 | 150_000)
+    )
 }
 
 /// The letter at the upper right of an exercise: J joker, K faker, X exercise; S in a simulation.
@@ -255,7 +224,7 @@ fn exercise_letter(code: &SymbolCode, frame: SymbolBox) -> Option<SymbolMark> {
         _ => return None,
     };
     let center = Vec2::new(frame.max.x + 19.0, frame.min.y - 9.0);
-    Some(SymbolMark::Text { text: letter.to_owned(), center, size: 30.0 })
+    Some(SymbolMark::Text { text: letter.to_owned(), center, size: 30.0, color: BLACK })
 }
 
 #[cfg(test)]
@@ -344,7 +313,7 @@ mod tests {
                     };
                     let Some(symbol) = MilitarySymbol::new(&code) else { continue };
                     assert!(symbol.bounds.min.is_finite() && symbol.bounds.max.is_finite());
-                    assert!(symbol.marks.len() >= 2);
+                    assert!(!symbol.marks.is_empty());
                 }
             }
         }

@@ -218,6 +218,12 @@ impl FeatureParts {
         self.omitted[Omission::Elevation as usize] += 1;
     }
 
+    /// Returns how many vertices it has.
+    pub fn vertex_count(&self) -> usize {
+        let rings = self.polygons.iter().flatten();
+        self.points.len() + self.lines.iter().chain(rings).map(Vec::len).sum::<usize>()
+    }
+
     pub fn is_empty(&self) -> bool {
         self.points.is_empty() && self.lines.is_empty() && self.polygons.is_empty()
     }

@@ -5,7 +5,7 @@ use std::error::Error;
 use std::fmt::Display;
 
 use sandtable_base::archive::ArchiveError;
-use sandtable_base::limits::{GEOJSON_BYTES, UNPACKED_VECTOR_BYTES};
+use sandtable_base::limits::{DESIGN_BYTES, GEOJSON_BYTES, UNPACKED_VECTOR_BYTES};
 use sandtable_base::message::suggest::nearest;
 use sandtable_geom::crs::CrsError;
 
@@ -80,7 +80,7 @@ pub enum VectorError {
     )]
     FeatureDisabled { format: &'static str, feature: &'static str, command: String },
     #[error(
-        "neither its content nor its name tells its format; GeoJSON is read, and ESRI shapefiles, GeoPackage, FlatGeobuf, GPX, KML, KMZ, OpenStreetMap (.osm, .osm.pbf) and tables (.csv, .tsv, .xlsx, .ods)"
+        "neither its content nor its name tells its format; GeoJSON is read, and ESRI shapefiles, GeoPackage, FlatGeobuf, GPX, KML, KMZ, CityJSON, LandXML, DXF, OpenStreetMap (.osm, .osm.pbf), tables (.csv, .tsv, .xlsx, .ods), and the overlays MSDL, NVG, MilX, Cursor on Target and ORBAT Mapper"
     )]
     UnknownFormat,
     /// A longitude or latitude is out of range: usually meters in a file that names no system.
@@ -106,6 +106,19 @@ pub enum VectorError {
 }
 
 impl VectorError {
+    /// Refuses a file of a design that is larger than the limit.
+    ///
+    /// # Errors
+    /// It is.
+    pub(crate) fn check_design_size(format: &'static str, bytes: &[u8]) -> Result<(), Self> {
+        if bytes.len() <= DESIGN_BYTES.count() {
+            return Ok(());
+        }
+        let content =
+            format!("{} bytes, more than the limit of {DESIGN_BYTES}; {DESIGN_BYTES:#}", bytes.len());
+        Err(Self::Unsupported { format, content: content.into(), remedy: "part it by its layers" })
+    }
+
     /// A [`VectorError::Broken`].
     pub(crate) fn broken(
         format: &'static str,

@@ -4,6 +4,7 @@ mod broken_records;
 mod builder;
 pub mod cityjson;
 mod cot;
+mod dxf;
 mod encoding;
 pub mod error;
 pub mod feature;
@@ -13,7 +14,6 @@ mod geojson;
 #[cfg(feature = "vector-db")]
 mod geopackage;
 mod gpx;
-mod ground_shape;
 pub mod hints;
 mod kml;
 mod landxml;

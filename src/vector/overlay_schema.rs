@@ -132,6 +132,87 @@ pub(crate) fn set(properties: &mut Properties, name: &str, text: impl Into<Strin
     }
 }
 
+/// Sets a number that is one.
+pub(crate) fn set_number(properties: &mut Properties, name: &str, number: Option<f64>) {
+    let number = number.and_then(serde_json::Number::from_f64);
+    number.into_iter().for_each(|number| drop(properties.insert(name.to_owned(), number.into())));
+}
+
+/// Sets the text field of letters such as `T1`, or of an option of milsymbol; returns whether the standard has it. Field F
+/// becomes its mark.
+pub(crate) fn set_field(properties: &mut Properties, letters: &str, text: &str) -> bool {
+    let Some(property) = field_property(letters.trim()) else { return false };
+    let known = properties.get(property).and_then(Value::as_str);
+    match (property, known) {
+        (REINFORCED, _) => set(properties, property, reinforced_mark(text)),
+        // H and H1 are one text.
+        (ADDITIONAL_INFORMATION, Some(known)) if known != text.trim() => {
+            let both = format!("{known} {}", text.trim());
+            set(properties, property, both);
+        }
+        _ => set(properties, property, text),
+    }
+    true
+}
+
+/// Sets the code of a text, by [`bare_code`]; returns `false` where it is none.
+pub(crate) fn set_code(properties: &mut Properties, text: &str) -> bool {
+    let code = bare_code(text);
+    let is_code = code.is_some();
+    code.into_iter().for_each(|code| set(properties, SIDC, code));
+    is_code
+}
+
+/// Whether a text is a code of letters, such as `S-G-UCI----D---`, that leaves the standard identity open.
+pub(crate) fn leaves_identity_open(text: &str) -> bool {
+    let code = text.trim().rsplit(':').next().unwrap_or_default();
+    !code.starts_with(['W', 'w'])
+        && code.starts_with(|first: char| first.is_ascii_alphabetic())
+        && code.get(1..).is_some_and(|rest| rest.starts_with(['-', '*', '_']))
+}
+
+/// A code with the standard identity of a letter of MIL-STD-2525C, where one is given.
+pub(crate) fn with_identity(mut code: String, letter: Option<char>) -> String {
+    let Some(letter) = letter else { return code };
+    if code.len() == 15 {
+        code.replace_range(1..2, letter.encode_utf8(&mut [0; 4]));
+        return code;
+    }
+    let digit = match letter {
+        'P' => "0",
+        'A' => "2",
+        'F' => "3",
+        'N' => "4",
+        'S' | 'J' => "5",
+        'H' | 'K' => "6",
+        _ => "1",
+    };
+    // Jokers and fakers are of exercises.
+    if matches!(letter, 'J' | 'K') {
+        code.replace_range(2..3, "1");
+    }
+    code.replace_range(3..4, digit);
+    code
+}
+
+/// The mark of field F for the letters and words that files have for it; else the text.
+pub(crate) fn reinforced_mark(text: &str) -> &str {
+    let word = text.chars().filter(|letter| letter.is_alphanumeric() || "+-±".contains(*letter));
+    match word.collect::<String>().to_ascii_uppercase().as_str() {
+        "R" | "+" | "REINFORCED" => "(+)",
+        "D" | "-" | "REDUCED" | "DETACHED" => "(-)",
+        "RD" | "±" | "+-" | "REINFORCEDANDREDUCED" | "REINFORCEDREDUCED" | "REINFORCEDDETACHED" => "(±)",
+        _ => text,
+    }
+}
+
+/// A name that many features have in common, such as that of their layer, as long as a name may be: a long one would be
+/// kept once for each.
+pub(crate) fn shared_name(name: &str) -> String {
+    const MOST_LETTERS: usize = 200;
+    name.trim().chars().take(MOST_LETTERS).collect()
+}
+
 /// The fields of MIL-STD-2525D: letters, the names of their options in milsymbol, properties.
 const FIELDS: [(&str, &str, &str); 26] = [
     ("T", "uniqueDesignation", UNIQUE_DESIGNATION),
@@ -162,6 +243,11 @@ const FIELDS: [(&str, &str, &str); 26] = [
     ("AN", "azimuth", AZIMUTHS),
 ];
 
+/// The letters of the field that a property is, in MIL-STD-2525D; `None` where it is none.
+pub fn field_letters(property: &str) -> Option<&'static str> {
+    FIELDS.iter().find(|row| row.2 == property).map(|row| row.0)
+}
+
 /// The property of a text field: its letters in MIL-STD-2525D, such as `T1`, or its option in milsymbol, such as
 /// `uniqueDesignation`; `None` where it is neither.
 pub fn field_property(name: &str) -> Option<&'static str> {
@@ -171,14 +257,16 @@ pub fn field_property(name: &str) -> Option<&'static str> {
     found.map(|(.., property)| *property)
 }
 
-/// A symbol code without what programs write around it: a scheme such as `app6b:` or `2525d:`, options behind the code, spaces.
-/// `None` where what remains is no code by its length and characters.
+/// A symbol code without what programs write around it: a scheme such as `app6b:` or `2525d:`, options behind the code after
+/// a comma, semicolon or bar, spaces. `None` where what remains is no code by its length and characters. What a code of letters
+/// leaves open is settled.
 pub fn bare_code(text: &str) -> Option<String> {
     let text = text.trim();
     let code = match text.rsplit_once(':') {
         Some((scheme, code)) if scheme.len() <= 40 => code,
         _ => text,
     };
+    let code = code.split([',', ';', '|']).next().unwrap_or_default();
     let code: String = code.chars().filter(|letter| !letter.is_whitespace()).collect();
     let is_digits = code.bytes().all(|byte| byte.is_ascii_digit()) && matches!(code.len(), 20 | 30);
     let is_letters = matches!(code.len(), 10..=15)
@@ -192,11 +280,16 @@ pub fn bare_code(text: &str) -> Option<String> {
 }
 
 /// A code of 15 letters as MIL-STD-2525C has it: templates leave the identity and the status open, and APP-6A has command and
-/// general maneuver in a category of its own.
+/// general maneuver in a category of its own. An open identity is that of a friend in a graphic, and unknown in a symbol.
 fn of_letters(code: &str) -> String {
     let padded = format!("{code:-<15}").to_ascii_uppercase().replace(['_', '*'], "-");
     let (scheme, category) = (&padded[..1], &padded[2..3]);
-    let identity = if padded[1..].starts_with('-') { "U" } else { &padded[1..2] };
+    // The letters of weather are all of its kind.
+    if scheme == "W" {
+        return padded;
+    }
+    let open_identity = if scheme == "G" { "F" } else { "U" };
+    let identity = if padded[1..].starts_with('-') { open_identity } else { &padded[1..2] };
     let status = if padded[3..].starts_with('-') { "P" } else { &padded[3..4] };
     let (function, rest) = padded[4..].split_at(6);
     match function.strip_prefix('M').filter(|_| scheme == "G" && category == "C") {
@@ -222,10 +315,52 @@ mod tests {
         assert_eq!(bare_code("2525d:10031000161211000000").as_deref(), Some("10031000161211000000"));
         assert_eq!(bare_code(" 1003 1000161211 000000").as_deref(), Some("10031000161211000000"));
         assert_eq!(bare_code("sfgpuci---").as_deref(), Some("SFGPUCI--------"));
+        assert_eq!(bare_code("SFGPUCIA---F--G;XO").as_deref(), Some("SFGPUCIA---F--G"));
         assert_eq!(bare_code("S*G*UCI---*****").as_deref(), Some("SUGPUCI--------"));
         assert_eq!(bare_code("app6a:GHC*MGLP--*****").as_deref(), Some("GHGPGLP--------"));
         for other in ["", "infantry", "1003100016121100000", "http://a.b/c", "SFGPUCI---------"] {
             assert_eq!(bare_code(other), None, "{other}");
+        }
+    }
+
+    #[test]
+    fn open_letters_of_a_code_are_settled() {
+        for (text, expected) in [
+            ("S-G-UCI----F--G", "SUGPUCI----F--G"),
+            ("SHG*UCI---*****", "SHGPUCI--------"),
+            ("app6a:G*C*MALC--*****", "GFGPALC--------"),
+            ("GHC*MGLP--****X", "GHGPGLP-------X"),
+            ("WAS-WSTSS-P----", "WAS-WSTSS-P----"),
+        ] {
+            assert_eq!(bare_code(text).as_deref(), Some(expected), "{text}");
+        }
+        assert!(leaves_identity_open("app6a:G*C*MALC--*****") && leaves_identity_open("S-G-U----------"));
+        assert!(!leaves_identity_open("SFG-U----------") && !leaves_identity_open("10031000161211000000"));
+        assert!(!set_code(&mut Properties::new(), "icon.png"));
+    }
+
+    #[test]
+    fn identities_replace_those_of_letters_and_digits() {
+        let code = |code: &str, letter| with_identity(code.to_owned(), Some(letter));
+        assert_eq!(code("SUGPUCI--------", 'H'), "SHGPUCI--------");
+        assert_eq!(code("10031000141211000000", 'N'), "10041000141211000000");
+        assert_eq!(code("10031000141211000000", 'K'), "10161000141211000000");
+    }
+
+    #[test]
+    fn the_second_text_of_field_h_follows_the_first() {
+        let mut properties = Properties::new();
+        assert!(set_field(&mut properties, "H", "dug in") && set_field(&mut properties, "h1", " since noon"));
+        assert_eq!(properties[ADDITIONAL_INFORMATION], "dug in since noon");
+        assert!(!set_field(&mut properties, "XO", "$80FF"));
+    }
+
+    #[test]
+    fn field_f_becomes_its_mark() {
+        for (text, mark) in
+            [("R", "(+)"), ("reduced", "(-)"), ("REINFORCED_AND_REDUCED", "(±)"), ("(+)", "(+)")]
+        {
+            assert_eq!(reinforced_mark(text), mark, "{text}");
         }
     }
 }

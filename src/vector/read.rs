@@ -5,6 +5,7 @@
 //! | GeoJSON, also one feature to a line or as a text sequence | one | its `crs` member, else EPSG:4326 |
 //! | CityJSON, also one feature to a line | one: footprints | its reference system |
 //! | ESRI shapefile, also zipped | one; of an archive the names of its `.shp` files | its `.prj` |
+//! | DXF | its layers; all that are shown where none is requested | none: `crs` |
 //! | GeoPackage (feature `vector-db`) | its tables and views of features | its own |
 //! | FlatGeobuf | one | its own |
 //! | GPX | waypoints, routes, tracks; route_points, track_points | EPSG:4326 |
@@ -28,7 +29,7 @@ use crate::feature::VectorLayer;
 use crate::geopackage;
 use crate::hints::VectorHints;
 use crate::{
-    cityjson, cot, flatgeobuf, geojson, gpx, kml, landxml, milx, msdl, nvg, orbat, osm, shapefile, table,
+    cityjson, cot, dxf, flatgeobuf, geojson, gpx, kml, landxml, milx, msdl, nvg, orbat, osm, shapefile, table,
 };
 use sandtable_base::archive::{self, ArchiveError, ZipReader};
 use sandtable_base::limits::UNPACKED_VECTOR_BYTES;
@@ -124,6 +125,7 @@ fn read_unpacked(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<Vector
             let (format, feature) = ("GeoPackage", "vector-db");
             Err(VectorError::FeatureDisabled { format, feature, command: conversion(name) })
         }
+        VectorFormat::Dxf => dxf::read(bytes, hints),
         VectorFormat::FlatGeobuf => single(name, hints, flatgeobuf::read(bytes, hints)),
         VectorFormat::Gpx => gpx::read(bytes, hints),
         VectorFormat::Kml => kml::read(bytes, hints),
@@ -219,6 +221,7 @@ enum VectorFormat {
     GeoJson,
     GeoJsonSequence,
     CityJson,
+    Dxf,
     Shapefile,
     GeoPackage,
     FlatGeobuf,
@@ -251,6 +254,7 @@ fn format_of(name: &str, bytes: &[u8]) -> VectorFormat {
         () if shapefile::is_shapefile(bytes) => VectorFormat::Shapefile,
         () if bytes.starts_with(b"SQLite format 3\0") => VectorFormat::GeoPackage,
         () if flatgeobuf::is_flatgeobuf(bytes) => VectorFormat::FlatGeobuf,
+        () if dxf::is_dxf(bytes) => VectorFormat::Dxf,
         () if osm::is_pbf(bytes) => VectorFormat::OsmPbf,
         () if bytes.starts_with(b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1") => VectorFormat::Workbook97,
         () if bytes.starts_with(b"PAR1") => VectorFormat::Other("GeoParquet"),
@@ -302,7 +306,8 @@ fn format_by_name(name: &str) -> Option<VectorFormat> {
             VectorFormat::Other("a part of an ESRI shapefile; give the .shp file")
         }
         "tab" | "mif" | "mid" => VectorFormat::Other("MapInfo"),
-        "dxf" | "dwg" => VectorFormat::Other("a CAD drawing"),
+        "dxf" => VectorFormat::Dxf,
+        "dwg" => VectorFormat::Other("a CAD drawing; save it as DXF"),
         "geojsonl" | "geojsons" | "geojsonseq" | "ndjson" | "jsonl" => VectorFormat::GeoJsonSequence,
         _ => return None,
     })

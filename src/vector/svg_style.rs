@@ -1,7 +1,9 @@
 //! Styles of lines and areas as SVG writes them, `stroke:#f00;fill:none;stroke-width:2`, as properties of simplestyle.
 
 use crate::feature::Properties;
-use crate::overlay_schema::{FILL, FILL_OPACITY, STROKE, STROKE_DASHES, STROKE_OPACITY, STROKE_WIDTH, set};
+use crate::overlay_schema::{
+    FILL, FILL_OPACITY, STROKE, STROKE_DASHES, STROKE_OPACITY, STROKE_WIDTH, set, set_number,
+};
 
 /// The colors that overlays name (CSS, level 1 and a few of SVG).
 const NAMED: [(&str, u32); 22] = [
@@ -47,18 +49,35 @@ pub(crate) fn add_style(style: &str, properties: &mut Properties) {
     }
 }
 
-/// Sets a number that is one.
-pub(crate) fn set_number(properties: &mut Properties, key: &str, number: Option<f64>) {
-    let number = number.filter(|number| number.is_finite()).and_then(serde_json::Number::from_f64);
-    number.into_iter().for_each(|number| drop(properties.insert(key.to_owned(), number.into())));
-}
-
 fn set_color(properties: &mut Properties, key: &str, text: &str) {
     if text.eq_ignore_ascii_case("none") || text.eq_ignore_ascii_case("transparent") {
         set(properties, key, "none");
     } else if let Some([red, green, blue]) = color(text) {
-        set(properties, key, format!("#{red:02x}{green:02x}{blue:02x}"));
+        set(properties, key, hex_color([red, green, blue]));
     }
+}
+
+/// A color as `#rrggbb`.
+pub(crate) fn hex_color([red, green, blue]: [u8; 3]) -> String {
+    format!("#{red:02x}{green:02x}{blue:02x}")
+}
+
+/// The color of Delphi: `$00bbggrr`, `clRed` or a decimal number.
+pub(crate) fn delphi_color(text: &str) -> Option<[u8; 3]> {
+    let text = text.trim();
+    if let Some(name) = text.strip_prefix("cl") {
+        return match name {
+            "LtGray" => Some([0xc0; 3]),
+            "DkGray" => Some([0x80; 3]),
+            name => color(name),
+        };
+    }
+    let number: u32 = match text.strip_prefix('$') {
+        Some(digits) => u32::from_str_radix(digits, 16).ok()?,
+        None => text.parse().ok()?,
+    };
+    let [_, blue, green, red] = number.to_be_bytes();
+    Some([red, green, blue])
 }
 
 /// The color of `#rgb`, `#rrggbb`, `rgb(r, g, b)` in numbers or per cent, or a name.
@@ -119,5 +138,12 @@ mod tests {
         for text in ["", "#", "#ffff", "rgb(1,2)", "rgb(300,0,0)", "mauve", "#äöü"] {
             assert_eq!(color(text), None, "{text}");
         }
+    }
+
+    #[test]
+    fn colors_of_delphi_have_their_red_last() {
+        assert_eq!(delphi_color("$000080FF"), Some([255, 128, 0]));
+        assert_eq!((delphi_color("clBlue"), delphi_color("255")), (Some([0, 0, 255]), Some([255, 0, 0])));
+        assert_eq!((delphi_color("$x"), delphi_color("clMoss")), (None, None));
     }
 }

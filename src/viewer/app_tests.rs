@@ -263,6 +263,37 @@ fn a_view_is_kept_as_a_camera_and_undone() {
 }
 
 #[test]
+fn a_position_is_flown_to_and_its_height_is_told() {
+    let mut harness = window(Some(Path::new(concat!(env!("SANDTABLE_ROOT"), "scenes/road.toml"))));
+    let go = |harness: &mut AppHarness, text: &str| {
+        let position = sandtable_geom::position::Position::parse(text).expect(text);
+        let opened = harness.state_mut().as_mut().expect("shown").opened.as_mut().expect("open");
+        opened.go_to_position(&position)
+    };
+    let scene = std::sync::Arc::clone(&app(&harness).opened.as_ref().expect("open").scene);
+    let at = glam::DVec2::new(750_000.5, 4_018_000.5);
+    let height = scene.heights.height(
+        sandtable_terrain::query::Surface::Ground,
+        sandtable_terrain::query::Interpolation::Planar,
+        at,
+    );
+    let expected = format!("750000, 4018000 (EPSG:32616): {:.1} m", height.height_m().expect("ground"));
+    for text in ["16SGF5000018000", "16S GF 50000 18000"] {
+        assert_eq!(go(&mut harness, text), Ok(expected.clone()), "{text}");
+    }
+    let coarse = go(&mut harness, "16SGF500180").expect("on the ground");
+    assert!(coarse.ends_with("the middle of a square of 100 m"), "{coarse}");
+    go(&mut harness, "750000.5, 4018000.5").expect("numbers of the scene's system");
+    harness.run_steps(400);
+    let camera = app(&harness).opened.as_ref().expect("open").camera((1280, 800)).expect("a camera");
+    let seen =
+        app(&harness).opened.as_ref().expect("open").focus(&camera).truncate() + scene.lattice.origin();
+    assert!(seen.distance(at) < 60.0, "the middle of the picture is {seen}");
+    let off = go(&mut harness, "33N 500000 5200000").expect_err("in Austria");
+    assert!(off.contains("off the ground") || off.contains("no such place"), "{off}");
+}
+
+#[test]
 fn a_viewshed_is_tinted_until_it_is_cleared() {
     let mut harness = window(Some(Path::new(concat!(env!("SANDTABLE_ROOT"), "scenes/road.toml"))));
     harness.get_by_label("Viewshed").click();

@@ -157,7 +157,7 @@ pub const KEYS: &[KeyBinding] = &[
     press(NONE, Key::X, ViewCommand::Wireframe, "Edges of triangles on or off"),
     press(NONE, Key::F, ViewCommand::Freeze, "Freeze the triangles, and fly on"),
     press(NONE, Key::T, ViewCommand::Panels, "Panels on or off"),
-    press(CONTROL, Key::F, ViewCommand::Find, "Find a feature"),
+    press(CONTROL, Key::F, ViewCommand::Find, "Find a feature or a position"),
     press(CONTROL, Key::O, ViewCommand::Open, "Open a file"),
     press(CONTROL, Key::R, ViewCommand::Reload, "Read the file again"),
     press(CONTROL, Key::S, ViewCommand::Save, "Save edits into the scene file"),

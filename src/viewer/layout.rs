@@ -154,6 +154,11 @@ impl ViewerApp {
                     let now = ui.input(|input| input.time);
                     self.notices.tell(now, "this feature lies nowhere on the ground of the scene");
                 }
+                Some(TreeEvent::GoToPosition(position)) => {
+                    let now = ui.input(|input| input.time);
+                    let text = opened.go_to_position(&position).unwrap_or_else(|refusal| refusal);
+                    self.notices.tell(now, text);
+                }
                 Some(TreeEvent::GoTo(_)) | None => {}
             }
         });

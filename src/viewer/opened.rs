@@ -12,14 +12,17 @@ use crate::paging::PagedTerrain;
 use crate::scene_jobs::{Reaching, Relisting};
 use crate::scene_load::{LoaderSlot, SceneLoad};
 use crate::shadow_state::{ShadowState, ShadowedView};
+use sandtable_base::message::numbers::fixed;
 use sandtable_draw::lighting::Lighting;
 use sandtable_draw::list::{DrawList, FeatureId};
 use sandtable_draw::patches::{GroundChanges, PatchId};
 use sandtable_geom::aabb::Aabb;
+use sandtable_geom::position::Position;
 use sandtable_gpu::error::GpuError;
 use sandtable_gpu::live::KeptPatches;
 use sandtable_gpu::live::prepared::{PreparedShadows, PreparedWindows};
 use sandtable_picture as picture;
+use sandtable_query::positions::format_position;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::scene_view::SceneView;
 use sandtable_terrain::sight::ray::Ray;
@@ -43,6 +46,8 @@ const LABEL_SLACK: f64 = 0.01;
 const NEAR_M: f32 = 0.5;
 /// The vertical field of view in degrees where a camera by parallel rays has none.
 const FOV_DEG: f32 = 40.0;
+/// How far from a stated position the eye stops, in meters: near enough to see houses, far enough to see the valley around.
+const PLACE_DISTANCE_M: f64 = 600.0;
 /// The least angle in degrees by which the eye looks down at what it goes to.
 const APPROACH_DEG: f64 = 25.0;
 
@@ -489,6 +494,32 @@ impl OpenedScene {
         let z = self.ground_z(middle).unwrap_or(f64::from(self.bounds().center().z));
         self.go_toward(middle.extend(z), (f64::from(min.distance(max)) * 1.2).max(60.0));
         true
+    }
+
+    /// Goes to a position, two numbers being those of the scene's system; returns the place in words, with its height.
+    ///
+    /// # Errors
+    /// A sentence, where the position has no coordinates in the scene's system, or lies off its ground.
+    pub fn go_to_position(&mut self, position: &Position) -> Result<String, String> {
+        let crs = &self.scene.crs;
+        let at = position.in_system(crs).map_err(|error| format!("no such place: {error}"))?;
+        let written = format!("{} ({})", format_position(crs, at), crs.name());
+        let world = at - self.scene.lattice.origin();
+        let bounds = self.bounds();
+        let is_within = (world.cmpge(bounds.min.truncate().as_dvec2())
+            & world.cmple(bounds.max.truncate().as_dvec2()))
+        .all();
+        if !is_within {
+            return Err(format!("{written} lies off the ground of the scene"));
+        }
+        // Of terrain on disk, the overview has ground where no page is in memory yet.
+        let z = self.ground_z(world);
+        let height = z.map(|z| self.scene.scale.elevation_m(z));
+        self.go_toward(world.extend(z.unwrap_or(f64::from(bounds.center().z))), PLACE_DISTANCE_M);
+        let height = height.map_or("no data here".to_owned(), |height_m| format!("{} m", fixed(height_m, 1)));
+        let square = position.side_m().filter(|side_m| *side_m > 1.0);
+        let square = square.map(|side_m| format!(", the middle of a square of {side_m:.0} m"));
+        Ok(format!("{written}: {height}{}", square.unwrap_or_default()))
     }
 }
 

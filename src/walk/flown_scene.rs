@@ -9,7 +9,8 @@ use sandtable_scene::flights::{SceneFlight, flight};
 use sandtable_scene::scene_file::{OpenSceneError, open_document};
 use sandtable_scene::scene_model::SceneModel;
 
-/// [`open_scene`](sandtable_scene::scene_file::open_scene) with its flight called `name`, or its first.
+/// [`open_scene`](sandtable_scene::scene_file::open_scene) with its flight called `name`, or its first; findings about the flight are among those of
+/// the scene.
 ///
 /// # Errors
 /// See [`OpenSceneError`].
@@ -29,7 +30,8 @@ pub fn open_scene_with_flight(
     let mut scene = build(&document, &assets, progress)?;
     // A scale bar for the distance of each frame's ground would jump from frame to frame.
     scene.furniture.scale_bar = false;
-    let flight = flight(&document, table, &assets, &scene)?;
+    let mut flight = flight(&document, table, &assets, &scene)?;
+    scene.findings.append(&mut flight.findings);
     // A camera that sees nothing is reported when its frame is drawn.
     if let Ok(start) = camera(&scene, &flight.view(0.0), (1280, 720)) {
         SceneFlight::hold_light(&mut scene, &start);

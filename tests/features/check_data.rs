@@ -228,7 +228,6 @@ fn of_elevation() -> Vec<Seed> {
             .with("track.geojson", track(|ground| ground + 33.0)),
         seed("heights-in-feet", NEXT + 1, "[[fence]]\nfile = \"track.geojson\"\n")
             .with("track.geojson", track(|ground| ground / 0.3048)),
-        seed("heights-in-feet", 2, HEAD).with("hill.prj", IN_FEET),
         seed("heights-in-feet", 2, "[terrain]\ndem = \"hill_feet.asc\"\ncrs = \"EPSG:32616\"\n")
             .with("hill_feet.asc", grid(ORIGIN, CELL_M, |_, _, height| height)),
     ]
@@ -436,6 +435,10 @@ fn sound_data_give_no_warning() {
         seed("", 0, HEAD).with("hill.prj", "EPSG:32616"),
         seed("", 0, HEAD).with("hill.prj", "EPSG:26916"),
         // A vertical part in meters.
+        // A vertical part in feet, which the heights are read in, and a unit that is stated.
+        seed("", 0, HEAD).with("hill.prj", IN_FEET),
+        seed("", 0, "[terrain]\ndem = \"hill_feet.asc\"\ncrs = \"EPSG:32616\"\nvertical_unit = \"us-ft\"\n")
+            .with("hill_feet.asc", grid(ORIGIN, CELL_M, |_, _, height| height)),
         seed("", 0, HEAD).with("hill.prj", IN_FEET.replace("0.304800609601219", "1").replace("(ftUS)", "")),
     ];
     for seed in sound {

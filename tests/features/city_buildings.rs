@@ -106,10 +106,14 @@ fn heights_from_another_zero_are_set_on_the_ground_and_told() {
 #[test]
 fn a_level_of_detail_and_colors_are_taken_by_keys() {
     let fine = hamlet("", |text| text).expect("built");
-    let coarse = hamlet("lod = \"1.2\"\nroof_color = \"#102030\"\n", |text| text).expect("built");
+    let coarse = hamlet("lod = \"1.2\"\nheight = 7\nroof_color = \"#102030\"\n", |text| text).expect("built");
     let triangles = |scene: &SceneModel| sheets(scene).map(|solid| solid.mesh.triangles.len()).sum::<usize>();
     assert_eq!(triangles(&coarse), 15 * 12, "boxes");
     assert!(triangles(&fine) > 1000);
+    assert!(
+        told(&coarse, "default-taken")[0]
+            .contains("without effect on CityJSON, whose own surfaces are drawn: `height`")
+    );
     let vertices = sheets(&coarse).flat_map(|solid| &solid.mesh.vertices);
     let roofs: Vec<_> = vertices.filter(|vertex| vertex.normal[2] > 0.9).collect();
     assert_eq!(roofs.len(), 15 * 4);
@@ -149,7 +153,7 @@ fn surfaces_with_pictures_show_them() {
     scratch.write("hamlet.city.json", textured(text));
     let scene =
         "[terrain]\ndem = \"valley.asc\"\ncrs = \"EPSG:32616\"\n[[building]]\nfile = \"hamlet.city.json\"\n";
-    let shown = load(&scratch.write("scene.toml", scene.to_owned()), &[]).expect("built");
+    let shown = load(&scratch.write("scene.toml", scene), &[]).expect("built");
     assert_eq!(shown.pictures.len(), 1);
     let solid = shown.solids.iter().find(|solid| solid.coat == Coat::Picture(0)).expect("with a picture");
     assert!(solid.mesh.vertices.iter().any(|vertex| vertex.uv == [1.0, 0.0]), "V runs downward");
@@ -174,7 +178,7 @@ fn real_cities_have_all_their_objects_and_the_area_of_their_surfaces() {
         let value: serde_json::Value = serde_json::from_str(&text).expect("JSON");
         let number = |pointer: &str| value.pointer(pointer).and_then(serde_json::Value::as_f64);
         let [scale, x, y] =
-            ["/transform/scale/0", "/transform/translate/0", "/transform/translate/1"].map(|at| number(at));
+            ["/transform/scale/0", "/transform/translate/0", "/transform/translate/1"].map(number);
         let (scale, x, y) = (scale.unwrap_or(1.0), x.unwrap_or(0.0), y.unwrap_or(0.0));
         let least = |axis: usize| {
             let vertices = value["vertices"].as_array().expect("vertices").iter();

@@ -191,14 +191,14 @@ const ALIGNMENT: &str = "<LandXML><Units><Metric linearUnit=\"meter\"/></Units><
     <PVI>1600 120</PVI></ProfAlign></Profile></Alignment></Alignments></LandXML>";
 
 #[test]
-fn a_road_keeps_the_profile_of_its_file_whatever_its_grade_and_others_meet_it_there() {
+fn a_road_keeps_the_profile_of_its_file_and_others_meet_it_there() {
     let scratch = Scratch::new();
     let at = |index: u32| (f64::from(index % 81) * 10.0, f64::from(60 - index / 81) * 10.0);
     let heights: Vec<String> = (0..81 * 61).map(at).map(|(x, y)| format!("{:.4}", hills(x, y))).collect();
     let grid =
         "ncols 81\nnrows 61\nxllcorner -5\nyllcorner -5\ncellsize 10\n".to_owned() + &heights.join(" ");
     scratch.write("ground.asc", grid);
-    scratch.write("road.xml", ALIGNMENT.to_owned());
+    scratch.write("road.xml", ALIGNMENT);
     let text = |profile: &str| {
         format!(
             "[terrain]\ndem = \"ground.asc\"\ncrs = \"EPSG:32616\"\n[[road]]\nfile = \"road.xml\"\nlayer = \"alignments\"\nwidth = 8\n{profile}\n\

@@ -71,6 +71,13 @@ fn whole(name: u8, path: &str) -> Vec<u8> {
     [&[name], &bytes[..]].concat()
 }
 
+/// A file of the project without the lines of a range, so that it is short.
+fn bytes(path: &str, without: std::ops::Range<usize>) -> Vec<u8> {
+    let bytes = std::fs::read(Path::new(env!("SANDTABLE_ROOT")).join(path)).expect("a file of the project");
+    let lines = bytes.split_inclusive(|&byte| byte == b'\n').enumerate();
+    lines.filter(|(number, _)| !without.contains(number)).flat_map(|(_, line)| line.to_vec()).collect()
+}
+
 /// The start of a file of the project, after the byte that picks its name.
 fn file(name: u8, path: &str) -> Vec<u8> {
     const MOST: usize = 6000;
@@ -113,7 +120,45 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
                      1,1 0,0</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark></Document></kml>"),
             text(6, "<osm><node id=\"1\" lat=\"1\" lon=\"2\"/><node id=\"2\" lat=\"1.1\" lon=\"2\"/><way id=\"3\">\
                      <nd ref=\"1\"/><nd ref=\"2\"/><tag k=\"highway\" v=\"track\"/></way></osm>"),
+            whole(9, "assets/jacksboro/scenario.msdl.xml"),
+            file(10, "assets/jacksboro/plan.nvg"),
+            file(11, "assets/jacksboro/picture.milxly"),
+            file(12, "assets/jacksboro/tracks.cot"),
             [&[1][..], &[0, 0, 0x27, 0x0a], &[0; 20], &[0, 0, 0, 50], &[0xe8, 3, 0, 0, 3, 0, 0, 0], &[0; 72]].concat(),
+        ],
+        "city_models" => vec![
+            bytes("assets/jacksboro/hamlet.city.json", 0..0),
+            b"{\"type\":\"CityJSON\",\"version\":\"2.0\",\"transform\":{\"scale\":[1,1,1],\"translate\":[0,0,0]},\"CityObjects\":{\"a\":{\"type\":\"Building\",\
+              \"geometry\":[{\"type\":\"Solid\",\"lod\":\"2\",\"boundaries\":[[[[0,1,2,3],[4,5,6,7]],[[0,1,2]]]],\"semantics\":{\"surfaces\":[{\"type\":\
+              \"RoofSurface\"}],\"values\":[[0,null]]},\"texture\":{\"t\":{\"values\":[[[[0,0,1,2,3],[null]],[[null]]]]}}},{\"type\":\"GeometryInstance\",\
+              \"template\":0,\"boundaries\":[1],\"transformationMatrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]}]}},\"vertices\":[[0,0,0],[9,0,0],[9,9,1],[0,9,1],\
+              [3,3,0],[3,6,1],[6,6,1],[6,3,0]],\"appearance\":{\"textures\":[{\"type\":\"PNG\",\"image\":\"a.png\"}],\"vertices-texture\":[[0,0],[1,0],\
+              [1,1],[0,1]]},\"geometry-templates\":{\"templates\":[{\"type\":\"MultiSurface\",\"lod\":\"2\",\"boundaries\":[[[0,1,2]]]}],\
+              \"vertices-templates\":[[0,0,0],[1,0,0],[0,1,0]]}}"
+                .to_vec(),
+        ],
+        "drawings" => vec![
+            bytes("assets/jacksboro/works.dxf", 0..0),
+            b"0\nSECTION\n2\nENTITIES\n0\nSPLINE\n71\n2\n40\n0\n40\n0\n40\n0\n40\n1\n40\n1\n40\n1\n10\n0\n20\n0\n10\n1\n20\n1\n10\n2\n20\n0\n0\nHATCH\n91\n1\n\
+              92\n0\n93\n2\n72\n2\n10\n5\n20\n5\n40\n2\n50\n0\n51\n180\n73\n1\n72\n1\n10\n3\n20\n5\n11\n7\n21\n5\n0\nPOLYLINE\n70\n64\n0\nVERTEX\n70\n192\n\
+              10\n0\n20\n0\n0\nVERTEX\n70\n128\n71\n1\n72\n1\n73\n1\n0\nSEQEND\n0\nENDSEC\n0\nEOF\n"
+                .to_vec(),
+            b"AutoCAD Binary DXF\r\n\x1a\0\0\0SECTION\0\x02\0ENTITIES\0\0\0POINT\0\x0a\0\0\0\0\0\0\0\xf0\x3f\x14\0\0\0\0\0\0\0\xf0\x3f\0\0ENDSEC\0\0\0EOF\0".to_vec(),
+        ],
+        "land_xml" => vec![
+            bytes("assets/jacksboro/bypass.xml", 400..1200),
+            b"<LandXML><Units><Imperial linearUnit=\"foot\"/></Units><CoordinateSystem epsgCode=\"32616\"/><CgPoints><CgPoint name=\"1\">0 0 1</CgPoint>\
+              </CgPoints><Alignments><Alignment name=\"a\" staStart=\"5\"><CoordGeom><Line><Start pntRef=\"1\"/><End>0 90</End></Line><Spiral rot=\"cw\" \
+              length=\"30\" radiusStart=\"INF\" radiusEnd=\"90\"><Start>0 90</Start><PI>0 110</PI><End>-2 119</End></Spiral><Curve rot=\"ccw\" radius=\"90\">\
+              <Start>-2 119</Start><End>20 150</End></Curve></CoordGeom><Profile><ProfAlign><PVI>5 1</PVI><CircCurve radius=\"900\">60 9</CircCurve><UnsymParaCurve \
+              lengthIn=\"9\" lengthOut=\"12\">90 2</UnsymParaCurve><PVI>200 3</PVI></ProfAlign></Profile></Alignment></Alignments><Surfaces><Surface name=\"s\">\
+              <Definition><Pnts><P id=\"1\">0 0 1</P><P id=\"2\">90 0 2</P><P id=\"3\">0 90 3</P></Pnts><Faces><F>1 2 3</F></Faces></Definition></Surface>\
+              </Surfaces></LandXML>"
+                .to_vec(),
+            b"<LandXML><Surfaces><Surface><SourceData><DataPoints><PntList3D>0 0 1 0 90 2 90 0 3 90 90 4</PntList3D></DataPoints><Breaklines><Breakline>\
+              <PntList3D>0 0 1 90 90 4</PntList3D></Breakline></Breaklines><Boundaries><Boundary bndType=\"void\"><PntList2D>9 9 9 20 20 20</PntList2D></Boundary>\
+              </Boundaries></SourceData></Surface></Surfaces></LandXML>"
+                .to_vec(),
         ],
         "models" => vec![
             file(0, "assets/models/watchtower.3ds"),
@@ -144,6 +189,32 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
             // A lake all of whose points are one.
             any.chain([b"\xf8\xff\xff\x9a\x9a\x90\xff\xff".to_vec()]).collect()
         }
+        "tables" => vec![
+            whole(0, "assets/jacksboro/units.csv"),
+            text(1, "sep=;\nName;L\u{e4}nge;Breite;a\n\"x\ny\";-84,2;36,3;16SGF5000018000\nb;84.2W;36.3N;1.0031E+19\n"),
+            text(0, "a;wkt\n1;POINT Z (1 2 3)\n2;\"POLYGON((0 0,4 0,4 4,0 0),(1 0.5,2 0.5,2 1,1 0.5))\"\n3;GEOMETRYCOLLECTION(POINT(1 1))\n"),
+            text(2, "<o:c xmlns:o='o' xmlns:t='t' xmlns:x='x'><o:body><o:spreadsheet><t:table t:name='a'><t:table-row><t:table-cell><x:p>lon</x:p>\
+                     </t:table-cell><t:table-cell><x:p>lat</x:p></t:table-cell></t:table-row><t:table-row t:number-rows-repeated='3'>\
+                     <t:table-cell t:number-columns-repeated='2' o:value-type='float' o:value='7.5'/></t:table-row></t:table></o:spreadsheet>\
+                     </o:body></o:c>"),
+            text(3, "<worksheet><dimension ref='A1:XFD1048576'/><sheetData><row r='1'><c r='A1' t='inlineStr'><is><t>a</t></is></c>\
+                     <c r='B1' t='inlineStr'><is><t>sidc</t></is></c></row><row r='2'><c r='A2' t='inlineStr'><is><t>16SGF5000018000</t></is>\
+                     </c><c r='B2'><v>10031000161211000000</v></c></row></sheetData></worksheet>"),
+        ],
+        "positions" => [
+            "750000,4018000",
+            "16S GF 50000 18000",
+            "ZAH12345678",
+            "33T 500000 5200000",
+            "33 south 500000 5200000",
+            "Z 2100000 1900000",
+            "36.277N 84.215W",
+            "W 84\u{b0}12'54\" N 36\u{b0}16'37\"",
+            "36 16.62 N 84 12.9 W",
+            "3616N08412W",
+        ]
+        .map(|words| words.as_bytes().to_vec())
+        .to_vec(),
         "http_request" => {
             const UTM: &str = "crs=EPSG:32616";
             let asked = |choice: u8, words: &str| text(choice, words);
@@ -206,6 +277,14 @@ fn seeds_reach_behind_the_first_check() {
     use sandtable_dem::read::read;
     let grid = &seeds("elevation")[2];
     assert!(read("a.asc", &grid[1..], &DemHints::default()).is_ok());
+    for seed in seeds("vectors").iter().filter(|seed| seed[0] >= 9) {
+        let layer = sandtable_vector::read::read("a.xml", &seed[1..], &Default::default());
+        assert!(
+            layer.is_ok_and(|layer| !layer.features.is_empty() && layer.faults.is_empty()),
+            "{}",
+            seed[0]
+        );
+    }
     for seed in seeds("scene_build") {
         let tables = String::from_utf8(seed).expect("text");
         targets::on_hill(&tables).unwrap_or_else(|error| panic!("{tables}: {error:?}"));

@@ -146,7 +146,8 @@ fn overlap(dark: &[f64], theirs: &[bool]) -> f64 {
         both += usize::from(ours && theirs);
         either += usize::from(ours || theirs);
     }
-    f64::from(both as u32) / f64::from(either.max(1) as u32)
+    // Both may be light all over, as the track of one's own ship is.
+    if either == 0 { 1.0 } else { f64::from(both as u32) / f64::from(either as u32) }
 }
 
 /// What is wrong with a symbol, and how well it overlaps.

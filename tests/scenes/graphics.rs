@@ -25,7 +25,16 @@ const CLEARANCE_M: f64 = 0.01;
 
 /// Rolling ground of 20 km by 20 km with the tables of `text` on it.
 fn scene(text: &str) -> Result<SceneModel, String> {
+    scene_with(text, "")
+}
+
+/// The same, with `features` in a file `graphics.geojson` beside the scene.
+fn scene_with(text: &str, features: &str) -> Result<SceneModel, String> {
     let folder = Scratch::new();
+    folder.write(
+        "graphics.geojson",
+        format!("{{\"type\": \"FeatureCollection\", \"features\": [{features}]}}"),
+    );
     let mut grid = "ncols 101\nnrows 101\nxllcenter 0\nyllcenter 0\ncellsize 200\n".to_owned();
     for row in 0..101 {
         for column in 0..101 {
@@ -173,6 +182,43 @@ fn an_axis_is_taken_from_start_to_tip_with_a_width_or_by_the_standard() {
 }
 
 #[test]
+fn graphics_of_a_file_have_their_numbers_from_properties() {
+    let feature = |properties: &str, shape: &str, places: &str| {
+        format!(
+            "{{\"type\": \"Feature\", \"properties\": {{{properties}}}, \"geometry\": {{\"type\": \"{shape}\", \
+             \"coordinates\": {places}}}}}"
+        )
+    };
+    let text = "crs = \"EPSG:32616\"\n[[graphic]]\nfile = \"graphics.geojson\"\ncrs = \"EPSG:32616\"\n";
+    let features = [
+        feature(
+            "\"sidc\": \"10032500001514030000\", \"width\": 800, \"unique_designation\": \"IRON\"",
+            "LineString",
+            "[[2000, 2000], [6000, 3000], [9000, 7000]]",
+        ),
+        feature(
+            "\"kind\": \"launch_area\", \"distances\": \"800, 300\", \"azimuths\": 45",
+            "Point",
+            "[9000, 9000]",
+        ),
+        feature("\"kind\": \"45110301\"", "LineString", "[[2000, 9000], [6000, 9500]]"),
+    ];
+    let scene = scene_with(text, &features.join(",")).expect("three graphics");
+    let axis = &scene.graphics[0];
+    assert_eq!((axis.width_m, axis.fields.designation.as_str()), (Some(800.0), "IRON"));
+    assert_eq!(axis.points[0], DVec2::new(9000.0, 7000.0), "from start to tip");
+    let fields = &scene.graphics[1].fields;
+    assert_eq!(
+        (fields.distances_m.as_slice(), fields.azimuths_deg.as_slice()),
+        (&[800.0, 300.0][..], &[45.0][..])
+    );
+    assert_eq!(scene.graphics[2].kind.word, "cold_front");
+    let wrong = feature("\"kind\": \"launch_area\", \"distances\": \"wide\"", "Point", "[9000, 9000]");
+    let error = scene_with(text, &wrong).map(|_| ()).expect_err("no number");
+    assert!(error.contains("the property `distances` lists 'wide'"), "{error}");
+}
+
+#[test]
 fn areas_of_the_hostile_side_are_marked_and_weather_has_its_colors() {
     let square = "[[2000, 2000], [6000, 2000], [6000, 6000], [2000, 6000]]";
     let text = format!(
@@ -261,6 +307,26 @@ fn layers_of_sight_off_the_ground_are_refused_by_their_place() {
     assert!(error.contains("100 follows 200"), "{error}");
 }
 
+#[test]
+fn every_observer_target_and_place_off_the_ground_is_told_by_its_own_place() {
+    let text = "[[viewshed]]\nobservers = [[5000, 5000], [99000, 0], [6000, 6000], [0, 77000]]\n\
+                [[sight]]\nobserver = [-5000, 5000]\ntargets = [[5000, 5000], [-9000, 5000],\n[9000, -50]]\n\
+                [[range]]\nat = [99000, 5000]\ndistances = [200, 100]\n";
+    let error = scene(text).map(|_| ()).expect_err("off the ground");
+    for told in [
+        "scene.toml:4:28: ",
+        "scene.toml:4:54: ",
+        "scene.toml:6:12: ",
+        "scene.toml:7:26: ",
+        "scene.toml:8:1: ",
+        "scene.toml:10:6: ",
+        "100 follows 200",
+    ] {
+        assert!(error.contains(told), "{told} in {error}");
+    }
+    assert_eq!(error.matches("lies off the elevation model").count(), 6, "{error}");
+}
+
 /// The part of `scenes/SYMBOLS.md` on graphics.
 fn graphics_page() -> String {
     let mut page = String::from(
@@ -268,7 +334,7 @@ fn graphics_page() -> String {
          and 46 (lines and areas of weather and sea). `kind` takes\nthe word, or the code of set 25. The draw rule is that of \
          MIL-STD-2525D (2014), appendix H, or of 2525E, which is the source of\nevery row: it says where the points go, in \
          which order; the table of rules follows. Areas of the hostile side are marked `ENY`.\nFields: T `designation`, T1 `designation_2`, B `echelon`, AS `country`, N \
-         `hostile`, H `further`, AP `target`, W `from`, W1 `until`, X\n`elevations`, AM `distances`, AN `azimuths`.\n\n| code | \
+         `hostile`, H `further`, V `type`, C `quantity`, Y `location`, Q `direction`, AP `target`, W `from`, W1 `until`, X\n`elevations`, AM `distances`, AN `azimuths`.\n\n| code | \
          kind | name | rule | points | fields |\n|---|---|---|---|---|---|\n",
     );
     let mut set = 25;

@@ -130,6 +130,12 @@ for (const version of VERSIONS) {
   }
 }
 
+/** Every field, as its letters. */
+const LETTERS = {
+  T_UNIQUE_DESIGNATION_1: "FT", T1_UNIQUE_DESIGNATION_2: "FT1", H_ADDITIONAL_INFO_1: "FH", N_HOSTILE: "ENY", W_DTG_1: "FW",
+  W1_DTG_2: "FW1", AP_TARGET_NUMBER: "FAP", AS_COUNTRY: "FAS", V_EQUIP_TYPE: "FV",
+};
+
 console.log("# Lines and texts of graphics as mil-sym-ts 2.10.4 draws them, in meters; a text is 120 m high.");
 console.log("# Made by tests/tools/graphics_oracle.mjs.");
 /** Whether a line has any length: the renderer draws some that have none, at a corner of the picture. */
@@ -144,14 +150,23 @@ for (const [id, shape] of Object.entries(OTHER_POINTS)) {
 for (const [id, { version, rule, least, most, shape }] of drawn) {
   const isMetoc = !id.startsWith("25");
   const base = shape ? shape : isMetoc ? pointsOf(/^AREA/.test(rule) ? "area" : "line", 2, 99) : pointsOf(rule, least, most);
-  for (const points of [base, base.map(turned), base.map(mirrored)]) {
-    const fields = { ...(FIELDS[rule] || {}), T_UNIQUE_DESIGNATION_1: "RED" };
+  for (const points of [base, base.map(turned), base.map(mirrored), null]) {
+    // After three shapes the texts of the first one with all fields.
+    const isFull = points === null;
+    const letters = isFull ? LETTERS : { T_UNIQUE_DESIGNATION_1: "RED" };
+    const fields = { ...(FIELDS[rule] || {}), ...letters };
     const modifiers = new Map(Object.entries(fields).map(([name, value]) => [Modifiers[name], value]));
-    const places = points.map(([x, y]) => `${x / METERS},${y / METERS}`).join(" ");
-    const sidc = `${version}03${id.slice(0, 2)}0000${id.slice(2)}0000${version > 12 ? "0000000000" : ""}`;
+    const places = (points || base).map(([x, y]) => `${x / METERS},${y / METERS}`).join(" ");
+    const latest = isFull && lookup.getMSLInfo(id, 13) ? 13 : version;
+    const sidc = `${latest}${isFull ? "06" : "03"}${id.slice(0, 2)}0000${id.slice(2)}0000${latest > 12 ? "0000000000" : ""}`;
     const text = WebRenderer.RenderSymbol2D("id", id, "", sidc, places, 1000, 600, box, modifiers, new Map(), GEOJSON);
     const features = JSON.parse(text).features;
     if (!features) continue;
+    if (isFull) {
+      const labels = features.map((feature) => feature.properties.label).filter((label) => label);
+      if (labels.length) console.log("fields", labels.join(" ").replaceAll("\n", " "));
+      continue;
+    }
     console.log(`graphic ${id.slice(0, 2)} ${id.slice(2)} ${rule}`);
     console.log("points", list(points));
     for (const { geometry, properties } of features) {

@@ -1,6 +1,7 @@
 // Writes the tables of symbols in tests/symbology/milsymbol/: boxes, anchors and dark pixels of the symbols as npm milsymbol
 // 3.0.4 draws them, so that `cargo test` needs no node. A file is a symbol set, with every main icon and every modifier that
-// milsymbol has of it; `amplifiers.txt` holds frames, echelons, mobility, status and roles.
+// milsymbol has of it; `amplifiers.txt` holds frames, echelons, mobility, status and roles; `common.txt` the common modifiers of
+// MIL-STD-2525E and the frames that digit 23 states.
 //
 //     npm install --prefix TOOLS milsymbol@3.0.4 @resvg/resvg-js@2.6.2
 //     NODE_PATH=TOOLS/node_modules node tests/tools/milsymbol_table.mjs tests/symbology/milsymbol [FILE …]
@@ -186,6 +187,7 @@ function amplifiers() {
       table.add(code(identity, "10", { amplifier }));
       table.add(code(identity, "10", { amplifier, role: 4 }), false);
     }
+    for (const amplifier of [13, 15, 18]) table.add(code(identity, "20", { amplifier }), identity === 3);
     for (const amplifier of [31, 32, 33, 34, 35, 36, 37, 41, 42, 51, 52, 61, 62]) table.add(code(identity, "15", { amplifier, entity: "120200" }));
     for (const role of [1, 2, 3, 4, 5, 6, 7]) for (const set of ["10", "15", "20", "01"]) table.add(code(identity, set, { role }), role === 2 || role === 4);
     for (const status of [1, 2, 3, 4, 5]) table.add(code(identity, "10", { status }), status !== 1);
@@ -195,9 +197,22 @@ function amplifiers() {
   return table.lines;
 }
 
+function common() {
+  const table = new Table();
+  const extended = (identity, set, flags, frame, options) => code(identity, set, { version: 13, ...options }) + flags + frame + "0000000";
+  const { m1, m2 } = icons("10", 13);
+  const numbers = (drawings) => Object.keys(drawings).filter((key) => key.length === 3).sort();
+  for (const identity of IDENTITIES) table.add(extended(identity, "10", "00", 0, {}));
+  for (const key of numbers(m1)) for (const identity of IDENTITIES) table.add(extended(identity, "10", "10", 0, { modifiers: key.slice(1) + "00" }));
+  for (const key of numbers(m2)) for (const identity of IDENTITIES) table.add(extended(identity, "10", "01", 0, { modifiers: "00" + key.slice(1) }));
+  // Milsymbol draws 9, cyberspace, without its corner.
+  for (const frame of [1, 2, 3, 4, 5, 6, 7, 8]) for (const set of ["01", "20", "40"]) for (const identity of IDENTITIES) table.add(extended(identity, set, "00", frame, {}));
+  return table.lines;
+}
+
 const [folder, ...wanted] = process.argv.slice(2);
 mkdirSync(folder, { recursive: true });
-for (const name of wanted.length ? wanted : [...SETS, "amplifiers"]) {
-  const lines = name === "amplifiers" ? amplifiers() : symbolSet(name);
+for (const name of wanted.length ? wanted : [...SETS, "amplifiers", "common"]) {
+  const lines = name === "amplifiers" ? amplifiers() : name === "common" ? common() : symbolSet(name);
   writeFileSync(join(folder, `${name}.txt`), lines.join("\n") + "\n");
 }

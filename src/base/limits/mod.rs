@@ -148,14 +148,20 @@ limits! {
         OSM_AREA_VERTICES = 1 << 25 => COUNT, "vertices",
             "of all areas of an OpenStreetMap extract, whose relations may name the same ways again and again",
             "cut it with osmium extract";
+        OVERLAY_VERTICES = 1 << 24 => COUNT, "vertices",
+            "of all circles, arcs and racetracks of an NVG file, each of which a few letters state",
+            "leave some of them out";
         RING_STEPS = 1 << 31 => STEPS, "steps",
             "that sort the rings of one file into polygons and holes: seconds, and a hundred times what real layers take",
             "mend the file: ogr2ogr -makevalid";
         XML_DEPTH = 64 => Fixed, "levels",
-            "of elements in KML, GPX and OpenStreetMap XML",
+            "of elements in XML: KML, GPX, OpenStreetMap, overlays and scenarios",
             "flatten its folders";
-        CITY_VERTICES = 1 << 23 => COUNT, "vertices",
-            "of all surfaces of a CityJSON file with its templates wherever they are placed: some five hundred megabytes",
+        DESIGN_BYTES = 128 << 20 => COUNT, "bytes",
+            "of a DXF or LandXML file that is read for its lines: a hostile one takes thirty bytes of memory for each of its own",
+            "part it by its layers";
+        DESIGN_VERTICES = 1 << 23 => COUNT, "vertices",
+            "of a CityJSON, LandXML or DXF file with the chords of its curves, its templates and its blocks wherever they are placed: some five hundred megabytes",
             "cut it, for example with: cjio IN subset --bbox";
         GEOMETRY_DEPTH = 16 => Fixed, "levels",
             "of collections in a GeoPackage's geometry",

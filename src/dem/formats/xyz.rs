@@ -2,14 +2,16 @@
 //!
 //! Two passes: the first finds the bounds and the steps between neighboring lines, the small ones of which are the
 //! cell, since lines run along rows or columns; the second sets every point on its node. Points in any order and nodes
-//! without a point (no data) are taken; points off the nodes are scattered and must be interpolated instead.
+//! without a point (no data) are taken; points off the nodes are scattered and must be interpolated instead. A line that is no
+//! point is left out and told.
 
 use glam::{DVec2, DVec3, U64Vec2};
 
 use crate::dem_file::DemFile;
 use crate::dem_format::{DemFormat, FormatWriter, Recognition, any_size};
 use crate::formats::xyz_write::write;
-use crate::point_text::PointText;
+use crate::point_text::{PointLine, PointText};
+use crate::wrong_lines::WrongLines;
 use sandtable_base::limits::RASTER_SAMPLES;
 use sandtable_raster::error::DemErrorKind;
 use sandtable_raster::raster::{Raster, Samples, north_up_nodes};
@@ -40,7 +42,8 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
     let text = std::str::from_utf8(file.bytes)
         .map_err(|error| FORMAT.broken(format!("byte {} is not UTF-8 text", error.valid_up_to())))?;
     let text = PointText::new(text);
-    let lattice = XyzLattice::find(&text)?;
+    let mut wrong = WrongLines::default();
+    let lattice = XyzLattice::find(&text, &mut wrong)?;
     let XyzGrid { values, are_whole, low, high, without_height } = XyzGrid::fill(&text, &lattice)?;
     let left_out = format!("{without_height} of its points have no height, and there is no data");
     let north_west = DVec2::new(lattice.min.x, lattice.max.y);
@@ -53,17 +56,24 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
             _ => "Float32",
         },
         crs: file.crs()?,
-        notes: if without_height > 0 { vec![left_out] } else { Vec::new() },
+        notes: wrong.note().into_iter().chain((without_height > 0).then_some(left_out)).collect(),
         ..Raster::new(lattice.columns as u32, Samples::F32(values))
             .placed(north_up_nodes(north_west, lattice.cell))
     })
 }
 
-fn points(text: &PointText) -> impl Iterator<Item = Result<DVec3, DemErrorKind>> {
+/// The points of a text; `wrong` is called with the lines that are none.
+fn points<'a>(
+    text: &'a PointText<'_>,
+    mut wrong: impl FnMut(&PointLine<'_>) + 'a,
+) -> impl Iterator<Item = DVec3> + 'a {
     let columns = [0, 1, 2].map(|index| text.columns[index].unwrap_or(index));
-    text.lines().map(move |line| {
-        let wrong = || FORMAT.broken(format!("line {} is '{}', not x, y and z", line.number, line.quote()));
-        line.point(columns).ok_or_else(wrong)
+    text.lines().filter_map(move |line| {
+        let point = line.point(columns);
+        if point.is_none() {
+            wrong(&line);
+        }
+        point
     })
 }
 
@@ -95,12 +105,13 @@ struct XyzLattice {
 }
 
 impl XyzLattice {
-    fn find(text: &PointText) -> Result<Self, DemErrorKind> {
+    /// The lattice of the points of a text; lines that are none are added to `wrong`.
+    fn find(text: &PointText<'_>, wrong: &mut WrongLines) -> Result<Self, DemErrorKind> {
         let (mut count, mut min, mut max) = (0u64, DVec2::INFINITY, DVec2::NEG_INFINITY);
         let (mut x_steps, mut y_steps) = (Steps::default(), Steps::default());
         let mut before: Option<DVec2> = None;
-        for point in points(text) {
-            let at = point?.truncate();
+        for point in points(text, |line| wrong.add(line)) {
+            let at = point.truncate();
             count += 1;
             (min, max) = (min.min(at), max.max(at));
             let step = before.map_or(DVec2::ZERO, |before| (at - before).abs());
@@ -109,6 +120,9 @@ impl XyzLattice {
             before = Some(at);
         }
         let step = DVec2::new(x_steps.small(), y_steps.small());
+        if let Some((line, found)) = wrong.refused(usize::try_from(count).unwrap_or(usize::MAX)) {
+            return Err(FORMAT.broken(format!("line {line} is '{found}', not x, y and z")));
+        }
         if count == 0 {
             return Err(FORMAT.broken("it holds no point"));
         }
@@ -147,13 +161,12 @@ struct XyzGrid {
 }
 
 impl XyzGrid {
-    fn fill(text: &PointText, lattice: &XyzLattice) -> Result<Self, DemErrorKind> {
+    fn fill(text: &PointText<'_>, lattice: &XyzLattice) -> Result<Self, DemErrorKind> {
         let (columns, rows) = (lattice.columns as usize, lattice.rows as usize);
         let values = vec![f32::NAN; columns * rows];
         let (low, high) = (f64::INFINITY, f64::NEG_INFINITY);
         let mut grid = Self { values, are_whole: true, low, high, without_height: 0 };
-        for point in points(text) {
-            let DVec3 { x, y, z } = point?;
+        for DVec3 { x, y, z } in points(text, |_| ()) {
             let at = DVec2::new(x - lattice.min.x, lattice.max.y - y) / lattice.cell;
             let node = at.round();
             if (at - node).abs().max_element() > OFF_NODE {
@@ -249,6 +262,13 @@ mod tests {
             let refused = grid(text).expect_err(text);
             assert!(refused.contains("nodes") && refused.contains("sandtable dem grid"), "{refused}");
         }
+    }
+
+    #[test]
+    fn a_line_that_is_no_point_leaves_its_node_without_data_and_is_told() {
+        let raster = grid("0 10 1\n5 10 2\n0 0\n5 0 4\n").expect("a grid");
+        assert!(raster.at(0, 1).is_nan() && raster.at(1, 1) == 4.0);
+        assert_eq!(raster.notes, ["left out: 1 line that is no point: line 3 is '0 0'"]);
     }
 
     #[test]

@@ -1,18 +1,20 @@
 //! Points as text (`.xyz`, `.csv`, `.txt`): a point a line, with or without a header that names the columns.
 //!
-//! A point without a height (an empty field, NaN, or a word such as `null`) is left out and counted; any other line that is not a point is an
-//! error with its number: a line dropped silently would leave a hole.
+//! A point without a height (an empty field, NaN, or a word such as `null`) and a line that is no point are left out and told; a
+//! file with as many wrong lines as points is refused with the first of them.
 
 use crate::point_text::PointText;
 use crate::points::cloud::{PointCloud, PointHints};
 use crate::points::error::PointsError;
+use crate::wrong_lines::WrongLines;
 use sandtable_base::limits::GRID_POINTS;
 use sandtable_base::message::numbers::counted;
 
 /// Reads a table of points.
 ///
 /// # Errors
-/// [`PointsError`] for the first line that is not a point, a header without x, y or z, and a file without points.
+/// [`PointsError`] for a file with as many lines that are no points as points, a header without x, y or z, and a file without
+/// points.
 pub fn read(bytes: &[u8], hints: &PointHints) -> Result<PointCloud, PointsError> {
     let text = std::str::from_utf8(bytes).map_err(|error| PointsError::NotText(error.valid_up_to()))?;
     let text = PointText::new(text);
@@ -25,15 +27,19 @@ pub fn read(bytes: &[u8], hints: &PointHints) -> Result<PointCloud, PointsError>
     };
     let mut points = Vec::new();
     let mut without_height = 0usize;
+    let mut wrong = WrongLines::default();
     for line in text.lines() {
         match line.point(columns) {
             Some(point) if point.z.is_nan() => without_height += 1,
             Some(point) if point.z.is_finite() => points.push(point),
-            _ => return Err(PointsError::Line { line: line.number, found: line.quote() }),
+            _ => wrong.add(&line),
         }
         if points.len() as u64 > GRID_POINTS.get() {
             return Err(PointsError::TooMany(points.len() as u64));
         }
+    }
+    if let Some((line, found)) = wrong.refused(points.len() + without_height) {
+        return Err(PointsError::Line { line, found });
     }
     if points.is_empty() {
         return Err(PointsError::Empty(without_height));
@@ -42,7 +48,7 @@ pub fn read(bytes: &[u8], hints: &PointHints) -> Result<PointCloud, PointsError>
         "{} left out",
         counted(without_height, "point without a height was", "points without a height were")
     );
-    let notes = if without_height > 0 { vec![left_out] } else { Vec::new() };
+    let notes = wrong.note().into_iter().chain((without_height > 0).then_some(left_out)).collect();
     Ok(PointCloud { crs: hints.crs.cloned(), notes, ..PointCloud::new(points) })
 }
 
@@ -73,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_that_is_no_point_is_refused_with_its_number() {
+    fn as_many_lines_that_are_no_points_as_points_are_refused_with_the_number_of_the_first() {
         for (text, wanted) in [
             ("x,y,z\n1,2,3\n3,north,1\n", "line 3: found '3,north,1'"),
             ("1 2 3\n4 5\n", "line 2: found '4 5'"),
@@ -86,6 +92,15 @@ mod tests {
             assert!(refused.contains(wanted), "{refused}");
         }
         assert!(read(b"1 2 3\n\xff\xfe", &PointHints::default()).is_err());
+    }
+
+    #[test]
+    fn a_line_that_is_no_point_among_others_is_left_out_and_told() {
+        let text = b"x,y,z\n1,2,3\n3,north,1\n4,5,6\n7,8,inf\n7,8,9\n";
+        let cloud = read(text, &PointHints::default()).expect("three points");
+        assert_eq!(cloud.points.len(), 3);
+        let told = "left out: 2 lines that are no points: line 3 is '3,north,1', line 5 is '7,8,inf'";
+        assert_eq!(cloud.notes, [told]);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyUserWarning};
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyAnyMethods};
+use pyo3::types::{IntoPyDict, PyAnyMethods, PyTuple};
 use sandtable::{
     Crs, Dem, DemOptions, Elevation, HeightSlices, HillshadeOptions, Interpolation, Samples, Sampling,
     Sector, SightQuery, Status, Surface, ViewshedOptions,
@@ -35,20 +35,23 @@ struct DemSource {
     allow_remote: Vec<String>,
 }
 
-/// What an elevation file does not state: the system, the value for no data, the vertical datum, meters per value and of value
-/// 0, and meters between samples.
-type StatedDem = (Option<String>, Option<f64>, Option<String>, Option<f64>, Option<f64>, Option<f64>);
+/// What an elevation file does not state: the system, the value for no data, the vertical datum, meters in the unit of heights, meters
+/// per value and of value 0, and meters between samples.
+type StatedDem =
+    (Option<String>, Option<f64>, Option<String>, Option<f64>, Option<f64>, Option<f64>, Option<f64>);
 
 impl DemSource {
     fn open(self, py: Python<'_>) -> PyResult<PyDem> {
         crate::remote::allow(&self.allow_remote)?;
-        let (crs, nodata, vertical_datum, height_scale, height_offset, cell) = self.stated.clone();
+        let (crs, nodata, vertical_datum, vertical_unit, height_scale, height_offset, cell) =
+            self.stated.clone();
         let crs = crs.map(|text| Crs::parse(&text)).transpose().map_err(wrong_value)?;
         let opened = py.detach(|| {
             let options = DemOptions {
                 crs,
                 nodata,
                 vertical_datum,
+                vertical_unit,
                 height_scale,
                 height_offset,
                 cell,
@@ -81,14 +84,14 @@ impl PyDem {
     /// Opens an elevation file with its sidecars, the tiles in a folder, or the ground of a scene (.toml).
     ///
     /// A file of more than a million samples stays on disk where its format allows that, and queries read what they need.
-    /// `crs`, `nodata`, `vertical_datum`, `height_scale` and `height_offset` (meters) and `cell` (meters) state what the file
-    /// does not.
+    /// `crs`, `nodata`, `vertical_datum`, `vertical_unit` (meters in the unit of its heights), `height_scale` and `height_offset`
+    /// (meters) and `cell` (meters) state what the file does not.
     ///
     /// `path` may be an address, a str: https://, s3://, gs:// or az://. Its host must be one of `allow_remote`, each HOST or
     /// HOST:PORT, which are allowed in this process from then on; credentials come from the variables of the clouds. Raises
     /// SandtableError.
     #[staticmethod]
-    #[pyo3(signature = (path, *, crs = None, nodata = None, vertical_datum = None, height_scale = None, height_offset = None, cell = None, allow_remote = Vec::new()), text_signature = "(path, *, crs=None, nodata=None, vertical_datum=None, height_scale=None, height_offset=None, cell=None, allow_remote=())")]
+    #[pyo3(signature = (path, *, crs = None, nodata = None, vertical_datum = None, vertical_unit = None, height_scale = None, height_offset = None, cell = None, allow_remote = Vec::new()), text_signature = "(path, *, crs=None, nodata=None, vertical_datum=None, vertical_unit=None, height_scale=None, height_offset=None, cell=None, allow_remote=())")]
     #[expect(clippy::too_many_arguments, reason = "they are keywords of Python")]
     fn open(
         py: Python<'_>,
@@ -96,13 +99,14 @@ impl PyDem {
         crs: Option<&Bound<'_, PyAny>>,
         nodata: Option<f64>,
         vertical_datum: Option<String>,
+        vertical_unit: Option<f64>,
         height_scale: Option<f64>,
         height_offset: Option<f64>,
         cell: Option<f64>,
         allow_remote: Vec<String>,
     ) -> PyResult<Self> {
         let crs = crs.map(crate::arguments::crs).transpose()?.map(|crs| crs.name().to_owned());
-        let stated = (crs, nodata, vertical_datum, height_scale, height_offset, cell);
+        let stated = (crs, nodata, vertical_datum, vertical_unit, height_scale, height_offset, cell);
         DemSource { path, stated, allow_remote }.open(py)
     }
 
@@ -164,6 +168,12 @@ impl PyDem {
     #[getter]
     fn vertical_datum(&self) -> Option<String> {
         self.elevation.vertical_datum()
+    }
+
+    /// What reading its files left out or guessed, each in a sentence.
+    #[getter]
+    fn notes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.elevation.notes())
     }
 
     /// The samples: float32 or float64 of shape (rows, columns), from the north-west, NaN for no data, in the file's vertical

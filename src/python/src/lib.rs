@@ -19,6 +19,7 @@ mod rasters;
 mod remote;
 mod results;
 mod scene;
+mod symbol;
 
 use pyo3::prelude::*;
 
@@ -37,6 +38,8 @@ mod _sandtable {
     use crate::results::{PyLineOfSight, PyProfile};
     #[pymodule_export]
     use crate::scene::PyScene;
+    #[pymodule_export]
+    use crate::symbol::PySymbol;
     #[pymodule_export]
     use crate::{licenses, set_limit};
 

@@ -162,6 +162,15 @@ def test_models_travel_to_other_processes_by_name_or_by_value():
     assert pickle.loads(sent).vertical_datum == opened.vertical_datum
 
 
+def test_a_file_says_what_reading_it_left_out_and_is_read_in_the_unit_that_is_stated(tmp_path):
+    path = tmp_path / "a.xyz"
+    path.write_text("0 10 1\n5 10 2\n0 0 deep\n5 0 4\n")
+    opened = sandtable.Dem.open(path, vertical_unit=0.3048)
+    assert len(opened.notes) == 1 and "line 3 is '0 0 deep'" in opened.notes[0]
+    for dem in [opened, pickle.loads(pickle.dumps(opened))]:
+        np.testing.assert_allclose(dem.heights([[5.0, 0.0]]), [4 * 0.3048])
+
+
 def test_other_threads_run_while_heights_are_computed():
     dem = sandtable.Dem.open(JACKSBORO)
     xy = np.tile(scattered(dem, 1000), (1000, 1))

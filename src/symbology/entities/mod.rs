@@ -6,19 +6,26 @@
 
 mod activity;
 mod air;
+mod cyberspace;
 mod dismounted;
 pub mod entity;
 mod land_civilian;
 mod land_equipment;
 mod land_installation;
 mod land_unit;
+mod mine_warfare;
+mod missile;
 mod sea_surface;
+mod signals;
+mod space;
+mod subsurface;
 
+use crate::code::SymbolCode;
 use crate::entities::entity::SymbolEntity;
 use crate::fields::SymbolSet;
 
 /// The sets that have entities.
-pub const SETS: [SymbolSet; 8] = [
+pub const SETS: [SymbolSet; 19] = [
     SymbolSet::LandUnit,
     SymbolSet::LandCivilian,
     SymbolSet::LandEquipment,
@@ -26,7 +33,18 @@ pub const SETS: [SymbolSet; 8] = [
     SymbolSet::Dismounted,
     SymbolSet::Activity,
     SymbolSet::Air,
+    SymbolSet::AirMissile,
+    SymbolSet::Space,
+    SymbolSet::SpaceMissile,
     SymbolSet::SeaSurface,
+    SymbolSet::Subsurface,
+    SymbolSet::MineWarfare,
+    SymbolSet::SignalsSpace,
+    SymbolSet::SignalsAir,
+    SymbolSet::SignalsLand,
+    SymbolSet::SignalsSurface,
+    SymbolSet::SignalsSubsurface,
+    SymbolSet::Cyberspace,
 ];
 
 /// The entities of a set that are drawn; none of a set outside [`SETS`].
@@ -39,9 +57,31 @@ pub fn entities(set: SymbolSet) -> &'static [SymbolEntity] {
         SymbolSet::LandInstallation => land_installation::LAND_INSTALLATIONS,
         SymbolSet::Activity => activity::ACTIVITIES,
         SymbolSet::Air => air::AIRCRAFT,
+        SymbolSet::AirMissile => missile::AIR_MISSILES,
+        SymbolSet::Space => space::SPACECRAFT,
+        SymbolSet::SpaceMissile => missile::SPACE_MISSILES,
         SymbolSet::SeaSurface => sea_surface::SHIPS,
+        SymbolSet::Subsurface => subsurface::SUBMARINES,
+        SymbolSet::MineWarfare => mine_warfare::SEA_MINES,
+        SymbolSet::SignalsSpace
+        | SymbolSet::SignalsAir
+        | SymbolSet::SignalsLand
+        | SymbolSet::SignalsSurface
+        | SymbolSet::SignalsSubsurface => signals::SIGNALS,
+        SymbolSet::Cyberspace => cyberspace::CYBERSPACE,
         _ => &[],
     }
+}
+
+/// The entities that MIL-STD-2525E has under codes that mean something else in MIL-STD-2525D.
+pub fn changed(set: SymbolSet) -> &'static [SymbolEntity] {
+    if set == SymbolSet::Cyberspace { cyberspace::CHANGED } else { &[] }
+}
+
+/// The entity of a code, as the code's edition has it, if it is drawn.
+pub fn of(code: &SymbolCode) -> Option<&'static SymbolEntity> {
+    let changed = if code.version.has_changes_of_e() { changed(code.set) } else { &[] };
+    changed.iter().chain(entities(code.set)).find(|entity| entity.code == code.entity)
 }
 
 /// An entity of a set, if it is drawn.

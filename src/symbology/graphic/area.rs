@@ -73,6 +73,7 @@ pub fn inner_text(kind: &GraphicKind, input: &GraphicInput<'_>) -> String {
         fields.named(kind.label),
         shown("T1", fields.designation_2.clone()),
         fields.heights.join("\u{2013}"),
+        shown("Y", fields.location.clone()),
         further,
         fields.times(),
     ];
@@ -82,10 +83,11 @@ pub fn inner_text(kind: &GraphicKind, input: &GraphicInput<'_>) -> String {
 /// Adds the mark of the enemy on two sides of an area: in the middles of its first leg and of the one opposite.
 pub fn mark_hostile(input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     let (points, hostile) = (input.points, &input.fields.hostile);
-    let count = points.len();
+    let (count, before) = (points.len(), drawing.texts.len());
     for leg in [0, count / 2] {
         drawing.text(hostile.clone(), points[leg].midpoint(points[(leg + 1) % count]));
     }
+    drawing.yield_texts(before);
 }
 
 /// An airfield zone (AREA20): crossed runways inside.
@@ -191,6 +193,7 @@ pub fn mined_area(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Gr
     let [top, foot] = [up, -up].map(|toward| farthest(input.points, toward) + toward * (0.6 * input.em_m));
     drawing.text_beside(fields.further.clone(), top, up);
     drawing.text_beside(fields.times(), foot, -up);
+    let before = drawing.texts.len();
     if !fields.hostile.is_empty() {
         let right = -up.perp();
         for side in [right, -right] {
@@ -198,6 +201,7 @@ pub fn mined_area(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Gr
             drawing.text_beside(fields.hostile.clone(), at, side);
         }
     }
+    drawing.yield_texts(before);
 }
 
 /// An area with a mark on its outline: wire crosses of a fenced one, or the like.

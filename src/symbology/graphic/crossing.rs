@@ -143,4 +143,10 @@ pub fn convoy(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graphi
     if text_m(&text, input.em_m) < neck {
         drawing.text(text, middle);
     }
+    // The vehicles over the rear, the times under the middle.
+    let up = if along.perp().dot(input.up) < 0.0 { -1.0 } else { 1.0 };
+    let beside = half_m + 0.3 * input.em_m;
+    let [over, under] = [along.perp() * up, -along.perp() * up];
+    drawing.text_beside(input.fields.equipment.clone(), at(0.15 * neck, up * beside), over);
+    drawing.text_beside(input.fields.times(), at(neck / 2.0, -up * beside), under);
 }

@@ -93,6 +93,8 @@ pub struct GraphicText {
     pub toward: DVec2,
     /// Whether it is there, or where a line leaves it a place.
     pub course: TextCourse,
+    /// Whether names of any graphic come before it: a mark of the enemy, or a text that the same line has elsewhere.
+    pub is_repeat: bool,
 }
 
 /// The place of a text.
@@ -159,8 +161,13 @@ impl GraphicDrawing {
     pub(super) fn text_beside(&mut self, text: impl Into<String>, at: DVec2, toward: DVec2) {
         let text = text.into();
         if !text.is_empty() {
-            self.texts.push(GraphicText { text, at, toward, course: TextCourse::Level });
+            self.texts.push(GraphicText { text, at, toward, course: TextCourse::Level, is_repeat: false });
         }
+    }
+
+    /// Lets names come before the texts from a number on.
+    pub(super) fn yield_texts(&mut self, from: usize) {
+        self.texts.iter_mut().skip(from).for_each(|text| text.is_repeat = true);
     }
 
     /// Adds a text that a line leaves a place.
@@ -171,7 +178,7 @@ impl GraphicDrawing {
             TextCourse::Ends(line) | TextCourse::Once(line) | TextCourse::Repeated(line) => line.first(),
         };
         if let Some(&at) = at.filter(|_| !text.is_empty()) {
-            self.texts.push(GraphicText { text, at, toward: DVec2::ZERO, course });
+            self.texts.push(GraphicText { text, at, toward: DVec2::ZERO, course, is_repeat: false });
         }
     }
 

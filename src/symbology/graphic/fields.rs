@@ -15,6 +15,12 @@ pub struct GraphicFields {
     pub hostile: String,
     /// H: further text.
     pub further: String,
+    /// V: the type of equipment, or of vehicles in a convoy.
+    pub equipment: String,
+    /// C: how many, or how strong an event was.
+    pub quantity: String,
+    /// Y: where it is.
+    pub location: String,
     /// AP: the number of a target.
     pub target: String,
     /// W: from when it holds.
@@ -23,6 +29,8 @@ pub struct GraphicFields {
     pub until: String,
     /// X: heights as text, such as `500 m`.
     pub heights: Vec<String>,
+    /// Q: the direction of movement in degrees clockwise from north.
+    pub direction_deg: Option<f64>,
     /// AM: distances in meters, rising.
     pub distances_m: Vec<f64>,
     /// AN: azimuths in degrees clockwise from north, in pairs.

@@ -31,6 +31,7 @@ pub fn linear_target(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut
     let beside = above * (0.3 * input.em_m);
     drawing.text_beside(input.fields.target.clone(), middle + beside, above);
     let under = kind.label.replace("{}", &input.fields.designation_2);
+    let under = [under.trim(), &input.fields.equipment].join("\n");
     drawing.text_beside(under.trim(), middle - beside, -above);
 }
 

@@ -11,6 +11,7 @@ use crate::graphic::drawing::{GraphicDrawing, GraphicInput};
 use crate::graphic::fields::GraphicFields;
 use crate::graphic::kind::GraphicKind;
 use crate::graphic::letters::letter_lines;
+use crate::graphic::plane::arrowhead;
 
 /// Units of an icon's box in a text height: a box of three letters is as wide as three letters beside it.
 const UNITS_PER_EM: f64 = 32.0;
@@ -82,6 +83,8 @@ const SUPPLY_TEXTS: &[IconText] = &[
 ];
 /// Of CBRN events (POINT7).
 const EVENT_TEXTS: &[IconText] = &[
+    ("C", [100.0, -16.0], ABOVE),
+    ("Y", [100.0, 112.0], BELOW),
     ("H", [165.0, 0.0], RIGHT),
     ("N", [150.0, 60.0], RIGHT),
     ("W", [35.0, 0.0], LEFT),
@@ -160,16 +163,39 @@ impl IconPaper {
 /// Draws the icon of a kind at its point, and its texts beside it.
 pub fn icon(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     let paper = IconPaper::new(input);
-    for statement in kind.icon.split(';').map(str::trim) {
-        match statement.strip_prefix('@').and_then(part) {
-            Some(part) => part.split(';').for_each(|statement| add(statement.trim(), &paper, drawing)),
-            None => add(statement, &paper, drawing),
-        }
+    for (statement, is_dashed) in statements(kind.icon) {
+        add(statement, is_dashed, &paper, drawing);
+    }
+    if let Some(direction_deg) = input.fields.direction_deg.filter(|_| kind.shows("Q")) {
+        movement(direction_deg, input, drawing);
     }
     for &(letters, place, side) in texts_of(kind).iter().filter(|(letters, ..)| kind.shows(letters)) {
         let text = field_text(input.fields, letters);
         drawing.text_beside(text, paper.place(DVec2::from(place)), paper.way(side));
     }
+}
+
+/// The arrow of the direction in which an event moves, on the ground from its place.
+fn movement(direction_deg: f64, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
+    /// The length of the arrow, and its head, in text heights.
+    const ARROW_EM: [f64; 3] = [3.0, 0.8, 0.4];
+    let angle = direction_deg.to_radians();
+    let toward = DVec2::new(libm::sin(angle), libm::cos(angle));
+    let [length, head, half] = ARROW_EM.map(|size| size * input.em_m);
+    let tip = input.points[0] + toward * length;
+    drawing.line([input.points[0], tip]);
+    drawing.line(arrowhead(tip, toward, head, half));
+}
+
+/// The statements of an icon with those of its parts, and whether each is dashed.
+pub(crate) fn statements(icon: &'static str) -> impl Iterator<Item = (&'static str, bool)> {
+    let whole = icon.split(';').map(str::trim);
+    let parts = whole
+        .flat_map(|statement| statement.strip_prefix('@').and_then(part).unwrap_or(statement).split(';'));
+    parts.map(str::trim).map(|statement| match statement.strip_prefix("dash ") {
+        Some(rest) => (rest, true),
+        None => (statement, false),
+    })
 }
 
 fn part(name: &str) -> Option<&'static str> {
@@ -186,21 +212,20 @@ fn field_text(fields: &GraphicFields, letters: &str) -> String {
         "AP" => fields.target.clone(),
         "W" => fields.from.clone(),
         "W1" => fields.until.clone(),
+        "C" => fields.quantity.clone(),
+        "Y" => fields.location.clone(),
+        "V" => fields.equipment.clone(),
         "X" => fields.heights.join("\u{2013}"),
         _ => String::new(),
     }
 }
 
 /// Adds one statement of an icon.
-fn add(statement: &str, paper: &IconPaper, drawing: &mut GraphicDrawing) {
-    let (is_dashed, statement) = match statement.strip_prefix("dash ") {
-        Some(rest) => (true, rest),
-        None => (false, statement),
-    };
+fn add(statement: &str, is_dashed: bool, paper: &IconPaper, drawing: &mut GraphicDrawing) {
     // The shape of a frame matters to no icon of this set: a test parses them all.
     for mark in parse(statement, FrameShape::Rectangle).unwrap_or_default() {
         match mark {
-            SymbolMark::Text { text, center, size } => {
+            SymbolMark::Text { text, center, size, .. } => {
                 let center = center.as_dvec2();
                 for line in letter_lines(&text, f64::from(size)) {
                     let flipped = line.into_iter().map(|at| paper.place(center + DVec2::new(at.x, -at.y)));
@@ -298,5 +323,69 @@ mod tests {
         assert!((top - 1320.0).abs() < 1e-9, "as high as 160 units, twice: {top}");
         assert_eq!(drawing.texts[0].text, "7");
         assert!(drawing.texts[0].at.y < 500.0, "at the right of what is up");
+    }
+
+    /// Icons as another library draws them, without letters, in the same box; `tests/tools/points_oracle.mjs` makes it.
+    const TABLE: &str = include_str!("../../../tests/symbology/points.txt");
+
+    /// The lines of an icon without its letters, in its box.
+    fn figure(icon: &'static str) -> Vec<Vec<DVec2>> {
+        let parsed = |(statement, _)| parse(statement, FrameShape::Rectangle).unwrap_or_default();
+        let marks = statements(icon).flat_map(parsed);
+        let lines = marks.flat_map(|mark| match mark {
+            SymbolMark::Shape { steps, .. } => flattened(&steps),
+            SymbolMark::Text { .. } => Vec::new(),
+        });
+        lines.collect()
+    }
+
+    /// How far a place on `from` is off `to` at most.
+    fn farthest(from: &[Vec<DVec2>], to: &[Vec<DVec2>]) -> f64 {
+        let legs: Vec<(DVec2, DVec2)> = to
+            .iter()
+            .flat_map(|line| line.windows(2).map(|leg| (leg[0], leg[1])))
+            .filter(|leg| leg.0 != leg.1)
+            .collect();
+        let places = from
+            .iter()
+            .flat_map(|line| line.windows(2))
+            .flat_map(|leg| (0..=8).map(move |step| leg[0].lerp(leg[1], f64::from(step) / 8.0)));
+        let off = |at: DVec2| {
+            let squares = legs.iter().map(|&leg| sandtable_geom::segment::distance_squared(leg, at));
+            squares.fold(f64::INFINITY, f64::min).sqrt()
+        };
+        places.map(off).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn icons_lie_within_three_percent_of_their_box_on_those_of_another_library() {
+        /// Of a box of 200 units.
+        const MOST: f64 = 6.0;
+        let (mut wrong, mut compared) = (Vec::new(), 0);
+        for block in TABLE.split("point ").skip(1) {
+            let mut lines = block.lines();
+            let code = lines.next().expect("a code");
+            let point = |pair: &str| {
+                let (x, y) = pair.split_once(' ').expect("x and y");
+                DVec2::new(x.parse().expect("a number"), y.parse().expect("a number"))
+            };
+            let theirs: Vec<Vec<DVec2>> = lines
+                .filter_map(|line| line.strip_prefix("line "))
+                .map(|line| line.split(',').map(point).collect())
+                .collect();
+            let kind = GraphicKind::of_code(25, code).expect("a kind");
+            // Its fish leaves the box, and its minefield is empty until a modifier says which mines.
+            if matches!(kind.word, "marine_life" | "static_minefield") {
+                continue;
+            }
+            let ours = figure(kind.icon);
+            let off = farthest(&ours, &theirs).max(farthest(&theirs, &ours));
+            compared += 1;
+            if off > MOST {
+                wrong.push(format!("{code} {}: {off:.1}", kind.word));
+            }
+        }
+        assert!(wrong.is_empty(), "{compared}: {wrong:#?}");
+        assert!(compared > 250, "{compared}");
     }
 }

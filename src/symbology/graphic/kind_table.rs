@@ -57,7 +57,7 @@ const LINE_KINDS: &[GraphicKind] = &[
     // Command and control.
     row("boundary", "110100", "Boundary", "LINE7", GraphicShape::Line, [2, MOST_POINTS], "T T1 B AS", "", GraphicTint::Own, lines::boundary),
     row("light_line", "110200", "Light line", "LINE2", GraphicShape::Line, [2, MOST_POINTS], "W W1", "LL", GraphicTint::Own, lines::end_labeled),
-    row("engineer_work_line", "110300", "Engineer work line", "LINE7", GraphicShape::Line, [2, MOST_POINTS], "T T1 AS", "EWL {}", GraphicTint::Own, lines::middle_labeled),
+    row("engineer_work_line", "110300", "Engineer work line", "LINE7", GraphicShape::Line, [2, MOST_POINTS], "T T1 AS", "EWL", GraphicTint::Own, lines::work_line),
     row("control_line", "110400", "Control line, generic", "LINE1", GraphicShape::Line, [2, MOST_POINTS], "T H W W1", "{H} {}", GraphicTint::Own, lines::end_labeled),
     row("area_of_operations", "120100", "Area of operations", "AREA1", GraphicShape::Area, [3, MOST_POINTS], "T W W1", "AO {}", GraphicTint::Own, area::area),
     row("named_area_of_interest", "120200", "Named area of interest", "AREA1", GraphicShape::Area, [3, MOST_POINTS], "T W W1", "NAI {}", GraphicTint::Own, area::area),
@@ -168,9 +168,9 @@ const LINE_KINDS: &[GraphicKind] = &[
     row("jammer_bearing_line", "220107", "Bearing line, jammer", "LINE5", GraphicShape::Line, [2, MOST_POINTS], "H", "J", GraphicTint::Own, lines::bearing),
     row("radio_direction_finder_bearing_line", "220108", "Bearing line, radio direction finder", "LINE5", GraphicShape::Line, [2, MOST_POINTS], "H", "RDF", GraphicTint::Own, lines::bearing),
     // Fires.
-    row("airspace_coordination_area", "240101", "Airspace coordination area, irregular", "AREA1", GraphicShape::Area, [3, MOST_POINTS], "T X W W1", "ACA {}", GraphicTint::Own, area::area),
-    row("airspace_coordination_area_rectangle", "240102", "Airspace coordination area, rectangular", "RECTANGULAR1", GraphicShape::Corridor, [2, 2], "T T1 AM X W W1", "ACA {}", GraphicTint::Own, zone::rectangle),
-    row("airspace_coordination_area_circle", "240103", "Airspace coordination area, circular", "CIRCULAR1", GraphicShape::Circle, [1, 1], "T T1 AM X W W1", "ACA {}", GraphicTint::Own, fires::circular),
+    row("airspace_coordination_area", "240101", "Airspace coordination area, irregular", "AREA1", GraphicShape::Area, [3, MOST_POINTS], "T T1 X Y W W1", "ACA {}", GraphicTint::Own, area::area),
+    row("airspace_coordination_area_rectangle", "240102", "Airspace coordination area, rectangular", "RECTANGULAR1", GraphicShape::Corridor, [2, 2], "T T1 AM X Y W W1", "ACA {}", GraphicTint::Own, zone::rectangle),
+    row("airspace_coordination_area_circle", "240103", "Airspace coordination area, circular", "CIRCULAR1", GraphicShape::Circle, [1, 1], "T T1 AM X Y W W1", "ACA {}", GraphicTint::Own, fires::circular),
     row("free_fire_area", "240201", "Free fire area, irregular", "AREA1", GraphicShape::Area, [3, MOST_POINTS], "T W W1", "FFA {}", GraphicTint::Own, area::area),
     row("free_fire_area_rectangle", "240202", "Free fire area, rectangular", "RECTANGULAR1", GraphicShape::Corridor, [2, 2], "T AM W W1", "FFA {}", GraphicTint::Own, zone::rectangle),
     row("free_fire_area_circle", "240203", "Free fire area, circular", "CIRCULAR1", GraphicShape::Circle, [1, 1], "T AM W W1", "FFA {}", GraphicTint::Own, fires::circular),
@@ -185,7 +185,7 @@ const LINE_KINDS: &[GraphicKind] = &[
     row("position_area_for_artillery_irregular", "240503", "Position area for artillery, irregular", "AREA1", GraphicShape::Area, [3, MOST_POINTS], "T W W1", "PAA", GraphicTint::Own, area::position_area),
     row("linear_target", "240701", "Linear target", "LINE5", GraphicShape::Line, [2, MOST_POINTS], "AP", "", GraphicTint::Own, fires::linear_target),
     row("linear_smoke_target", "240702", "Linear smoke target", "LINE5", GraphicShape::Line, [2, MOST_POINTS], "AP", "SMOKE", GraphicTint::Own, fires::linear_target),
-    row("final_protective_fire", "240703", "Final protective fire", "LINE5", GraphicShape::Line, [2, MOST_POINTS], "AP T1", "FPF {}", GraphicTint::Own, fires::linear_target),
+    row("final_protective_fire", "240703", "Final protective fire", "LINE5", GraphicShape::Line, [2, MOST_POINTS], "AP T1 V", "FPF {}", GraphicTint::Own, fires::linear_target),
     row("area_target", "240801", "Area target", "AREA1", GraphicShape::Area, [3, MOST_POINTS], "AP", "", GraphicTint::Own, area::target_area),
     row("rectangular_target", "240802", "Rectangular target", "RECTANGULAR2", GraphicShape::Ellipse, [1, 1], "AM AN AP", "", GraphicTint::Own, zone::box_about),
     row("circular_target", "240803", "Circular target", "CIRCULAR1", GraphicShape::Circle, [1, 1], "AM AP", "", GraphicTint::Own, fires::circular),
@@ -304,8 +304,8 @@ const LINE_KINDS: &[GraphicKind] = &[
     row("brigade_support_area", "310600", "Brigade support area", "AREA1", GraphicShape::Area, [3, MOST_POINTS], "T", "BSA {}", GraphicTint::Own, area::area),
     row("division_support_area", "310700", "Division support area", "AREA1", GraphicShape::Area, [3, MOST_POINTS], "T", "DSA {}", GraphicTint::Own, area::area),
     row("corps_support_area", "310800", "Corps support area", "AREA1", GraphicShape::Area, [3, MOST_POINTS], "T", "CSA {}", GraphicTint::Own, area::area),
-    row("moving_convoy", "330100", "Moving convoy", "LINE9", GraphicShape::Figure, [2, 2], "H", "", GraphicTint::Own, crossing::convoy),
-    row("halted_convoy", "330200", "Halted convoy", "LINE20", GraphicShape::Figure, [2, 2], "H", "", GraphicTint::Own, crossing::convoy),
+    row("moving_convoy", "330100", "Moving convoy", "LINE9", GraphicShape::Figure, [2, 2], "H V W W1", "", GraphicTint::Own, crossing::convoy),
+    row("halted_convoy", "330200", "Halted convoy", "LINE20", GraphicShape::Figure, [2, 2], "H V W W1", "", GraphicTint::Own, crossing::convoy),
     row("main_supply_route", "330300", "Main supply route", "LINE21", GraphicShape::Line, [2, MOST_POINTS], "T", "MSR {}", GraphicTint::Own, lines::route),
     row("main_supply_route_one_way", "330301", "Main supply route, one-way traffic", "LINE21", GraphicShape::Line, [2, MOST_POINTS], "T", "MSR {}", GraphicTint::Own, lines::route),
     row("main_supply_route_two_way", "330302", "Main supply route, two-way traffic", "LINE21", GraphicShape::Line, [2, MOST_POINTS], "T", "MSR {}", GraphicTint::Own, lines::route),
@@ -467,7 +467,7 @@ mod tests {
 
     #[test]
     fn fields_are_letters_of_the_standard() {
-        let letters = ["T", "T1", "B", "AS", "N", "H", "AP", "W", "W1", "X", "AM", "AN"];
+        let letters = ["T", "T1", "B", "AS", "N", "H", "AP", "W", "W1", "X", "AM", "AN", "V", "C", "Y", "Q"];
         for kind in GRAPHIC_KINDS {
             for field in kind.fields.split(' ').filter(|field| !field.is_empty()) {
                 assert!(letters.contains(&field), "{}: {field}", kind.word);

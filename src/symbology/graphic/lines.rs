@@ -153,6 +153,30 @@ pub fn route(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graphic
     }
 }
 
+/// An engineer work line: its letters at both ends, the units on both sides of its middle.
+pub fn work_line(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
+    drawing.line(input.points);
+    drawing.text_on(kind.label, TextCourse::Ends(input.points.to_vec()));
+    let Some(line) = Polyline::new(input.points.iter().copied(), 0.0) else { return };
+    let (em_m, middle) = (input.em_m, line.length() / 2.0);
+    let along = direction(line.at(middle - em_m), line.at(middle + em_m));
+    for (name, aside) in unit_names(input).into_iter().zip([along.perp(), -along.perp()]) {
+        drawing.text_beside(name, line.at(middle) + aside * (0.6 * em_m), aside);
+    }
+}
+
+/// The names of the units on the left and on the right of a line, with their country.
+fn unit_names(input: &GraphicInput<'_>) -> [String; 2] {
+    let fields = input.fields;
+    [&fields.designation, &fields.designation_2].map(|name| {
+        if fields.country.is_empty() || name.is_empty() {
+            name.clone()
+        } else {
+            format!("{name} ({})", fields.country)
+        }
+    })
+}
+
 /// A boundary (LINE7): the echelon in a gap of the line and the texts on either side, on every leg that has the length for
 /// them, at least on the longest.
 pub fn boundary(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
@@ -160,14 +184,7 @@ pub fn boundary(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graphic
     const LEAST_WIDTHS: f64 = 3.0;
     let Some(line) = Polyline::new(input.points.iter().copied(), 0.0) else { return };
     let (fields, em_m) = (input.fields, input.em_m);
-    let named = |name: &String| {
-        if fields.country.is_empty() || name.is_empty() {
-            name.clone()
-        } else {
-            format!("{name} ({})", fields.country)
-        }
-    };
-    let names = [named(&fields.designation), named(&fields.designation_2)];
+    let names = unit_names(input);
     let texts = [&names[0], &names[1], &fields.echelon];
     let widest_m = texts.iter().map(|text| text_m(text, em_m)).fold(4.0 * em_m, f64::max);
     let middles = labeled_legs(&line, LEAST_WIDTHS * widest_m);
@@ -175,21 +192,26 @@ pub fn boundary(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graphic
         if fields.echelon.is_empty() { 0.0 } else { text_m(&fields.echelon, em_m) / 2.0 + 0.4 * em_m };
     let gaps: Vec<(f64, f64)> = middles.iter().map(|&middle| (middle, gap_m)).collect();
     gapped(&line, &gaps).into_iter().for_each(|piece| drawing.line(piece));
+    let mut after_first = None;
     for middle in middles {
         drawing.text(fields.echelon.clone(), line.at(middle));
         let along = direction(line.at(middle - em_m), line.at(middle + em_m));
         for (name, aside) in names.iter().zip([along.perp(), -along.perp()]) {
             drawing.text_beside(name.clone(), line.at(middle) + aside * (0.6 * em_m), aside);
         }
+        after_first.get_or_insert(drawing.texts.len());
     }
+    drawing.yield_texts(after_first.unwrap_or_default());
 }
 
-/// The stations of the middles of legs at least so long, no nearer to each other; of a line without such a leg its middle.
+/// The stations of the middles of legs at least so long, the longest first; of a line without such a leg its middle.
 fn labeled_legs(line: &Polyline, least_m: f64) -> Vec<f64> {
     /// More texts of one line would crowd a sheet.
     const MOST_LABELS: usize = 64;
-    let legs = line.stations().windows(2).filter(|leg| leg[1] - leg[0] >= least_m);
-    let middles: Vec<f64> = legs.map(|leg| leg[0].midpoint(leg[1])).take(MOST_LABELS).collect();
+    let mut legs: Vec<[f64; 2]> = line.stations().windows(2).map(|leg| [leg[0], leg[1]]).collect();
+    legs.retain(|leg| leg[1] - leg[0] >= least_m);
+    legs.sort_by(|a, b| (b[1] - b[0]).total_cmp(&(a[1] - a[0])));
+    let middles: Vec<f64> = legs.iter().map(|leg| leg[0].midpoint(leg[1])).take(MOST_LABELS).collect();
     if middles.is_empty() { vec![line.length() / 2.0] } else { middles }
 }
 

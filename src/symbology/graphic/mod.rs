@@ -1,4 +1,5 @@
-//! Tactical graphics: control measures of symbol set 25 of MIL-STD-2525D (2014), appendix H, drawn in the plane.
+//! Tactical graphics: control measures of symbol set 25 of MIL-STD-2525D (2014), appendix H, and of 2525E, and the lines and
+//! areas of weather and sea of sets 45 and 46, drawn in the plane.
 //!
 //! A [`kind`] names the draw rule of a graphic, how many points it has and which texts. Its draw function turns points in
 //! meters, the height of a text and the texts into a [`drawing::GraphicDrawing`]: lines, filled rings and texts in the same
@@ -6,9 +7,10 @@
 //! heights, so that a graphic looks the same on a sheet of any scale.
 //!
 //! ```text
-//! kind_table ─► lines, teeth, wire, axis, area, fires, task, crossing, corridor, point ─► kind, drawing
-//!                                                     └── plane ──┘
-//! check ─► kind
+//! kind_table    ─► lines, teeth, wire, axis, area, zone, fires, task, maneuver, crossing, corridor ─┐
+//! point_table   ─► icon ─► letters                                                                  ├─► plane, drawing
+//! weather_table ─► weather, fronts ─────────────────────────────────────────────────────────────────┘
+//! check ─► kind, rules
 //! ```
 
 mod area;
@@ -19,7 +21,8 @@ mod crossing;
 pub mod drawing;
 pub mod fields;
 mod fires;
-mod icon;
+mod fronts;
+pub(crate) mod icon;
 pub mod kind;
 pub mod kind_table;
 mod letters;

@@ -53,6 +53,8 @@ struct Recorded {
     lines: Vec<Vec<DVec2>>,
     rings: Vec<Vec<DVec2>>,
     texts: Vec<(DVec2, &'static str)>,
+    /// The words of its texts where all fields are stated.
+    all_words: Vec<&'static str>,
 }
 
 fn point(pair: &str) -> DVec2 {
@@ -74,12 +76,14 @@ fn recorded() -> Vec<Recorded> {
                 lines: Vec::new(),
                 rings: Vec::new(),
                 texts: Vec::new(),
+                all_words: Vec::new(),
             });
             continue;
         }
         let graphic = found.last_mut().expect("a graphic");
         match what {
             "points" => graphic.points = rest.split(',').map(point).collect(),
+            "fields" => graphic.all_words = rest.split_whitespace().collect(),
             "text" => {
                 let place = rest.match_indices(' ').nth(1).expect("x, y and a text").0;
                 graphic.texts.push((point(&rest[..place]), &rest[place + 1..]));
@@ -96,6 +100,11 @@ fn recorded() -> Vec<Recorded> {
 }
 
 fn drawn(recorded: &Recorded) -> GraphicDrawing {
+    drawn_with(recorded, GraphicFields { designation: "RED".into(), ..GraphicFields::default() })
+}
+
+/// The drawing of a recorded graphic with texts, and the numbers of its draw rule.
+fn drawn_with(recorded: &Recorded, texts: GraphicFields) -> GraphicDrawing {
     let (distances_m, azimuths_deg) = match recorded.kind.rule {
         "CORRIDOR1" => (vec![800.0], vec![]),
         "RECTANGULAR1" | "RECTANGULAR3" => (vec![1200.0], vec![]),
@@ -107,8 +116,7 @@ fn drawn(recorded: &Recorded) -> GraphicDrawing {
         "CIRCULAR2" => (vec![500.0, 1000.0, 2000.0], vec![]),
         _ => (vec![1000.0], vec![]),
     };
-    let fields =
-        GraphicFields { distances_m, azimuths_deg, designation: "RED".into(), ..GraphicFields::default() };
+    let fields = GraphicFields { distances_m, azimuths_deg, ..texts };
     let points = &recorded.points;
     let input = GraphicInput { points, em_m: EM_M, up: DVec2::Y, width_m: None, fields: &fields };
     recorded.kind.draw(&input)
@@ -271,4 +279,41 @@ fn graphics_show_the_letters_that_those_of_another_renderer_show() {
     wrong.dedup();
     assert!(wrong.is_empty(), "{compared}: {wrong:#?}");
     assert!(compared > 500, "{compared}");
+}
+
+#[test]
+fn graphics_show_the_fields_that_those_of_another_renderer_show() {
+    let (mut wrong, mut compared) = (Vec::new(), 0);
+    for recorded in recorded().iter().filter(|recorded| !recorded.all_words.is_empty()) {
+        let texts = GraphicFields {
+            designation: "FT".into(),
+            designation_2: "FT1".into(),
+            further: "FH".into(),
+            hostile: "ENY".into(),
+            from: "FW".into(),
+            until: "FW1".into(),
+            target: "FAP".into(),
+            country: "FAS".into(),
+            equipment: "FV".into(),
+            ..GraphicFields::default()
+        };
+        let drawing = drawn_with(recorded, texts);
+        let separators = [' ', '\n', '(', ')', '\u{2013}'];
+        let ours: Vec<&str> = drawing.texts.iter().flat_map(|text| text.text.split(separators)).collect();
+        let theirs = recorded.all_words.iter().flat_map(|word| word.split(separators));
+        for word in theirs.filter(|word| word.starts_with('F') && word.len() < 5 || *word == "ENY") {
+            const NAMES: [&str; 10] =
+                ["FLOT", "FEBA", "FCL", "FFA", "FSA", "FPF", "FSCL", "FREE", "FARP", "FEZ"];
+            if NAMES.contains(&word) {
+                continue;
+            }
+            compared += 1;
+            if !ours.contains(&word) {
+                wrong.push(format!("{} {}: {word}; ours {ours:?}", recorded.kind.code, recorded.kind.word));
+            }
+        }
+    }
+    wrong.dedup();
+    assert!(wrong.is_empty(), "{compared}: {wrong:#?}");
+    assert!(compared > 300, "{compared}");
 }

@@ -10,6 +10,9 @@ use sandtable_geom::polyline::Polyline;
 /// The longest step of an arc in radians: a sagitta of 0.4 % of the radius.
 const ARC_STEP_RAD: f64 = TAU / 72.0;
 
+/// The most marks along a line.
+const MOST_MARKS: f64 = 2000.0;
+
 /// The longest miter of an offset, in offsets.
 const MITER_LIMIT: f64 = 4.0;
 
@@ -78,6 +81,13 @@ pub fn gapped(line: &Polyline, gaps: &[(f64, f64)]) -> Vec<Vec<DVec2>> {
         from = end.max(from);
     }
     pieces
+}
+
+/// From mark to mark in meters, for marks `pitch_m` apart along each leg of a line: farther on a line that would have more than
+/// [`MOST_MARKS`].
+pub fn leg_pitch_m(points: &[DVec2], pitch_m: f64) -> f64 {
+    let length_m: f64 = points.windows(2).map(|leg| leg[0].distance(leg[1])).sum();
+    pitch_m.max(length_m / MOST_MARKS)
 }
 
 /// The ring through `points` as a line that ends where it begins; `None` for less than two distinct points.

@@ -97,10 +97,11 @@ pub fn flot(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicD
 /// Adds the mark of the enemy over both ends of a line.
 fn hostile_ends(input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     let points = input.points;
-    let up = input.up.normalize_or(DVec2::Y);
+    let (up, before) = (input.up.normalize_or(DVec2::Y), drawing.texts.len());
     for end in [points[0], points[points.len() - 1]] {
         drawing.text_beside(input.fields.hostile.clone(), end + up * (1.2 * input.em_m), up);
     }
+    drawing.yield_texts(before);
 }
 
 /// An encirclement: triangles on the outside of its outline.

@@ -8,9 +8,9 @@ use std::f64::consts::{FRAC_PI_4, TAU};
 use glam::DVec2;
 
 use crate::graphic::area::{hatch, label_area};
-use crate::graphic::drawing::{FillInk, GraphicDrawing, GraphicInput, StrokeDash, StrokeSide, TextCourse};
+use crate::graphic::drawing::{FillInk, GraphicDrawing, GraphicInput, TextCourse};
 use crate::graphic::kind::{GraphicKind, GraphicTint};
-use crate::graphic::plane::{arrowhead, bulge, circle, closed, offset, turned};
+use crate::graphic::plane::{arrowhead, bulge, circle, closed, leg_pitch_m, offset, turned};
 use crate::graphic::teeth::{ToothBase, base_line, bases};
 use sandtable_geom::polygon::{bounds, inner_point};
 use sandtable_geom::polyline::Polyline;
@@ -18,23 +18,12 @@ use sandtable_geom::polyline::Polyline;
 /// Pieces of a curve between two points.
 const CURVE_STEPS: u32 = 12;
 
-/// The most waves or marks of a leg; they are farther apart on a longer one.
-const MOST_WAVES: f64 = 500.0;
-
-/// Half of the base of a front's triangle and the radius of its arcs, and how high a triangle is, in text heights.
-const FRONT_EM: [f64; 2] = [0.833, 1.6];
-
-/// From mark to mark of a front in text heights; of warm air, and from pair to pair of an occluded one.
-const FRONT_PITCH_EM: f64 = 5.0;
-const WARM_EM: f64 = 3.333;
-const OCCLUDED_EM: f64 = 4.167;
-
 fn line_of(kind: &GraphicKind, input: &GraphicInput<'_>) -> Option<Polyline> {
     if kind.is_area() { closed(input.points) } else { Polyline::new(input.points.iter().copied(), 0.0) }
 }
 
 /// The name on a line or inside an area.
-fn label(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
+pub(super) fn label(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     if kind.is_area() {
         label_area(kind, input, drawing);
     } else {
@@ -155,76 +144,6 @@ pub fn dashed_hatched(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mu
     dashed_area(kind, input, drawing);
 }
 
-/// A front: triangles of cold air, arcs of warm air, both of an occluded or stationary one. An upper one is not filled; one
-/// that forms is dashed with dots between its marks, one that dissolves with bars.
-pub fn front(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
-    let number: u32 = kind.code[4..].parse().unwrap_or(1);
-    // Cold, warm, occluded and stationary fronts, in four forms each; nothing forms an occluded front.
-    let [family, form] = match number {
-        1..=8 => [(number - 1) / 4, (number - 1) % 4],
-        9..=11 => [2, [0, 1, 3][number as usize - 9]],
-        _ => [3, (number - 12) % 4],
-    };
-    let em_m = input.em_m;
-    let is_filled = form != 1;
-    // Marks of an occluded front stand in pairs.
-    let (pitch_em, in_pairs) = match (family, form) {
-        (1, 0 | 1) => (WARM_EM, false),
-        (2, 0 | 1) => (OCCLUDED_EM, true),
-        _ => (FRONT_PITCH_EM, false),
-    };
-    let legs: Vec<Polyline> =
-        input.points.windows(2).filter_map(|leg| Polyline::new(leg.iter().copied(), 0.0)).collect();
-    let marks: Vec<ToothBase<'_>> = legs
-        .iter()
-        .flat_map(|leg| bases(leg, pitch_em * em_m))
-        .flat_map(|base| if in_pairs { base.halves().to_vec() } else { vec![base] })
-        .collect();
-    let is_arc = |index: usize| match family {
-        0 => false,
-        1 => true,
-        2 => index.is_multiple_of(2),
-        _ => index % 3 != 2,
-    };
-    for (index, base) in marks.iter().enumerate() {
-        let is_cold = family == 3 && !is_arc(index);
-        let whose = if is_cold { StrokeSide::Opposing } else { StrokeSide::Own };
-        let ink = if is_cold { FillInk::Opposing } else { FillInk::Own };
-        // Cold air advances to the right of the line; warm air of a stationary front to its left.
-        let side = if family == 3 && is_arc(index) { 1.0 } else { -1.0 };
-        let ring = front_mark(base, is_arc(index), side, em_m);
-        if is_filled {
-            drawing.fill(ring.clone(), ink);
-        }
-        let outline = [ring.as_slice(), &ring[..1]].concat();
-        drawing.stroke(outline, StrokeDash::Hatch, whose);
-        let dash = if form >= 2 { StrokeDash::Dashed } else { StrokeDash::Status };
-        drawing.stroke(base.between(0.0, 1.0), dash, whose);
-        let between = base.at(0.06);
-        match form {
-            2 => drawing.fill(circle(between, 0.2 * em_m), ink),
-            3 => {
-                let bar = base.left() * (0.3 * em_m);
-                drawing.stroke(vec![between - bar, between + bar], StrokeDash::Hatch, whose);
-            }
-            _ => {}
-        }
-    }
-    label(kind, input, drawing);
-}
-
-/// The outline of a front's mark on a stretch.
-fn front_mark(base: &ToothBase<'_>, is_arc: bool, side: f64, em_m: f64) -> Vec<DVec2> {
-    let [half, high] = FRONT_EM.map(|size| size * em_m);
-    let share = (half / base.length_m()).min(0.45);
-    let [from, to] = [base.at(0.5 - share), base.at(0.5 + share)];
-    if is_arc {
-        bulge(from, to, 0.5 * side)
-    } else {
-        vec![from, base.at(0.5) + base.left() * (side * high), to]
-    }
-}
-
 /// A wave along the line: trough axes, instability and shear lines.
 pub fn wave(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     /// Length and height of a wave in text heights.
@@ -249,11 +168,12 @@ pub fn cable(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graphic
 /// A wave of a stated length and height on every leg; what is left of a leg is straight.
 fn waved(input: &GraphicInput<'_>, [length, height]: [f64; 2]) -> Vec<DVec2> {
     const STEPS: u32 = 16;
+    let wave_m = leg_pitch_m(input.points, length * input.em_m);
     let mut points = vec![input.points[0]];
     for leg in input.points.windows(2) {
         let leg_m = leg[0].distance(leg[1]);
         let along = (leg[1] - leg[0]) / leg_m;
-        let wave_m = (length * input.em_m).max(leg_m / MOST_WAVES);
+
         // The first bow is on the upper side on the picture.
         let aside = along.perp() * (height * input.em_m);
         let left = if aside.dot(input.up) < 0.0 { -aside } else { aside };
@@ -286,10 +206,11 @@ fn toothed(
     corners: &[[f64; 2]],
     drawing: &mut GraphicDrawing,
 ) {
+    let pitch_m = leg_pitch_m(input.points, pitch_em * input.em_m);
     let mut points = vec![input.points[0]];
     for leg in input.points.windows(2) {
         let Some(line) = Polyline::new(leg.iter().copied(), 0.0) else { continue };
-        for base in bases(&line, pitch_em * input.em_m) {
+        for base in bases(&line, pitch_m) {
             let left = base.left() * input.em_m;
             points.extend(corners.iter().map(|&[share, high]| base.at(share) + left * high));
         }
@@ -393,10 +314,9 @@ pub fn icing(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graphic
 pub fn ticked(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     let em_m = input.em_m;
     let is_radar = kind.code == "110503";
-    let pitch_em = if is_radar { 3.333 } else { 1.93 };
+    let pitch_m = leg_pitch_m(input.points, if is_radar { 3.333 } else { 1.93 } * em_m);
     let legs = input.points.windows(2).filter_map(|leg| Polyline::new(leg.iter().copied(), 0.0));
     for leg in legs {
-        let pitch_m = (pitch_em * em_m).max(leg.length() / MOST_WAVES);
         let along = (leg.at(leg.length()) - leg.at(0.0)).normalize_or_zero();
         for number in 0..=(leg.length() / pitch_m) as u32 {
             let from = leg.at(f64::from(number) * pitch_m);

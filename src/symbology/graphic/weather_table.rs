@@ -1,7 +1,7 @@
 //! Lines and areas of the weather and of the sea: symbol sets 45 and 46, with the colors that the standard gives them.
 
 use crate::graphic::kind::{DrawRule, GraphicKind, GraphicShape, GraphicTint, MOST_POINTS};
-use crate::graphic::weather;
+use crate::graphic::{fronts, weather};
 
 #[expect(clippy::too_many_arguments, reason = "the columns of one table")]
 const fn row(
@@ -34,21 +34,21 @@ const fn row(
 /// Every line and area of symbol sets 45 and 46, by code.
 #[rustfmt::skip]
 pub const WEATHER_KINDS: &[GraphicKind] = &[
-    row("cold_front", 45, "110301", "Cold front", "LINE1", GraphicShape::Line, GraphicTint::Fixed([0, 0, 255]), weather::front),
-    row("upper_cold_front", 45, "110302", "Upper cold front", "LINE1", GraphicShape::Line, GraphicTint::Fixed([0, 0, 255]), weather::front),
-    row("cold_frontogenesis", 45, "110303", "Cold frontogenesis", "LINE1", GraphicShape::Line, GraphicTint::Fixed([0, 0, 255]), weather::front),
-    row("cold_frontolysis", 45, "110304", "Cold frontolysis", "LINE1", GraphicShape::Line, GraphicTint::Fixed([0, 0, 255]), weather::front),
-    row("warm_front", 45, "110305", "Warm front", "LINE1", GraphicShape::Line, GraphicTint::Fixed([255, 0, 0]), weather::front),
-    row("upper_warm_front", 45, "110306", "Upper warm front", "LINE1", GraphicShape::Line, GraphicTint::Fixed([255, 0, 0]), weather::front),
-    row("warm_frontogenesis", 45, "110307", "Warm frontogenesis", "LINE1", GraphicShape::Line, GraphicTint::Fixed([255, 0, 0]), weather::front),
-    row("warm_frontolysis", 45, "110308", "Warm frontolysis", "LINE1", GraphicShape::Line, GraphicTint::Fixed([255, 0, 0]), weather::front),
-    row("occluded_front", 45, "110309", "Occluded front", "LINE1", GraphicShape::Line, GraphicTint::Fixed([160, 32, 240]), weather::front),
-    row("upper_occluded_front", 45, "110310", "Upper occluded front", "LINE1", GraphicShape::Line, GraphicTint::Fixed([160, 32, 240]), weather::front),
-    row("occluded_frontolysis", 45, "110311", "Occluded frontolysis", "LINE1", GraphicShape::Line, GraphicTint::Fixed([160, 32, 240]), weather::front),
-    row("stationary_front", 45, "110312", "Stationary front", "LINE1", GraphicShape::Line, GraphicTint::Pair([255, 0, 0], [0, 0, 255]), weather::front),
-    row("upper_stationary_front", 45, "110313", "Upper stationary front", "LINE1", GraphicShape::Line, GraphicTint::Pair([255, 0, 0], [0, 0, 255]), weather::front),
-    row("stationary_frontogenesis", 45, "110314", "Stationary frontogenesis", "LINE1", GraphicShape::Line, GraphicTint::Pair([255, 0, 0], [0, 0, 255]), weather::front),
-    row("stationary_frontolysis", 45, "110315", "Stationary frontolysis", "LINE1", GraphicShape::Line, GraphicTint::Pair([255, 0, 0], [0, 0, 255]), weather::front),
+    row("cold_front", 45, "110301", "Cold front", "LINE1", GraphicShape::Line, GraphicTint::Fixed([0, 0, 255]), fronts::front),
+    row("upper_cold_front", 45, "110302", "Upper cold front", "LINE1", GraphicShape::Line, GraphicTint::Fixed([0, 0, 255]), fronts::front),
+    row("cold_frontogenesis", 45, "110303", "Cold frontogenesis", "LINE1", GraphicShape::Line, GraphicTint::Fixed([0, 0, 255]), fronts::front),
+    row("cold_frontolysis", 45, "110304", "Cold frontolysis", "LINE1", GraphicShape::Line, GraphicTint::Fixed([0, 0, 255]), fronts::front),
+    row("warm_front", 45, "110305", "Warm front", "LINE1", GraphicShape::Line, GraphicTint::Fixed([255, 0, 0]), fronts::front),
+    row("upper_warm_front", 45, "110306", "Upper warm front", "LINE1", GraphicShape::Line, GraphicTint::Fixed([255, 0, 0]), fronts::front),
+    row("warm_frontogenesis", 45, "110307", "Warm frontogenesis", "LINE1", GraphicShape::Line, GraphicTint::Fixed([255, 0, 0]), fronts::front),
+    row("warm_frontolysis", 45, "110308", "Warm frontolysis", "LINE1", GraphicShape::Line, GraphicTint::Fixed([255, 0, 0]), fronts::front),
+    row("occluded_front", 45, "110309", "Occluded front", "LINE1", GraphicShape::Line, GraphicTint::Fixed([160, 32, 240]), fronts::front),
+    row("upper_occluded_front", 45, "110310", "Upper occluded front", "LINE1", GraphicShape::Line, GraphicTint::Fixed([160, 32, 240]), fronts::front),
+    row("occluded_frontolysis", 45, "110311", "Occluded frontolysis", "LINE1", GraphicShape::Line, GraphicTint::Fixed([160, 32, 240]), fronts::front),
+    row("stationary_front", 45, "110312", "Stationary front", "LINE1", GraphicShape::Line, GraphicTint::Pair([255, 0, 0], [0, 0, 255]), fronts::front),
+    row("upper_stationary_front", 45, "110313", "Upper stationary front", "LINE1", GraphicShape::Line, GraphicTint::Pair([255, 0, 0], [0, 0, 255]), fronts::front),
+    row("stationary_frontogenesis", 45, "110314", "Stationary frontogenesis", "LINE1", GraphicShape::Line, GraphicTint::Pair([255, 0, 0], [0, 0, 255]), fronts::front),
+    row("stationary_frontolysis", 45, "110315", "Stationary frontolysis", "LINE1", GraphicShape::Line, GraphicTint::Pair([255, 0, 0], [0, 0, 255]), fronts::front),
     row("trough_axis", 45, "110401", "Trough axis", "LINE1", GraphicShape::Line, GraphicTint::Fixed([0, 0, 0]), weather::wave),
     row("upper_trough_axis", 45, "110402", "Upper trough axis", "LINE1", GraphicShape::Line, GraphicTint::Fixed([0, 0, 0]), weather::wave),
     row("ridge_axis", 45, "110403", "Ridge axis", "LINE1", GraphicShape::Line, GraphicTint::Fixed([0, 0, 0]), weather::ridge),

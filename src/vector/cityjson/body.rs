@@ -3,9 +3,9 @@
 use glam::{DAffine3, DMat4, DVec2, DVec3};
 
 use crate::cityjson::boundary::Nested;
-use crate::cityjson::text::{Appearance, GeometryText};
+use crate::cityjson::text::{CityAppearance, GeometryText};
 use crate::error::shorten;
-use sandtable_base::limits::CITY_VERTICES;
+use sandtable_base::limits::DESIGN_VERTICES;
 
 /// The surfaces of an object in one level of detail.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,7 +89,7 @@ fn doubled_ring_area(ring: &[DVec3]) -> DVec3 {
 pub(super) struct Referred<'a> {
     /// The vertices of the text, coordinates.
     pub vertices: &'a [DVec3],
-    pub appearance: &'a Appearance,
+    pub appearance: &'a CityAppearance,
     /// The number of the text's first image among all images.
     pub first_image: usize,
     pub templates: &'a Templates,
@@ -104,7 +104,7 @@ pub(super) struct Templates {
 
 /// The shapes of one geometry.
 #[derive(Default)]
-pub(super) struct Shapes {
+pub(super) struct CityShapes {
     pub surfaces: Vec<CitySurface>,
     pub lines: Vec<Vec<DVec3>>,
     pub points: Vec<DVec3>,
@@ -121,7 +121,9 @@ pub(super) struct ShapeTally {
 impl ShapeTally {
     fn take(&mut self, count: usize) -> Result<(), String> {
         self.vertices_left = self.vertices_left.checked_sub(count as u64).ok_or_else(|| {
-            format!("the geometries of the file have more than {CITY_VERTICES} vertices; {CITY_VERTICES:#}")
+            format!(
+                "the geometries of the file have more than {DESIGN_VERTICES} vertices; {DESIGN_VERTICES:#}"
+            )
         })?;
         Ok(())
     }
@@ -135,7 +137,7 @@ pub(super) fn shapes(
     geometry: &GeometryText,
     referred: &Referred<'_>,
     tally: &mut ShapeTally,
-) -> Result<Shapes, String> {
+) -> Result<CityShapes, String> {
     if geometry.kind != "GeometryInstance" {
         return GeometryReader { geometry, referred, vertices: referred.vertices, place: None, tally }.read();
     }
@@ -170,13 +172,13 @@ struct GeometryReader<'a> {
 
 /// What is stated of a surface, at one level of the nested lists.
 #[derive(Clone, Copy)]
-struct Stated<'a> {
+struct StatedSurface<'a> {
     role: Option<&'a Nested>,
     material: Option<&'a Nested>,
     texture: Option<&'a Nested>,
 }
 
-impl<'a> Stated<'a> {
+impl<'a> StatedSurface<'a> {
     fn at(&self, index: usize) -> Self {
         let Self { role, material, texture } = *self;
         let at = |nested: Option<&'a Nested>| nested.and_then(|nested| nested.at(index));
@@ -185,8 +187,8 @@ impl<'a> Stated<'a> {
 }
 
 impl GeometryReader<'_> {
-    fn read(mut self) -> Result<Shapes, String> {
-        let mut shapes = Shapes::default();
+    fn read(mut self) -> Result<CityShapes, String> {
+        let mut shapes = CityShapes::default();
         let boundaries = &self.geometry.boundaries;
         // The lists around the list of surfaces.
         let levels = match self.geometry.kind.as_str() {
@@ -209,7 +211,7 @@ impl GeometryReader<'_> {
         let themed = themed(&self.geometry.material, appearance.material_theme.as_deref());
         let whole = themed.and_then(|theme| theme.value).map(Nested::Index);
         let texture = themed_texture(self.geometry, appearance);
-        let stated = Stated {
+        let stated = StatedSurface {
             role: self.geometry.semantics.as_ref().and_then(|semantics| semantics.values.as_ref()),
             material: whole.as_ref().or_else(|| themed.and_then(|theme| theme.values.as_ref())),
             texture,
@@ -223,7 +225,7 @@ impl GeometryReader<'_> {
         &mut self,
         boundaries: &Nested,
         levels: usize,
-        stated: Stated<'_>,
+        stated: StatedSurface<'_>,
         surfaces: &mut Vec<CitySurface>,
     ) -> Result<(), String> {
         let shells = if levels == 1 { 1 } else { usize::MAX };
@@ -237,7 +239,7 @@ impl GeometryReader<'_> {
     }
 
     /// Reads a surface; `None` of one without an outer ring of three vertices.
-    fn surface(&mut self, rings: &Nested, stated: Stated<'_>) -> Result<Option<CitySurface>, String> {
+    fn surface(&mut self, rings: &Nested, stated: StatedSurface<'_>) -> Result<Option<CitySurface>, String> {
         let mut read: Vec<Vec<DVec3>> = Vec::with_capacity(rings.items().len());
         let mut places: Vec<Vec<DVec2>> = Vec::new();
         let mut image = None;
@@ -317,6 +319,6 @@ fn themed<'a, T>(themes: &'a std::collections::BTreeMap<String, T>, wanted: Opti
     wanted.and_then(|name| themes.get(name)).or_else(|| themes.values().next())
 }
 
-fn themed_texture<'a>(geometry: &'a GeometryText, appearance: &Appearance) -> Option<&'a Nested> {
+fn themed_texture<'a>(geometry: &'a GeometryText, appearance: &CityAppearance) -> Option<&'a Nested> {
     themed(&geometry.texture, appearance.texture_theme.as_deref())?.values.as_ref()
 }

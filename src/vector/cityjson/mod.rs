@@ -5,9 +5,8 @@
 //! with its attributes and those of its parents, and `id`, `type`, `parent` and `lod`. A [`CityModel`] holds the surfaces,
 //! in all levels of detail.
 //!
-//! Written by hand, over `serde_json`. The crate `cityjson` keeps a whole model in memory in its own arenas, whatever the
-//! file claims, and stops at the first object that is wrong; here a limit holds for what templates multiply, and an
-//! object that cannot be read is left out and reported.
+//! Written by hand, over `serde_json`: a limit holds for what templates multiply, and an object that cannot be read is left
+//! out and reported.
 //!
 //! Heights are those of the file, meters above the zero of its vertical system. Of the system only the horizontal part is
 //! read. Inner shells of solids, extensions' own geometry and transparency are not read.
@@ -23,13 +22,13 @@ use glam::DVec3;
 use serde_json::Value;
 
 use crate::builder::{FeatureParts, LayerBuilder};
-use crate::cityjson::body::{CityBody, Referred, ShapeTally, Shapes, Templates};
-use crate::cityjson::text::{Appearance, CityText, GeometryText, ObjectText, VertexTransform};
+use crate::cityjson::body::{CityBody, CityShapes, Referred, ShapeTally, Templates};
+use crate::cityjson::text::{CityAppearance, CityText, GeometryText, ObjectText, VertexTransform};
 use crate::error::{VectorError, shorten};
 use crate::feature::{Properties, VectorLayer};
 use crate::hints::VectorHints;
 use crate::tally::RecordTally;
-use sandtable_base::limits::{CITY_VERTICES, GEOJSON_BYTES};
+use sandtable_base::limits::{DESIGN_VERTICES, GEOJSON_BYTES};
 use sandtable_geom::crs::{Crs, CrsError};
 
 pub(crate) use crate::cityjson::text::is_cityjson;
@@ -190,7 +189,7 @@ impl ModelReader {
             objects: BTreeMap::new(),
             images: Vec::new(),
             templates,
-            tally: ShapeTally { vertices_left: CITY_VERTICES.get(), lost_textures: 0 },
+            tally: ShapeTally { vertices_left: DESIGN_VERTICES.get(), lost_textures: 0 },
             without_geometry: RecordTally::new(),
         })
     }
@@ -199,7 +198,7 @@ impl ModelReader {
     fn add(&mut self, text: &CityText<'_>, head: &CityText<'_>, line: usize) {
         let scaled = scaled(&text.vertices, text.transform.or(head.transform));
         let own = !text.appearance.textures.is_empty() || !text.appearance.materials.is_empty();
-        let appearance: &Appearance = if own { &text.appearance } else { &head.appearance };
+        let appearance: &CityAppearance = if own { &text.appearance } else { &head.appearance };
         let first_image = self.images.len();
         self.images.extend(appearance.textures.iter().map(|texture| texture.image.clone()));
         let mut objects = TextObjects { objects: BTreeMap::new(), parents: BTreeSet::new() };
@@ -242,7 +241,7 @@ impl ModelReader {
             }
             return Ok(());
         }
-        let mut by_lod: Vec<(String, Shapes)> = Vec::new();
+        let mut by_lod: Vec<(String, CityShapes)> = Vec::new();
         for text in texts {
             let geometry: GeometryText =
                 serde_json::from_str(text.get()).map_err(|error| json_reason(&error))?;

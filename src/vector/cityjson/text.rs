@@ -21,13 +21,13 @@ pub(super) struct CityText<'a> {
     pub kind: String,
     pub version: Option<Value>,
     pub transform: Option<VertexTransform>,
-    pub metadata: Option<Metadata>,
+    pub metadata: Option<CityMetadata>,
     #[serde(rename = "CityObjects", default, borrow)]
     pub objects: InOrder<&'a RawValue>,
     #[serde(default)]
     pub vertices: Vec<[f64; 3]>,
     #[serde(default)]
-    pub appearance: Appearance,
+    pub appearance: CityAppearance,
     #[serde(rename = "geometry-templates", borrow)]
     pub templates: Option<TemplatesText<'a>>,
 }
@@ -40,13 +40,13 @@ pub(super) struct VertexTransform {
 }
 
 #[derive(Deserialize)]
-pub(super) struct Metadata {
+pub(super) struct CityMetadata {
     #[serde(rename = "referenceSystem")]
     pub reference_system: Option<String>,
 }
 
 #[derive(Default, Deserialize)]
-pub(super) struct Appearance {
+pub(super) struct CityAppearance {
     #[serde(default)]
     pub materials: Vec<MaterialText>,
     #[serde(default)]
@@ -166,7 +166,7 @@ impl<'de: 'a, 'a> Visitor<'de> for InOrderVisitor<'a> {
 /// Whether a text is a CityJSON object or feature; of a sequence, its first.
 pub(crate) fn is_cityjson(text: &[u8]) -> bool {
     #[derive(Deserialize)]
-    struct Head {
+    struct CityHead {
         #[serde(rename = "type")]
         kind: String,
     }
@@ -175,7 +175,7 @@ pub(crate) fn is_cityjson(text: &[u8]) -> bool {
     all.starts_with('{')
         && all.contains("\"CityJSON")
         && serde_json::Deserializer::from_str(all)
-            .into_iter::<Head>()
+            .into_iter::<CityHead>()
             .next()
             .and_then(Result::ok)
             .is_some_and(|head| head.kind == "CityJSON" || head.kind == "CityJSONFeature")

@@ -30,7 +30,7 @@ use crate::landxml::horizontal::{NamedPoints, Traced, trace};
 use crate::landxml::stations::StationEquations;
 use crate::landxml::units::LandUnits;
 use crate::xml::{self, DecodedXml, XmlElement, XmlReader};
-use sandtable_base::limits::CITY_VERTICES;
+use sandtable_base::limits::DESIGN_VERTICES;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::profile::Profile;
 
@@ -52,6 +52,7 @@ const MOST_STATIONS: f64 = 2000.0;
 /// # Errors
 /// [`VectorError`], also where no feature of the layer is sound.
 pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
+    VectorError::check_design_size(FORMAT, bytes)?;
     let DecodedXml { text, fault } = xml::decode(bytes, FORMAT)?;
     let wanted = hints.layer.map(|_| hints.choose_layer(&LAYERS)).transpose()?;
     let mut xml = XmlReader::new(&text, FORMAT);
@@ -75,7 +76,7 @@ pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, Vec
     if wanted.is_none() {
         note_others(&file, layer, &mut builder);
     }
-    LandLayer { file: &file, xml: &xml, layer: builder, vertices_left: CITY_VERTICES.get() }.finish(layer)
+    LandLayer { file: &file, xml: &xml, layer: builder, vertices_left: DESIGN_VERTICES.get() }.finish(layer)
 }
 
 /// Notes what the file holds besides the layer that is read unasked.

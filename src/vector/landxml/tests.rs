@@ -1,3 +1,5 @@
+//! LandXML by its published structure.
+
 use super::*;
 use crate::read;
 

@@ -3,24 +3,26 @@
 //!
 //! A code's letter of affiliation is what the thing's side is to the first side of the file, as its associations say. A thing
 //! without a place of its own is where the unit above it is, and a note says of how many that holds. Layers are `units`,
-//! `equipment`, `installations` and `graphics`.
+//! `equipment`, `installations` and `graphics`. Something that does not move has no direction. Holdings, networks, formations and
+//! heights above the ground are not read.
 
 mod place;
 mod sides;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use glam::DVec3;
 
 use crate::builder::{FeatureParts, LayerBuilder};
-use crate::error::VectorError;
+use crate::error::{VectorError, shorten};
 use crate::feature::{Properties, VectorLayer};
 use crate::hints::VectorHints;
 use crate::moment::Moment;
 use crate::overlay_schema::{
     ADDITIONAL_INFORMATION, ALTITUDE, BEGIN, COMBAT_EFFECTIVENESS, DIRECTION, DTG, EVALUATION_RATING,
-    HIGHER_FORMATION, ID, IFF, LAYER, LOCATION, NAME, PARENT, QUANTITY, REINFORCED, SIDC, SIDE,
-    SPECIAL_HEADQUARTERS, SPEED, STAFF_COMMENTS, TYPE, UNIQUE_DESIGNATION, bare_code, set,
+    HIGHER_FORMATION, ID, IFF, LAYER, LOCATION, NAME, PARENT, QUANTITY, REINFORCED, SIDE,
+    SPECIAL_HEADQUARTERS, SPEED, STAFF_COMMENTS, TYPE, UNIQUE_DESIGNATION, bare_code, leaves_identity_open,
+    reinforced_mark, set, set_code, shared_name, with_identity,
 };
 use crate::tally::RecordTally;
 use crate::xml::{self, DecodedXml, XmlElement, XmlReader};
@@ -49,11 +51,15 @@ pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, Vec
     reader.xml.root()?;
     reader.read_parts()?;
     reader.xml.finish()?;
-    let MsdlReader { sides, things, begin, .. } = reader;
-    let mut builder = LayerBuilder::new(hints.crs.cloned().unwrap_or_else(Crs::wgs84));
+    let MsdlReader { mut sides, things, begin, .. } = reader;
+    sides.relate();
+    let mut builder = LayerBuilder::new(Crs::wgs84());
+    if hints.crs.is_some_and(|crs| *crs != Crs::wgs84()) {
+        builder.note("its places name their systems: `crs` has no effect on them");
+    }
     let wanted = wanted.map(|index| LAYERS[index]);
-    Placing { sides: &sides, things: &things, by_handle: by_handle(&things), begin }
-        .add(wanted, &mut builder);
+    let links = UnitLinks::of(&things);
+    Placing { sides: &sides, things: &things, links, begin }.add(wanted, &mut builder);
     fault.into_iter().for_each(|fault| builder.fault(fault));
     builder.finish()
 }
@@ -63,12 +69,15 @@ struct MsdlThing {
     layer: &'static str,
     handle: String,
     line: String,
-    code: Option<String>,
+    /// Its code, or what the file has instead; `None` where it has nothing.
+    code: Option<Result<String, String>>,
+    /// Whether its code leaves the side open.
+    is_template: bool,
     properties: Properties,
     /// Its places, or why there are none.
     places: Result<Vec<DVec3>, String>,
-    /// The handle of the unit above it.
-    superior: Option<String>,
+    /// The handles of the units above it, the nearest relation first.
+    superiors: Vec<String>,
     /// The handle of its side.
     side: Option<String>,
 }
@@ -158,38 +167,43 @@ fn thing(layer: &'static str, element: &XmlElement<'_>, line: String) -> MsdlThi
     if !properties.contains_key(UNIQUE_DESIGNATION) {
         own("Name").into_iter().for_each(|name| set(&mut properties, UNIQUE_DESIGNATION, name));
     }
-    let reinforced =
-        modifier("ReinforcedReduced").and_then(|word| match word.to_ascii_uppercase().as_str() {
-            "R" | "REINFORCED" => Some("(+)"),
-            "D" | "REDUCED" => Some("(-)"),
-            "RD" | "REINFORCED_AND_REDUCED" | "REINFORCED_REDUCED" => Some("(±)"),
-            _ => None,
-        });
-    reinforced.into_iter().for_each(|mark| set(&mut properties, REINFORCED, mark));
+    modifier("ReinforcedReduced")
+        .into_iter()
+        .for_each(|word| set(&mut properties, REINFORCED, reinforced_mark(&word)));
     let disposition = child("Disposition");
     let stated = |name: &str| disposition.and_then(|disposition| found(disposition, name));
-    stated("DirectionOfMovement").into_iter().for_each(|text| set(&mut properties, DIRECTION, text));
-    stated("Speed").into_iter().for_each(|text| set(&mut properties, SPEED, text));
+    let speed = stated("Speed").filter(|text| text.parse() != Ok(0.0));
+    if speed.is_some() || stated("Speed").is_none() {
+        let direction = stated("DirectionOfMovement");
+        direction.into_iter().for_each(|text| set(&mut properties, DIRECTION, text));
+    }
+    speed.into_iter().for_each(|text| set(&mut properties, SPEED, text));
     let relations = child("Relations");
     let related = |name: &str| relations.and_then(|relations| found(relations, name));
-    let code = own("SymbolIdentifier").and_then(|text| bare_code(&text));
+    let is_template = own("SymbolIdentifier").is_some_and(|text| leaves_identity_open(&text));
+    let code = own("SymbolIdentifier").map(|text| bare_code(&text).ok_or(text));
     let echelon = modifier("Echelon").and_then(|word| echelon_letter(&word));
     MsdlThing {
         layer,
         handle: own("ObjectHandle").unwrap_or_default(),
         line,
-        code: code.map(|code| with_echelon(code, echelon)),
+        code: code.map(|code| code.map(|code| with_echelon(code, echelon))),
+        is_template,
         properties,
         places: disposition.map_or(Ok(Vec::new()), |disposition| place::places(disposition)),
-        superior: [
+        superiors: [
             "CommandingSuperiorHandle",
             "OrganicSuperiorHandle",
             "UnitOwnerHandle",
             "SupportedUnitHandle",
         ]
         .into_iter()
-        .find_map(related),
-        side: related("ForceSideHandle").or_else(|| related("OwnerHandle")),
+        .filter_map(related)
+        .collect(),
+        side: ["ForceSideHandle", "ForceOwnerHandle", "OwnerHandle"]
+            .into_iter()
+            .find_map(related)
+            .or_else(|| own("AffiliateHandle")),
     }
 }
 
@@ -225,107 +239,159 @@ fn with_echelon(mut code: String, echelon: Option<char>) -> String {
     code
 }
 
-fn by_handle(things: &[MsdlThing]) -> BTreeMap<&str, usize> {
-    let handles = things.iter().enumerate().filter(|(_, thing)| !thing.handle.is_empty());
-    handles.map(|(index, thing)| (thing.handle.as_str(), index)).collect()
+/// For each thing the unit above it, and the nearest thing above, itself included, that has a place and that has a side.
+struct UnitLinks {
+    parents: Vec<Option<usize>>,
+    placed: Vec<Option<usize>>,
+    sided: Vec<Option<usize>>,
+    /// Things whose handles of units above name none.
+    lost: Vec<usize>,
+}
+
+impl UnitLinks {
+    fn of(things: &[MsdlThing]) -> Self {
+        let handles = things.iter().enumerate().filter(|(_, thing)| !thing.handle.is_empty());
+        let by_handle: BTreeMap<&str, usize> =
+            handles.map(|(index, thing)| (thing.handle.as_str(), index)).collect();
+        let mut lost = Vec::new();
+        let mut parents = Vec::with_capacity(things.len());
+        for (index, thing) in things.iter().enumerate() {
+            let parent = thing.superiors.iter().find_map(|handle| by_handle.get(handle.as_str()).copied());
+            if parent.is_none() && !thing.superiors.is_empty() {
+                lost.push(index);
+            }
+            parents.push(parent.filter(|parent| *parent != index));
+        }
+        let has_place = |index: usize| things[index].places.as_ref().is_ok_and(|places| !places.is_empty());
+        let placed = nearest(&parents, has_place);
+        let sided = nearest(&parents, |index| things[index].side.is_some());
+        Self { parents, placed, sided, lost }
+    }
+}
+
+/// For each of a forest of things the nearest above, itself included, of which `holds` is true; `None` where there is none, or
+/// the parents run in a circle. Every thing is looked at a few times, however long a chain is.
+fn nearest(parents: &[Option<usize>], holds: impl Fn(usize) -> bool) -> Vec<Option<usize>> {
+    #[derive(Clone, Copy, PartialEq)]
+    enum Visit {
+        New,
+        Open,
+        Done,
+    }
+    let mut found: Vec<Option<usize>> = vec![None; parents.len()];
+    let mut visits = vec![Visit::New; parents.len()];
+    let mut path = Vec::new();
+    for start in 0..parents.len() {
+        let mut at = Some(start);
+        let mut answer = None;
+        while let Some(index) = at {
+            match visits[index] {
+                Visit::Done => answer = found[index],
+                Visit::Open => {}
+                Visit::New if holds(index) => {
+                    (found[index], visits[index], answer) = (Some(index), Visit::Done, Some(index));
+                }
+                Visit::New => {
+                    visits[index] = Visit::Open;
+                    path.push(index);
+                    at = parents[index];
+                    continue;
+                }
+            }
+            break;
+        }
+        for index in path.drain(..) {
+            (found[index], visits[index]) = (answer, Visit::Done);
+        }
+    }
+    found
 }
 
 /// Things with what the file says of others: sides, and units above.
 struct Placing<'a> {
     sides: &'a ForceSides,
     things: &'a [MsdlThing],
-    by_handle: BTreeMap<&'a str, usize>,
+    links: UnitLinks,
     begin: Option<Moment>,
 }
 
-impl<'a> Placing<'a> {
+impl Placing<'_> {
     fn add(&self, wanted: Option<&str>, builder: &mut LayerBuilder) {
-        let [mut led, mut placeless] = [const { RecordTally::new() }; 2];
-        for thing in self.things.iter().filter(|thing| wanted.is_none_or(|wanted| wanted == thing.layer)) {
+        let [mut led, mut placeless, mut codeless, mut sideless, mut lost] =
+            [const { RecordTally::new() }; 5];
+        for (index, thing) in self.things.iter().enumerate() {
+            if wanted.is_some_and(|wanted| wanted != thing.layer) {
+                continue;
+            }
             let name = thing.properties.get(NAME).and_then(serde_json::Value::as_str);
             let place = || match name {
-                Some(name) => format!("'{name}', {}", thing.line),
+                Some(name) => format!("'{}', {}", shorten(name), thing.line),
                 None => thing.line.clone(),
             };
-            let places = match &thing.places {
-                Ok(places) => places,
-                Err(reason) => {
-                    builder.add_broken(place(), VectorError::broken(FORMAT, place(), reason.clone()));
-                    continue;
-                }
+            if let Err(reason) = &thing.places {
+                builder.add_broken(place(), VectorError::broken(FORMAT, place(), reason.clone()));
+                continue;
+            }
+            let Some(at) = self.links.placed[index] else {
+                placeless.add(place);
+                continue;
             };
-            let above =
-                || self.above(thing).find_map(|unit| unit.places.as_ref().ok().filter(|all| !all.is_empty()));
-            let places = match (places.is_empty(), above()) {
-                (false, _) => places,
-                (true, Some(above)) => {
-                    led.add(place);
-                    above
+            if at != index {
+                led.add(place);
+            }
+            let Ok(places) = &self.things[at].places else { continue };
+            let properties = self.properties(index);
+            match &thing.code {
+                Some(Ok(_)) if thing.is_template => {
+                    sideless.add_many(usize::from(self.affiliation(index).is_none()), place);
                 }
-                (true, None) => {
-                    placeless.add(place);
-                    continue;
-                }
-            };
+                Some(Ok(_)) => {}
+                _ => codeless.add(place),
+            }
+            if self.links.lost.binary_search(&index).is_ok() {
+                lost.add(place);
+            }
             let mut parts = FeatureParts::default();
             match places.len() {
                 1 => parts.add_points(places.clone()),
                 _ => parts.add_line(places.clone()),
             }
-            builder.add_at(parts, self.properties(thing), place);
+            builder.add_at(parts, properties, place);
         }
         let led =
             led.text("thing is where the unit above it is", "things are where the units above them are");
         led.into_iter().for_each(|note| builder.note(note));
-        builder.note_omitted(&placeless, "thing without a place", "things without a place");
+        let faults = [
+            placeless.text("thing is left out: neither it nor a unit above it has a place", "things are left out: neither they nor units above them have a place"),
+            codeless.text("thing has no symbol code that can be read", "things have no symbol code that can be read"),
+            sideless.text("thing is of no side that the file relates to its first: its symbol is that of an unknown", "things are of no side that the file relates to its first: their symbols are those of unknowns"),
+            lost.text("thing is under a unit that the file does not have", "things are under units that the file does not have"),
+        ];
+        faults.into_iter().flatten().for_each(|fault| builder.fault(fault));
     }
 
-    /// The units above a thing, the nearest first.
-    fn above(&self, thing: &'a MsdlThing) -> impl Iterator<Item = &'a MsdlThing> {
-        let mut seen = BTreeSet::new();
-        std::iter::successors(Some(thing), move |thing| {
-            let index = *self.by_handle.get(thing.superior.as_deref()?)?;
-            seen.insert(index).then(|| &self.things[index])
-        })
-        .skip(1)
+    /// The letter of what the side of a thing is to the first.
+    fn affiliation(&self, index: usize) -> Option<char> {
+        let sided = &self.things[self.links.sided[index]?];
+        self.sides.affiliation(sided.side.as_deref()?)
     }
 
-    fn properties(&self, thing: &'a MsdlThing) -> Properties {
+    fn properties(&self, index: usize) -> Properties {
+        let thing = &self.things[index];
         let mut properties = thing.properties.clone();
-        let side = std::iter::once(thing).chain(self.above(thing)).find_map(|unit| unit.side.as_deref());
+        let side = self.links.sided[index].and_then(|unit| self.things[unit].side.as_deref());
         if let Some(name) = side.and_then(|side| self.sides.name(side)) {
             set(&mut properties, SIDE, name);
         }
-        let above = self.above(thing).next().and_then(|unit| unit.properties.get(NAME)?.as_str());
-        above.into_iter().for_each(|name| set(&mut properties, PARENT, name));
+        let above =
+            self.links.parents[index].and_then(|unit| self.things[unit].properties.get(NAME)?.as_str());
+        above.into_iter().for_each(|name| set(&mut properties, PARENT, shared_name(name)));
         self.begin.into_iter().for_each(|begin| set(&mut properties, BEGIN, begin.to_string()));
-        if let Some(code) = &thing.code {
-            let affiliation = side.and_then(|side| self.sides.affiliation(side));
-            set(&mut properties, SIDC, with_affiliation(code, affiliation));
+        if let Some(Ok(code)) = &thing.code {
+            set_code(&mut properties, &with_identity(code.clone(), self.affiliation(index)));
         }
         properties
     }
-}
-
-/// A code of letters with its affiliation, or of digits with its identity.
-fn with_affiliation(code: &str, affiliation: Option<char>) -> String {
-    let mut code = code.to_owned();
-    match affiliation {
-        Some(letter) if code.len() == 15 => code.replace_range(1..2, letter.encode_utf8(&mut [0; 4])),
-        Some(letter) => {
-            let digit = match letter {
-                'F' => "3",
-                'A' => "2",
-                'N' => "4",
-                'S' => "5",
-                'H' => "6",
-                _ => "1",
-            };
-            code.replace_range(3..4, digit);
-        }
-        None => {}
-    }
-    code
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use crate::builder::position;
 use crate::error::shorten;
 use crate::xml::XmlElement;
 use sandtable_geom::crs::Crs;
+use sandtable_geom::geocentric;
 use sandtable_geom::position::Position;
 
 /// All places in an element, in order: one of a unit, the anchor points of a graphic. Longitude, latitude and an elevation where
@@ -20,7 +21,7 @@ fn add(element: &XmlElement<'_>, places: &mut Vec<DVec3>) -> Result<(), String> 
     for child in element.children() {
         let place = match child.name() {
             "GDC" => geodetic(child),
-            "GCC" => geocentric(child),
+            "GCC" => geocentric_place(child),
             "UTM" => utm(child),
             "MGRS" => grid_reference(child),
             // Where a unit was told to form up is not where it is.
@@ -57,23 +58,15 @@ fn geodetic(element: &XmlElement<'_>) -> Result<DVec3, String> {
     on_earth(number(element, "longitude")?, number(element, "latitude")?)
 }
 
-/// By the method of Bowring (1976), exact to a millimeter on the ground.
-fn geocentric(element: &XmlElement<'_>) -> Result<DVec3, String> {
-    const A: f64 = 6_378_137.0;
-    const F: f64 = 1.0 / 298.257_223_563;
-    let [x, y, z] = [number(element, "x")?, number(element, "y")?, number(element, "z")?];
-    let radius = DVec3::new(x, y, z).length();
-    if !(6.3e6..6.5e6).contains(&radius) {
-        return Err(format!(
-            "({x}, {y}, {z}) is not near the ground: geocentric coordinates are meters from the middle of the Earth"
-        ));
-    }
-    let (b, p) = (A * (1.0 - F), libm::hypot(x, y));
-    let (e2, second) = (F * (2.0 - F), (A * A - b * b) / (b * b));
-    let theta = libm::atan2(z * A, p * b);
-    let (sin, cos) = (libm::sin(theta), libm::cos(theta));
-    let latitude = libm::atan2(z + second * b * sin * sin * sin, p - e2 * A * cos * cos * cos);
-    on_earth(libm::atan2(y, x).to_degrees(), latitude.to_degrees())
+fn geocentric_place(element: &XmlElement<'_>) -> Result<DVec3, String> {
+    let at = DVec3::new(number(element, "x")?, number(element, "y")?, number(element, "z")?);
+    let place = geocentric::place_of(at).ok_or_else(|| {
+        format!(
+            "({}, {}, {}) is not near the ground: geocentric coordinates are meters from the middle of the Earth",
+            at.x, at.y, at.z
+        )
+    })?;
+    on_earth(place.lonlat.x, place.lonlat.y)
 }
 
 fn utm(element: &XmlElement<'_>) -> Result<DVec3, String> {
@@ -97,12 +90,25 @@ fn grid_reference(element: &XmlElement<'_>) -> Result<DVec3, String> {
     let zone =
         text(element, "gridzone").or_else(|| text(element, "zone")).ok_or("a grid reference has no zone")?;
     let square = text(element, "square").ok_or("a grid reference has no square")?;
-    let [easting, northing] = [number(element, "easting")?, number(element, "northing")?];
-    let is_within = |part: f64| (0.0..100_000.0).contains(&part);
-    if !is_within(easting) || !is_within(northing) {
-        return Err(format!("({easting}, {northing}) is not within a square of 100 km"));
-    }
-    let reference = format!("{}{}{easting:05.0}{northing:05.0}", zone.trim(), square.trim());
+    let digits = |name: &str| {
+        let text = text(element, name).ok_or_else(|| format!("a grid reference has no {name}"))?;
+        let is_sound = text.len() <= 5 && text.bytes().all(|digit| digit.is_ascii_digit());
+        // Decimals of a meter are dropped: the reference names the square of a meter.
+        let whole = text.split('.').next().unwrap_or_default();
+        if is_sound {
+            Ok(text)
+        } else if let Ok(0..=99_999) = whole.parse::<u32>() {
+            Ok(whole.to_owned())
+        } else {
+            Err(format!("the {name} '{}' is not within a square of 100 km", shorten(&text)))
+        }
+    };
+    // Some writers leave out zeros in front: a coarser reference is one only where its precision says so.
+    let stated = text(element, "precision").and_then(|text| text.parse::<usize>().ok());
+    let width = stated.filter(|digits| (1..=5).contains(digits)).unwrap_or(5);
+    let [easting, northing] = [digits("easting")?, digits("northing")?];
+    let width = if easting.len().max(northing.len()) > width { 5 } else { width };
+    let reference = format!("{}{}{easting:0>width$}{northing:0>width$}", zone.trim(), square.trim());
     let place = Position::parse(&reference).map(|place| place.in_system(&Crs::wgs84()));
     let at = place.map_err(|error| error.to_string())?.map_err(|error| error.to_string())?;
     on_earth(at.x, at.y)

@@ -9,13 +9,13 @@ use crate::builder::{FeatureParts, LayerBuilder, Vertices};
 use crate::error::VectorError;
 use crate::feature::Properties;
 use crate::geojson::record::add_shape;
-use crate::ground_shape::{self, FARTHEST_M};
 use crate::moment::Moment;
 use crate::overlay_schema::{
     BEGIN, DESCRIPTION, END, FILL, FILL_OPACITY, ID, IDENTITY, KIND, LABEL, LAYER, MARKER_COLOR, NAME, SIDC,
     STATUS, STROKE, STROKE_DASHES, STROKE_OPACITY, STROKE_WIDTH, field_property, set,
 };
 use crate::tally::RecordTally;
+use sandtable_geom::ground_shape::GroundEllipse;
 
 /// Adds what a layer holds.
 pub(super) fn add(layer_name: &str, layer: &Value, builder: &mut LayerBuilder) {
@@ -124,14 +124,8 @@ fn add_geometry(item: &Value, parts: &mut FeatureParts) -> Result<(), String> {
     let center = geometry.get("coordinates").and_then(place_of);
     match (is_circle, center, meta.get("radius").and_then(Value::as_f64)) {
         (true, Some([x, y, _]), Some(radius_m)) => {
-            if !(radius_m > 0.0 && radius_m <= FARTHEST_M) {
-                return Err(format!("the radius of {radius_m} m is not above 0 and up to {FARTHEST_M} m"));
-            }
-            let at = DVec2::new(x, y);
-            if !(at.is_finite() && at.y.abs() <= 90.0) {
-                return Err("the middle of the circle is no longitude and latitude".into());
-            }
-            let ring = ground_shape::circle(at, radius_m);
+            let circle = GroundEllipse::circle(DVec2::new(x, y), radius_m);
+            let ring = circle.ring().map_err(|error| format!("the circle has no outline: {error}"))?;
             parts.add_polygon([ring.into_iter().map(|at| at.extend(f64::NAN)).collect()]);
             Ok(())
         }

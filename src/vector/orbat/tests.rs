@@ -100,7 +100,7 @@ fn layers_hold_control_measures_circles_and_texts_with_their_style() {
     assert!(matches!(&zone.geometry, Geometry::Polygons(rings) if rings[0].exterior.len() == 128));
     assert_eq!([text(&layer.features[2], "label"), text(&layer.features[3], "label")], ["before", "after"]);
     let told = layer.reading_notes().cloned().collect::<Vec<_>>().join("\n");
-    for expected in ["1 hidden item", "1 item that is no feature", "the radius of"] {
+    for expected in ["1 hidden item", "1 item that is no feature", "'Too wide': the circle has no outline"] {
         assert!(told.contains(expected), "{told}");
     }
 }

@@ -1,10 +1,12 @@
-//! The scene as a tree: kinds and their features, shown or hidden, and found by name.
+//! The scene as a tree: kinds and their features, shown or hidden, and found by name. The field for names takes positions,
+//! too: grid references, UTM, degrees, numbers of the scene's system.
 
 use std::collections::BTreeSet;
 
 use egui::{CollapsingHeader, Key, ScrollArea, TextEdit, Ui};
 
 use sandtable_draw::list::FeatureId;
+use sandtable_geom::position::Position;
 use sandtable_scene::feature::{FeatureKind, SceneFeature};
 
 /// The most features listed under a kind; further ones are found by their names.
@@ -13,7 +15,7 @@ const MOST_LISTED: usize = 200;
 /// The state of the tree.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TreePanel {
-    /// The text that names must contain.
+    /// The text that names must contain, or a position.
     pub find: String,
     /// Features that are not drawn.
     pub hidden: BTreeSet<FeatureId>,
@@ -22,27 +24,30 @@ pub struct TreePanel {
 }
 
 /// An event in the tree.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TreeEvent {
     /// Features were shown or hidden.
     Visibility,
     /// A feature was chosen: to go there.
     GoTo(FeatureId),
+    /// A position was entered: to go there.
+    GoToPosition(Position),
 }
 
 /// Draws the tree.
 pub fn tree_panel(ui: &mut Ui, panel: &mut TreePanel, features: &[SceneFeature]) -> Option<TreeEvent> {
     let mut event = None;
-    let mut goes_to_first = false;
+    let mut is_entered = false;
     ui.horizontal(|ui| {
         let label = ui.label("Find");
-        let field =
-            TextEdit::singleline(&mut panel.find).hint_text("name of a feature").desired_width(f32::INFINITY);
+        let field = TextEdit::singleline(&mut panel.find)
+            .hint_text("name of a feature, or a position")
+            .desired_width(f32::INFINITY);
         let field = ui.add(field).labelled_by(label.id);
         if std::mem::take(&mut panel.focuses_find) {
             field.request_focus();
         }
-        goes_to_first = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        is_entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     });
     let wanted = panel.find.trim().to_lowercase();
     let mut kinds: Vec<(FeatureKind, Vec<FeatureId>)> = Vec::new();
@@ -57,15 +62,28 @@ pub fn tree_panel(ui: &mut Ui, panel: &mut TreePanel, features: &[SceneFeature])
         }
     }
     kinds.sort_by_key(|(kind, _)| *kind);
-    if goes_to_first && let Some(first) = kinds.first().and_then(|(_, ids)| ids.first()) {
+    if is_entered && let Some(first) = kinds.first().and_then(|(_, ids)| ids.first()) {
         event = Some(TreeEvent::GoTo(*first));
     }
     if kinds.is_empty() {
-        ui.weak(if features.is_empty() {
-            "The scene has ground only."
-        } else {
-            "No feature has such a name."
-        });
+        match Position::parse(&panel.find) {
+            Ok(position) => {
+                ui.weak("A position: Enter goes there.");
+                if is_entered {
+                    event = Some(TreeEvent::GoToPosition(position));
+                }
+            }
+            // What begins like a position is told apart from a name.
+            Err(error) if !error.is_unlike_any() => {
+                ui.label(error.with_forms());
+            }
+            Err(_) if features.is_empty() => {
+                ui.weak("The scene has ground only.");
+            }
+            Err(_) => {
+                ui.weak("No feature has such a name.");
+            }
+        }
     }
     ScrollArea::vertical().auto_shrink([false, true]).max_height(280.0).show(ui, |ui| {
         for (kind, ids) in &kinds {
@@ -176,5 +194,38 @@ mod tests {
         harness.get_by_label("Norris Lake").click();
         harness.run();
         assert_eq!(harness.state().events, [TreeEvent::GoTo(FeatureId(4))]);
+    }
+
+    fn entered(text: &str) -> Harness<'static, TreeTest> {
+        let mut harness = harness();
+        harness.get_by_label("Find").focus();
+        harness.run();
+        harness.get_by_label("Find").type_text(text);
+        harness.run();
+        harness.key_press(Key::Enter);
+        harness.run();
+        harness
+    }
+
+    #[test]
+    fn a_position_in_any_form_is_gone_to_on_enter() {
+        for text in ["16SGF5000018000", "16S GF 500 180", "36.277N 84.215W", "750000,4018000"] {
+            let position = Position::parse(text).unwrap_or_else(|error| panic!("{error}"));
+            assert_eq!(entered(text).state().events, [TreeEvent::GoToPosition(position)], "{text}");
+        }
+    }
+
+    #[test]
+    fn a_position_with_two_readings_is_refused_with_both_and_a_name_without_a_feature_is_none() {
+        let harness = entered("16S 755447 4024162");
+        assert!(harness.state().events.is_empty());
+        assert!(harness.query_by_label_contains("can be read as zone 16, band S").is_some());
+        assert!(entered("Atlantis").query_by_label("No feature has such a name.").is_some());
+    }
+
+    #[test]
+    fn a_feature_whose_name_is_found_comes_before_a_position() {
+        let harness = entered("pass");
+        assert_eq!(harness.state().events, [TreeEvent::GoTo(FeatureId(2))]);
     }
 }

@@ -279,10 +279,11 @@ fn the_program_says_to_the_last_bit_what_the_library_says_and_what_gdal_says() {
             let crs = dataset.crs();
             let answers = dataset.heights(Surface::Source, interpolation, &crs, &at).expect("answers");
             let ran = run(&[&asked[..], &[choice]].concat());
-            // Coordinates in feet beside elevations without a unit are told.
-            let is_in_feet =
-                dataset.warning().is_some_and(|warning| ran.err == format!("warning: {warning}\n"));
-            assert!(ran.code == 0 && (ran.err.is_empty() || is_in_feet), "{ran:?}");
+            // Coordinates in feet beside elevations without a unit are told, and what reading guessed.
+            let warning = dataset.warning().map(|warning| format!("warning: {warning}\n"));
+            let notes = dataset.reading_notes().into_iter().map(|note| format!("note: {note}\n"));
+            let told: String = warning.into_iter().chain(notes).collect();
+            assert!(ran.code == 0 && ran.err == told, "{ran:?}");
             let out = ran.out;
             for ((line, answer), row) in out.lines().skip(1).zip(&answers).zip(&rows) {
                 let cells: Vec<&str> = line.split(',').collect();

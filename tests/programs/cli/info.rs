@@ -178,6 +178,37 @@ fn elevations_beside_coordinates_in_feet_are_told_to_be_taken_for_meters() {
     assert!(info.contains(told), "{info}");
     let heights = run_in(scratch.folder(), &["height", "a.asc", "--at", "2700010,250010"]);
     assert!(heights.err.contains(told), "{}", heights.err);
+    let in_feet = ["height", "a.asc", "--at", "2700005,250005", "--vertical-unit", "us-ft"];
+    let heights = run_in(scratch.folder(), &in_feet);
+    let out = heights.out.clone();
+    assert!(
+        heights.err.is_empty() && out.contains(&format!("{},Ok", 1200.0 * (1200.0 / 3937.0))),
+        "{heights:?}"
+    );
+    let refused = run_in(scratch.folder(), &["height", "a.asc", "--at", "0,0", "--vertical-unit", "ell"]);
+    assert!(refused.code == 2 && refused.err.contains("m, ft or us-ft"), "{refused:?}");
+}
+
+#[test]
+fn every_command_on_elevation_tells_what_reading_the_file_left_out() {
+    let scratch = Scratch::new();
+    let point = |index: u32| match (index % 4, index / 4) {
+        (2, 2) => "10 deep\n".to_owned(),
+        (column, row) => format!("{} {} {}\n", 5 * column, 5 * row, column + row),
+    };
+    scratch.write("a.xyz", (0..16).map(point).collect::<String>());
+    for arguments in [
+        &["height", "a.xyz", "--at", "0,10"][..],
+        &["profile", "a.xyz", "--line", "0,0", "5,5"],
+        &["los", "a.xyz", "--from", "0,0", "--to", "5,5"],
+        &["viewshed", "a.xyz", "--at", "5,5", "-o", "seen.tif"],
+        &["mesh", "a.xyz", "--max-error", "1", "-o", "a.obj"],
+        &["lod", "a.xyz", "--frames", "2"],
+    ] {
+        let ran = run_in(scratch.folder(), arguments);
+        let told = "note: a.xyz: left out: 1 line that is no point: line 11 is '10 deep'\n";
+        assert!(ran.code == 0 && ran.err.contains(told), "{arguments:?}: {ran:?}");
+    }
 }
 
 #[test]

@@ -122,6 +122,27 @@ fn get_form_and_json_say_the_same() {
 }
 
 #[test]
+fn positions_of_answers_are_written_in_the_form_of_the_request_and_read_again() {
+    let (_scratch, server) = server();
+    let answer = server.get("/v1/grid?locations=50.006,10.006&positions=mgrs").ok();
+    let position = answer["results"][0]["location"]["position"].as_str().expect("a position").to_owned();
+    assert!(position.starts_with("32U") && position.len() == 15, "{position}");
+    let geojson = server.get("/v1/grid?locations=50.006,10.006&positions=mgrs&format=geojson").ok();
+    assert_eq!(geojson["features"][0]["properties"]["position"], position);
+    let again = server.get(&format!("/v1/grid?locations={position}&positions=mgrs")).ok();
+    assert_eq!(again["results"][0]["location"]["position"], position);
+    let numbers = server.get("/v1/grid?locations=50.006,10.006").ok();
+    assert_eq!(numbers["results"][0]["location"], json!({"lat": 50.006, "lng": 10.006}));
+    for (asked, reason) in [
+        ("/v1/grid?locations=50.006,10.006&positions=grid", "there are mgrs, usng"),
+        ("/v1/plain?locations=1,2&crs=native&positions=mgrs", "states no coordinate system"),
+    ] {
+        let refused = server.get(asked).refused(400);
+        assert!(refused.contains(reason), "{asked}: {refused}");
+    }
+}
+
+#[test]
 fn a_polyline_is_the_same_as_its_locations() {
     let (_scratch, server) = server();
     // The example of the Encoded Polyline Algorithm Format.

@@ -11,7 +11,7 @@ and ``sandtable.dask`` does plans on a Dask cluster.
 """
 
 from ._errors import SandtableError
-from ._sandtable import Dem, Finding, LineOfSight, Mesh, Plan, Profile, Raster, Scene, licenses, set_limit
+from ._sandtable import Dem, Finding, LineOfSight, Mesh, Plan, Profile, Raster, Scene, Symbol, licenses, set_limit
 from ._sandtable import __VERSION__ as __version__
 
 __all__ = [
@@ -24,6 +24,7 @@ __all__ = [
     "Raster",
     "SandtableError",
     "Scene",
+    "Symbol",
     "__version__",
     "licenses",
     "set_limit",

@@ -1,0 +1,100 @@
+//! Text of XML: escaped, and elements written line by line.
+
+use sandtable_base::message::xml::escaped;
+
+/// A document as it is written, indented by depth.
+#[derive(Default)]
+pub(super) struct XmlText {
+    text: String,
+    open: Vec<String>,
+}
+
+impl XmlText {
+    /// A document with its declaration.
+    pub fn new() -> Self {
+        Self { text: "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n".to_owned(), open: Vec::new() }
+    }
+
+    /// Opens an element; attributes are names with values.
+    pub fn open(&mut self, name: &str, attributes: &[(&str, &str)]) -> &mut Self {
+        self.start(name, attributes);
+        self.text.push_str(">\n");
+        self.open.push(name.to_owned());
+        self
+    }
+
+    /// Closes the element opened last.
+    pub fn close(&mut self) -> &mut Self {
+        if let Some(name) = self.open.pop() {
+            self.indent();
+            self.text.push_str(&format!("</{name}>\n"));
+        }
+        self
+    }
+
+    /// An element with a text alone.
+    pub fn element(&mut self, name: &str, text: &str) -> &mut Self {
+        self.element_with(name, &[], text)
+    }
+
+    /// An element with attributes and a text; without one it is empty.
+    pub fn element_with(&mut self, name: &str, attributes: &[(&str, &str)], text: &str) -> &mut Self {
+        self.start(name, attributes);
+        match text {
+            "" => self.text.push_str("/>\n"),
+            text => self.text.push_str(&format!(">{}</{name}>\n", escaped(text))),
+        }
+        self
+    }
+
+    /// The document, with what is open closed.
+    pub fn finish(mut self) -> String {
+        while !self.open.is_empty() {
+            self.close();
+        }
+        self.text
+    }
+
+    fn start(&mut self, name: &str, attributes: &[(&str, &str)]) {
+        self.indent();
+        self.text.push('<');
+        self.text.push_str(name);
+        for (key, value) in attributes {
+            self.text.push_str(&format!(" {key}=\"{}\"", escaped(value)));
+        }
+    }
+
+    fn indent(&mut self) {
+        self.text.extend(std::iter::repeat_n("  ", self.open.len()));
+    }
+}
+
+/// A number of degrees or meters without needless zeros.
+pub(super) fn decimal(number: f64, places: usize) -> String {
+    let text = format!("{number:.places$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn elements_are_closed_and_texts_escaped() {
+        let mut xml = XmlText::new();
+        xml.open("a", &[("b", "<&\"")]).element("c", "x & y").element("d", "");
+        let text = xml.finish();
+        assert_eq!(
+            text,
+            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<a b=\"&lt;&amp;&quot;\">\n  <c>x &amp; y</c>\n  <d/>\n</a>\n"
+        );
+    }
+
+    #[test]
+    fn numbers_are_as_short_as_they_can_be() {
+        let texts = [1.5, -84.25, 0.0, -1e-12, 100.0].map(|number| decimal(number, 9));
+        assert_eq!(texts, ["1.5", "-84.25", "0", "0", "100"]);
+        assert_eq!(decimal(1234.0, 0), "1234");
+    }
+}

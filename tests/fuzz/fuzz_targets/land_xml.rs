@@ -1,0 +1,8 @@
+//! Fuzzes `land_xml`.
+
+#![no_main]
+
+#[path = "../targets.rs"]
+mod targets;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| targets::land_xml(bytes));
