@@ -77,11 +77,11 @@ fn coarse_positions(document: &Document) -> Vec<(Range<usize>, String)> {
         all.extend(table.source.points.iter().map(|points| KeyPositions::many(table.noun, points, most_m)));
     }
     for table in &document.viewsheds {
-        all.push(KeyPositions::many("observers", &table.observers, GROUND_SIDE_M));
+        all.extend(table.observers.iter().map(|at| KeyPositions::one("an observer", at, GROUND_SIDE_M)));
     }
     for table in &document.sights {
         all.push(KeyPositions::one("an observer", &table.observer, GROUND_SIDE_M));
-        all.push(KeyPositions::many("targets", &table.targets, GROUND_SIDE_M));
+        all.extend(table.targets.iter().map(|at| KeyPositions::one("a target", at, GROUND_SIDE_M)));
     }
     for table in &document.flights {
         all.extend(
