@@ -50,7 +50,8 @@ pub(super) fn find(table: &TableRows, stated: &[(String, String)]) -> Result<Tab
             return of_row(table, index, stated).ok_or_else(|| no_place(&table.rows[index]));
         }
         let most = |row: &TableRow| stated.iter().filter(|(_, name)| column_of(row, name).is_some()).count();
-        let header = probed().max_by_key(|(index, row)| (most(row), PROBED_ROWS - index)).map(|(_, row)| row);
+        let key = |(index, row): &(usize, &TableRow)| (most(row), texts(row), PROBED_ROWS - index);
+        let header = probed().max_by_key(key).map(|(_, row)| row);
         let header = header.cloned().unwrap_or_default();
         let missing = stated.iter().find(|(_, name)| column_of(&header, name).is_none());
         let wanted = missing.map_or("", |(_, name)| name.as_str());
@@ -59,11 +60,15 @@ pub(super) fn find(table: &TableRows, stated: &[(String, String)]) -> Result<Tab
     let found = probed().find_map(|(index, _)| of_row(table, index, stated));
     let header = || {
         // The row with the most texts is what a reader takes for the names.
-        let texts = |row: &TableRow| row.cells.iter().filter(|(_, cell)| cell_number(cell).is_none()).count();
         let best = probed().max_by_key(|(index, row)| (texts(row), PROBED_ROWS - index));
         best.map(|(_, row)| row.clone()).unwrap_or_default()
     };
     found.ok_or_else(|| no_place(&header()))
+}
+
+/// How many cells of a row are no numbers.
+fn texts(row: &TableRow) -> usize {
+    row.cells.iter().filter(|(_, cell)| cell_number(cell).is_none()).count()
 }
 
 fn no_place(header: &TableRow) -> VectorError {

@@ -158,6 +158,10 @@ fn stated_columns_are_taken_and_missing_ones_named() {
     assert_eq!(layer.features[0].properties["sidc"], "SFGPUCI--------");
     assert_eq!(layer.features[0].properties["note"], "2");
     let error = read(&[("position", "Wos")]).expect_err("no such column");
+    let titled = format!("Units of today\n{text}");
+    let columns = stated(&[("position", "Wos")]);
+    let hints = VectorHints { columns: &columns, ..VectorHints::default() };
+    assert_eq!(read_as("a.csv", titled.as_bytes(), &hints).expect_err("no such column"), error);
     assert!(
         error.contains("no column 'Wos'; did you mean 'Wo'?; its columns are Wo, Was, lon, lat"),
         "{error}"
