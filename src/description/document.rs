@@ -275,6 +275,9 @@ table! {
         selection as "where": Option<Stated<Selection>> = key::selection(), otherwise "all features";
         /// Coordinate system of `at`, or of a file that names none or a wrong one.
         crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`, or what the file names";
+        /// Of a table (CSV, spreadsheet) as `file`, the columns by what they hold: `position`, `lon`, `lat`, `x`, `y`, `zone`, `z` or
+        /// `shape`, or the name of a property.
+        columns: Option<Stated<BTreeMap<String, String>>> = key::named_texts(), otherwise "by the names of the columns";
         /// The lower, the more important: labels that find no free place beside more important ones are left out. Features
         /// for which an expression gives no number come last.
         rank: DefaultedValue<f64> = key::feature_number(Within(-1e9, 1e9), ""), default 0;
@@ -292,7 +295,7 @@ table! {
         if reader.key_span("file").is_some() {
             reader.need_expression("text");
         } else {
-            reader.without_effect(&["layer", "where", "most"], "on a label without a `file`", "name a `file`, or remove it");
+            reader.without_effect(&["layer", "where", "columns", "most"], "on a label without a `file`", "name a `file`, or remove it");
         }
     }
 
@@ -461,7 +464,7 @@ pub fn paper_mm(paper: PaperName) -> [f64; 2] {
 impl LabelTable {
     /// The features that it labels; `None` for a label at one place.
     pub fn source(&self) -> Option<FeatureSource> {
-        FeatureSource::of_file(&self.file, &self.layer, &self.selection, &self.crs)
+        FeatureSource::of_file(&self.file, &self.layer, &self.selection, &self.crs, &self.columns)
     }
 }
 

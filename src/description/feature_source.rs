@@ -1,5 +1,6 @@
 //! The source of a feature's coordinates: the keys that inline points and files have in every table.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use crate::declaration::{KeyDeclaration, Presence};
@@ -16,7 +17,8 @@ table! {
     struct FeatureSource [const LEAST: usize] {
         /// Inline coordinates, each in ±10⁹. The last point of a ring may repeat its first.
         points: Option<Stated<Vec<Position>>> = key::points(LEAST), otherwise "by `file`", unless ["file"];
-        /// A vector file, or its address: GeoJSON, shapefile, GeoPackage, FlatGeobuf, GPX, KML, CityJSON, LandXML, DXF or OpenStreetMap.
+        /// A vector file, or its address: GeoJSON, shapefile, GeoPackage, FlatGeobuf, GPX, KML, CityJSON, LandXML, DXF or OpenStreetMap,
+        /// or a table: CSV, TSV, xlsx or ods.
         file: Option<Stated<String>> = key::file(), otherwise "by `points`", unless ["points"];
         /// With `file`: the layer of a file that holds several.
         layer: Option<Stated<String>> = key::filled_text(), otherwise "the file's only layer", unless ["points"];
@@ -25,12 +27,15 @@ table! {
         selection as "where": Option<Stated<Selection>> = key::selection(), otherwise "all features", unless ["points"];
         /// Coordinate system of `points`, or of a file that names none or a wrong one.
         crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`, or what the file names";
+        /// With a table (CSV, spreadsheet) as `file`: the columns by what they hold, `position`, `lon`, `lat`, `x`, `y`, `zone`, `z` or
+        /// `shape`, or the name of a property, such as `{ position = "Grid" }`.
+        columns: Option<Stated<BTreeMap<String, String>>> = key::named_texts(), otherwise "by the names of the columns", unless ["points"];
     }
     check(reader) {
         reader.exclude("file", "points");
         reader.need_either("points", "file", "add `points = [[x, y], ...]` or `file = \"name.geojson\"`");
         if reader.key_span("file").is_none() && reader.key_span("points").is_some() {
-            reader.without_effect(&["layer", "where"], "on inline `points`", "name a `file`, or remove it");
+            reader.without_effect(&["layer", "where", "columns"], "on inline `points`", "name a `file`, or remove it");
         }
     }
 }
@@ -42,10 +47,18 @@ impl FeatureSource {
         layer: &Option<Stated<String>>,
         selection: &Option<Stated<Selection>>,
         crs: &Option<Crs>,
+        columns: &Option<Stated<BTreeMap<String, String>>>,
     ) -> Option<Self> {
         let (layer, selection, crs) = (layer.clone(), selection.clone(), crs.clone());
-        let of =
-            |file: &Stated<String>| Self { points: None, file: Some(file.clone()), layer, selection, crs };
+        let columns = columns.clone();
+        let of = |file: &Stated<String>| Self {
+            points: None,
+            file: Some(file.clone()),
+            layer,
+            selection,
+            crs,
+            columns,
+        };
         file.as_ref().map(of)
     }
 

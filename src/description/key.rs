@@ -77,6 +77,8 @@ keys! {
     files(built_in: &'static [&'static str]) -> Vec<String> = KeyKind::TextList;
     /// The names of files under names that the user chooses.
     named_files() -> BTreeMap<String, String> = KeyKind::TextTable;
+    /// Texts under names that the user chooses.
+    named_texts() -> BTreeMap<String, String> = KeyKind::TextTable;
     /// Any coordinate reference system.
     crs() -> Crs = KeyKind::FilledText;
     /// A coordinate reference system in meters: heights, widths and distances of a scene are.

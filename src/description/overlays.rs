@@ -1,5 +1,7 @@
 //! The scene file's table of overlays: files of units, tactical graphics and drawings.
 
+use std::collections::BTreeMap;
+
 use crate::bounds::Bounds::{Above, Within};
 use crate::declaration::{KeyDeclaration, Presence};
 use crate::feature_source::FeatureSource;
@@ -16,8 +18,8 @@ table! {
     struct OverlayTable {
         /// Name for messages and the legend.
         name: Option<String> = key::text(), otherwise "the file's name";
-        /// A scenario or an overlay, or its address: ORBAT Mapper, MSDL, NVG, MilX, Cursor on Target, KML, GeoJSON or any other
-        /// vector file.
+        /// A scenario or an overlay, or its address: ORBAT Mapper, MSDL, NVG, MilX, Cursor on Target, KML, GeoJSON, a table
+        /// (CSV, xlsx, ods) or any other vector file.
         file: Stated<String> = key::file(), required;
         /// The layer of a file that holds several.
         layer: Option<Stated<String>> = key::filled_text(), otherwise "all, or the file's only layer";
@@ -25,6 +27,9 @@ table! {
         selection as "where": Option<Stated<Selection>> = key::selection(), otherwise "all features";
         /// Coordinate system of a file that names none or a wrong one.
         crs: Option<Crs> = key::crs(), otherwise "what the file names";
+        /// Of a table (CSV, spreadsheet), the columns by what they hold: `position`, `lon`, `lat`, `x`, `y`, `zone`, `z` or `shape`, or
+        /// the name of a property, such as `{ position = "Grid", sidc = "Code" }`.
+        columns: Option<Stated<BTreeMap<String, String>>> = key::named_texts(), otherwise "by the names of the columns";
         /// The moment that is shown of a file whose things have states in time, such as `1982-05-21T12:00:00Z`.
         time: Option<Stated<String>> = key::filled_text(), otherwise "each thing as it is last";
         /// Height of the frame of a friendly unit in a picture 1080 pixels high.
@@ -50,6 +55,7 @@ impl OverlayTable {
             layer: self.layer.clone(),
             selection: self.selection.clone(),
             crs: self.crs.clone(),
+            columns: self.columns.clone(),
         }
     }
 }

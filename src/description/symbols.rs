@@ -1,5 +1,7 @@
 //! The scene file's table of military symbols.
 
+use std::collections::BTreeMap;
+
 use crate::bounds::Bounds::{self, Above, Within};
 use crate::declaration::{KeyDeclaration, Presence};
 use crate::feature_source::FeatureSource;
@@ -29,6 +31,9 @@ table! {
         selection as "where": Option<Stated<Selection>> = key::selection(), otherwise "all features";
         /// Coordinate system of `at`, or of a file that names none or a wrong one.
         crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`, or what the file names";
+        /// Of a table (CSV, spreadsheet) as `file`, the columns by what they hold: `position`, `lon`, `lat`, `x`, `y`, `zone`, `z` or
+        /// `shape`, or the name of a property.
+        columns: Option<Stated<BTreeMap<String, String>>> = key::named_texts(), otherwise "by the names of the columns";
         /// Height of the frame of a friendly unit in a picture 1080 pixels high; in smaller pictures symbols shrink less than
         /// the picture.
         size: f64 = key::number(Within(12.0, 200.0), "px"), default 38;
@@ -104,7 +109,7 @@ table! {
                 reader.need_expression(key);
             }
         } else {
-            reader.without_effect(&["layer", "where"], "on a symbol without a `file`", "name a `file`, or remove it");
+            reader.without_effect(&["layer", "where", "columns"], "on a symbol without a `file`", "name a `file`, or remove it");
         }
     }
 }
@@ -144,7 +149,7 @@ const TEXT_KEYS: [&str; 28] = [
 impl SymbolTable {
     /// The features that are symbols; `None` for a symbol at one place.
     pub fn source(&self) -> Option<FeatureSource> {
-        FeatureSource::of_file(&self.file, &self.layer, &self.selection, &self.crs)
+        FeatureSource::of_file(&self.file, &self.layer, &self.selection, &self.crs, &self.columns)
     }
 
     /// The fields of text with their texts or expressions, as the table of text fields has their keys.

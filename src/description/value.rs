@@ -326,10 +326,21 @@ impl<'t> KeyValue<'_, 't> {
         self.text_list().map(|names| names.into_iter().map(seen).collect())
     }
 
-    pub fn named_files(mut self) -> Option<BTreeMap<String, String>> {
+    pub fn named_files(self) -> Option<BTreeMap<String, String>> {
+        self.text_table(|name| name.file())
+    }
+
+    pub fn named_texts(self) -> Option<BTreeMap<String, String>> {
+        self.text_table(|text| text.filled_text())
+    }
+
+    fn text_table(
+        mut self,
+        read: impl Fn(KeyValue<'_, 't>) -> Option<String>,
+    ) -> Option<BTreeMap<String, String>> {
         match self.value.get_ref() {
             DeValue::Table(table) if (1..=SCENE_LIST.count()).contains(&table.len()) => {
-                self.each_entry(table, |name| name.file())
+                self.each_entry(table, read)
             }
             _ => {
                 let help = format!("write {{ name = \"text\", ... }} of so many, or {SCENE_LIST:#}");

@@ -396,6 +396,8 @@ pub(super) static RULES: &[TableRule] = &[
             most: 6,
             is_title: false,
         }),
+    // Units of a table or of another file whose features have symbol codes.
+    rule("overlay", "Military symbols", "points", "has(sidc)"),
 ];
 
 #[cfg(test)]

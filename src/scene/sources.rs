@@ -30,8 +30,8 @@ use sandtable_vector::filter::{Condition, Filter};
 use sandtable_vector::hints::VectorHints;
 use sandtable_vector::read::{self, VectorFile};
 
-/// A file's name, and the layer and the system stated for it.
-type LayerKey = (String, Option<String>, Option<String>);
+/// A file's name, and the layer, the system and the columns stated for it.
+type LayerKey = (String, Option<String>, Option<String>, Vec<(String, String)>);
 
 /// Reads vector files, each once.
 pub struct Sources<'a> {
@@ -191,8 +191,8 @@ impl<'a> Sources<'a> {
     /// The file cannot be read.
     pub fn city_model(&self, source: &FeatureSource) -> Result<Option<Arc<CityModel>>, Diagnostic> {
         let Some(file) = &source.file else { return Ok(None) };
-        let key = layer_key(file, source.layer.as_ref(), source.crs.as_ref());
-        self.layer(file, source.layer.as_ref(), source.crs.as_ref())?;
+        let key = layer_key(file, source);
+        self.layer(file, source)?;
         Ok(self.city_models.borrow().get(&key).cloned())
     }
 
@@ -213,7 +213,7 @@ impl<'a> Sources<'a> {
         let Some(file) = &source.file else {
             return Ok((self.frame.crs.clone(), Vec::new()));
         };
-        let layer = self.layer(file, source.layer.as_ref(), source.crs.as_ref())?;
+        let layer = self.layer(file, source)?;
         let filter = filter_of(source);
         let holds = |attributes: &Attributes| match source.selection.as_deref() {
             Some(Selection::Holding(condition)) => attributes.holds(condition),
@@ -293,14 +293,10 @@ impl<'a> Sources<'a> {
         self.frame.document.error(file, message).with_help(help)
     }
 
-    fn layer(
-        &self,
-        file: &Stated<String>,
-        wanted: Option<&Stated<String>>,
-        stated: Option<&Crs>,
-    ) -> Result<Arc<VectorLayer>, Diagnostic> {
-        let name = wanted.map(|wanted| wanted.as_str());
-        let key = layer_key(file, wanted, stated);
+    fn layer(&self, file: &Stated<String>, source: &FeatureSource) -> Result<Arc<VectorLayer>, Diagnostic> {
+        let stated = source.crs.as_ref();
+        let name = source.layer.as_ref().map(|wanted| wanted.as_str());
+        let key = layer_key(file, source);
         if let Some(layer) = self.layers.borrow().get(&key) {
             return Ok(Arc::clone(layer));
         }
@@ -309,10 +305,12 @@ impl<'a> Sources<'a> {
         let companions = self.assets.companions(ASSET_BYTES.get());
         let overridden = |own: &Crs| drop(self.overridden.borrow_mut().insert(key.clone(), own.clone()));
         let found = |name: &str| companions.get(name);
-        let hints = VectorHints { crs: stated, overridden: &overridden, layer: name, companions: &found };
+        let columns = &key.3;
+        let hints =
+            VectorHints { crs: stated, overridden: &overridden, layer: name, columns, companions: &found };
         let read = read::read_file(file, &bytes, &hints);
         companions.check().map_err(|error| self.frame.document.error(file, error))?;
-        let VectorFile { layer, model } = read.map_err(|error| self.unread(file, wanted, error))?;
+        let VectorFile { layer, model } = read.map_err(|error| self.unread(file, source, error))?;
         if let Some(model) = model {
             self.city_models.borrow_mut().insert(key.clone(), Arc::new(model));
         }
@@ -362,19 +360,14 @@ impl<'a> Sources<'a> {
     /// The system that the file of a source states and that its `crs` takes the place of; `None` of a source that was not
     /// read.
     pub fn overridden_crs(&self, source: &FeatureSource) -> Option<Crs> {
-        let key = layer_key(source.file.as_ref()?, source.layer.as_ref(), source.crs.as_ref());
+        let key = layer_key(source.file.as_ref()?, source);
         self.overridden.borrow().get(&key).cloned()
     }
 
     /// The error of a file that cannot be read, at the key that caused it.
-    fn unread(
-        &self,
-        file: &Stated<String>,
-        wanted: Option<&Stated<String>>,
-        error: VectorError,
-    ) -> Diagnostic {
+    fn unread(&self, file: &Stated<String>, source: &FeatureSource, error: VectorError) -> Diagnostic {
         let document = self.frame.document;
-        match (&error, wanted) {
+        match (&error, &source.layer) {
             (VectorError::NoSuchLayer { wanted, suggestion, names }, Some(key)) => {
                 let message =
                     format!("'{}' has no layer '{wanted}'{}", file.as_str(), did_you_mean(suggestion));
@@ -384,6 +377,10 @@ impl<'a> Sources<'a> {
                 let message = format!("'{}' holds {} layers", file.as_str(), names.len());
                 let help = format!("add `layer = \"...\"` with one of {}", list(names));
                 document.error(file, message).with_help(help)
+            }
+            (VectorError::NoSuchColumn { .. }, _) if source.columns.is_some() => {
+                let span = source.columns.as_ref().and_then(Stated::span).unwrap_or_default();
+                document.error_at(span, format!("'{}': {error}", file.as_str()))
             }
             _ => document.error(file, error),
         }
@@ -442,8 +439,14 @@ impl<'a> Sources<'a> {
     }
 }
 
-fn layer_key(file: &Stated<String>, wanted: Option<&Stated<String>>, stated: Option<&Crs>) -> LayerKey {
-    (file.to_string(), wanted.map(|name| name.to_string()), stated.map(|crs| crs.name().to_owned()))
+fn layer_key(file: &Stated<String>, source: &FeatureSource) -> LayerKey {
+    let columns = source.columns.iter().flat_map(|columns| columns.iter());
+    (
+        file.to_string(),
+        source.layer.as_ref().map(|name| name.to_string()),
+        source.crs.as_ref().map(|crs| crs.name().to_owned()),
+        columns.map(|(role, name)| (role.clone(), name.clone())).collect(),
+    )
 }
 
 /// A line as an outer ring, without repeating its first vertex; `None` where fewer than three remain.

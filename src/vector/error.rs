@@ -56,6 +56,23 @@ pub enum VectorError {
         suggestion: Option<String>,
         names: Vec<String>,
     },
+    #[error(
+        "no column of this table says where its rows lie; its columns are {}; name them in its first row, such as lon and lat, easting and northing, grid reference or wkt, or state them: columns = {{ position = \"...\" }} or {{ lon = \"...\", lat = \"...\" }} or {{ x = \"...\", y = \"...\" }}",
+        list(names)
+    )]
+    NoPlaceColumns { names: Vec<String> },
+    #[error(
+        "this table has no column '{wanted}'{}; its columns are {}",
+        did_you_mean(suggestion),
+        list(names)
+    )]
+    NoSuchColumn {
+        /// The stated name, shortened.
+        wanted: String,
+        /// The most similar name, where one is similar.
+        suggestion: Option<String>,
+        names: Vec<String>,
+    },
     #[error("this is {format}, which cannot be read; convert it: {command}")]
     OtherFormat { format: &'static str, command: String },
     #[error(
@@ -63,7 +80,7 @@ pub enum VectorError {
     )]
     FeatureDisabled { format: &'static str, feature: &'static str, command: String },
     #[error(
-        "neither its content nor its name tells its format; GeoJSON is read, and ESRI shapefiles, GeoPackage, FlatGeobuf, GPX, KML, KMZ, CityJSON, LandXML, DXF, OpenStreetMap (.osm, .osm.pbf), and the overlays MSDL, NVG, MilX, Cursor on Target and ORBAT Mapper"
+        "neither its content nor its name tells its format; GeoJSON is read, and ESRI shapefiles, GeoPackage, FlatGeobuf, GPX, KML, KMZ, CityJSON, LandXML, DXF, OpenStreetMap (.osm, .osm.pbf), tables (.csv, .tsv, .xlsx, .ods), and the overlays MSDL, NVG, MilX, Cursor on Target and ORBAT Mapper"
     )]
     UnknownFormat,
     /// A longitude or latitude is out of range: usually meters in a file that names no system.
@@ -137,6 +154,12 @@ impl VectorError {
     /// A [`VectorError::WhichLayer`] among `names`.
     pub(crate) fn which_layer(names: &[&str]) -> Self {
         Self::WhichLayer { names: names.iter().copied().map(str::to_owned).collect() }
+    }
+
+    /// A [`VectorError::NoSuchColumn`] among `names`.
+    pub(crate) fn no_such_column(wanted: &str, names: &[String]) -> Self {
+        let suggestion = nearest(wanted, names.iter().map(String::as_str)).map(str::to_owned);
+        Self::NoSuchColumn { wanted: shorten(wanted), suggestion, names: names.to_vec() }
     }
 
     /// A [`VectorError::NoSuchLayer`] among `names`.

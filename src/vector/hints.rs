@@ -12,6 +12,9 @@ pub struct VectorHints<'a> {
     pub overridden: &'a dyn Fn(&Crs),
     /// The name of the requested layer; without it the file must hold one layer.
     pub layer: Option<&'a str>,
+    /// What columns of a table hold: `position`, `lon`, `lat`, `x`, `y`, `zone`, `z` or `shape`, or the name of a property, each with
+    /// the name of a column; by the names of the columns where it is empty.
+    pub columns: &'a [(String, String)],
     /// Returns the bytes of a file beside this one, `None` where there is none. The argument is the file's name with
     /// another extension.
     pub companions: &'a dyn Fn(&str) -> Option<Vec<u8>>,
@@ -19,7 +22,7 @@ pub struct VectorHints<'a> {
 
 impl Default for VectorHints<'_> {
     fn default() -> Self {
-        Self { crs: None, overridden: &|_| (), layer: None, companions: &|_| None }
+        Self { crs: None, overridden: &|_| (), layer: None, columns: &[], companions: &|_| None }
     }
 }
 

@@ -28,5 +28,6 @@ pub mod read;
 mod rings;
 mod shapefile;
 mod svg_style;
+mod table;
 mod tally;
 mod xml;

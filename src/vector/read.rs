@@ -13,6 +13,8 @@
 //! | Cursor-on-Target events, also of a data package | one | EPSG:4326 |
 //! | MilX, MSDL, NVG | the names of its layers or groups, of MSDL units, equipment, installations, graphics; all where none is requested | EPSG:4326 |
 //! | scenarios of ORBAT Mapper | units, and the names of its layers; all where none is requested | EPSG:4326 |
+//! | CSV, TSV | one | that of its column names or grid references, else the `crs` key |
+//! | spreadsheets: xlsx, xlsm, ods | its sheets | as of CSV |
 //! | LandXML | alignments; stations, points, plan_features | its EPSG code |
 //! | OpenStreetMap XML and PBF | points, lines, multipolygons; roads, railways, waterways, water, buildings | EPSG:4326 |
 //!
@@ -27,7 +29,7 @@ use crate::feature::VectorLayer;
 use crate::geopackage;
 use crate::hints::VectorHints;
 use crate::{
-    cityjson, cot, dxf, flatgeobuf, geojson, gpx, kml, landxml, milx, msdl, nvg, orbat, osm, shapefile,
+    cityjson, cot, dxf, flatgeobuf, geojson, gpx, kml, landxml, milx, msdl, nvg, orbat, osm, shapefile, table,
 };
 use sandtable_base::archive::{self, ArchiveError, ZipReader};
 use sandtable_base::limits::UNPACKED_VECTOR_BYTES;
@@ -128,8 +130,13 @@ fn read_unpacked(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<Vector
         VectorFormat::Gpx => gpx::read(bytes, hints),
         VectorFormat::Kml => kml::read(bytes, hints),
         VectorFormat::LandXml => landxml::read(bytes, hints),
+        VectorFormat::Table => single(name, hints, table::read_text(bytes, hints)),
         VectorFormat::OsmXml => osm::read_xml(bytes, hints),
         VectorFormat::OsmPbf => osm::read_pbf(bytes, hints),
+        VectorFormat::Workbook97 => Err(VectorError::OtherFormat {
+            format: "a spreadsheet of Excel 97 to 2003",
+            command: format!("soffice --headless --convert-to xlsx \"{name}\""),
+        }),
         VectorFormat::Other(format) => Err(VectorError::OtherFormat { format, command: conversion(name) }),
         VectorFormat::Unknown => Err(VectorError::UnknownFormat),
     };
@@ -161,9 +168,14 @@ fn companion(name: &str, extension: &str, hints: &VectorHints) -> Option<Vec<u8>
 
 /// Reads an archive: a KMZ, zipped shapefiles, or one file of another format.
 fn read_zip(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorFile, VectorError> {
-    const OTHERS: [&str; 8] = [".geojson", ".json", ".gpkg", ".fgb", ".gpx", ".osm", ".milxly", ".nvg"];
+    const OTHERS: [&str; 10] =
+        [".geojson", ".json", ".gpkg", ".fgb", ".gpx", ".osm", ".milxly", ".nvg", ".csv", ".tsv"];
     let zip = ZipReader::open(bytes)?;
     let limit = most_unpacked(bytes);
+    if table::is_workbook(&zip) {
+        return table::read_workbook(bytes, &zip, limit, hints)
+            .map(|layer| VectorFile { layer, model: None });
+    }
     let members = |extensions: &[&str]| {
         let is_wanted = |member: &&str| has_extension(member, extensions);
         zip.names().filter(is_wanted).collect::<Vec<_>>()
@@ -221,6 +233,9 @@ enum VectorFormat {
     Nvg,
     Orbat,
     LandXml,
+    Table,
+    /// Known, but not read: xls.
+    Workbook97,
     OsmXml,
     OsmPbf,
     /// Known, but not read.
@@ -241,6 +256,7 @@ fn format_of(name: &str, bytes: &[u8]) -> VectorFormat {
         () if flatgeobuf::is_flatgeobuf(bytes) => VectorFormat::FlatGeobuf,
         () if dxf::is_dxf(bytes) => VectorFormat::Dxf,
         () if osm::is_pbf(bytes) => VectorFormat::OsmPbf,
+        () if bytes.starts_with(b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1") => VectorFormat::Workbook97,
         () if bytes.starts_with(b"PAR1") => VectorFormat::Other("GeoParquet"),
         () => xml_format(bytes).or_else(|| format_by_name(name)).unwrap_or_else(|| match text.first() {
             Some(_) if orbat::is_orbat(text) => VectorFormat::Orbat,
@@ -285,7 +301,7 @@ fn xml_format(bytes: &[u8]) -> Option<VectorFormat> {
 fn format_by_name(name: &str) -> Option<VectorFormat> {
     let extension = name.rsplit_once('.')?.1.to_ascii_lowercase();
     Some(match extension.as_str() {
-        "csv" | "tsv" | "txt" | "xyz" => VectorFormat::Other("a table of text"),
+        "csv" | "tsv" | "txt" | "xyz" => VectorFormat::Table,
         "dbf" | "shx" | "prj" | "cpg" => {
             VectorFormat::Other("a part of an ESRI shapefile; give the .shp file")
         }
@@ -345,7 +361,9 @@ mod tests {
         let error = refusal("roads/main.gml", b"<gml:FeatureCollection>");
         assert!(error.contains("this is GML"), "{error}");
         assert!(error.contains("ogr2ogr -f GeoJSON \"roads/main.geojson\" \"roads/main.gml\""), "{error}");
-        assert!(refusal("a.csv", b"x,y\n1,2\n").contains("a table of text"));
+        assert!(
+            refusal("a.xls", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1").contains("--convert-to xlsx \"a.xls\"")
+        );
         assert!(refusal("a.shx", b"\x00\x00\x27\x0a").contains("give the .shp file"));
         assert!(refusal("a.parquet", b"PAR1").contains("GeoParquet"));
     }

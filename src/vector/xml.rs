@@ -267,6 +267,14 @@ impl<'a> XmlElement<'a> {
         self.raw_attribute(name)?.normalized_value(XmlVersion::Implicit1_0).ok()
     }
 
+    /// Returns the value of an attribute by its name without prefix.
+    pub fn local_attribute(&self, name: &str) -> Option<Cow<'_, str>> {
+        let mut attributes = self.start.attributes();
+        attributes.with_checks(false);
+        let found = attributes.flatten().find(|attribute| attribute.key.local_name().into_inner() == name);
+        found?.normalized_value(XmlVersion::Implicit1_0).ok()
+    }
+
     pub fn number<T: std::str::FromStr>(&self, name: &str) -> Option<T> {
         self.raw_attribute(name)?.value.trim().parse().ok()
     }

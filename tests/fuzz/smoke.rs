@@ -189,6 +189,18 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
             // A lake all of whose points are one.
             any.chain([b"\xf8\xff\xff\x9a\x9a\x90\xff\xff".to_vec()]).collect()
         }
+        "tables" => vec![
+            whole(0, "assets/jacksboro/units.csv"),
+            text(1, "sep=;\nName;L\u{e4}nge;Breite;a\n\"x\ny\";-84,2;36,3;16SGF5000018000\nb;84.2W;36.3N;1.0031E+19\n"),
+            text(0, "a;wkt\n1;POINT Z (1 2 3)\n2;\"POLYGON((0 0,4 0,4 4,0 0),(1 0.5,2 0.5,2 1,1 0.5))\"\n3;GEOMETRYCOLLECTION(POINT(1 1))\n"),
+            text(2, "<o:c xmlns:o='o' xmlns:t='t' xmlns:x='x'><o:body><o:spreadsheet><t:table t:name='a'><t:table-row><t:table-cell><x:p>lon</x:p>\
+                     </t:table-cell><t:table-cell><x:p>lat</x:p></t:table-cell></t:table-row><t:table-row t:number-rows-repeated='3'>\
+                     <t:table-cell t:number-columns-repeated='2' o:value-type='float' o:value='7.5'/></t:table-row></t:table></o:spreadsheet>\
+                     </o:body></o:c>"),
+            text(3, "<worksheet><dimension ref='A1:XFD1048576'/><sheetData><row r='1'><c r='A1' t='inlineStr'><is><t>a</t></is></c>\
+                     <c r='B1' t='inlineStr'><is><t>sidc</t></is></c></row><row r='2'><c r='A2' t='inlineStr'><is><t>16SGF5000018000</t></is>\
+                     </c><c r='B2'><v>10031000161211000000</v></c></row></sheetData></worksheet>"),
+        ],
         "positions" => [
             "750000,4018000",
             "16S GF 50000 18000",

@@ -32,7 +32,7 @@ pub type Target = (&'static str, fn(&[u8]));
 
 /// All targets.
 #[allow(dead_code, reason = "each fuzz target is a program that uses one of them")]
-pub const TARGETS: [Target; 15] = [
+pub const TARGETS: [Target; 16] = [
     ("elevation", elevation),
     ("points", points),
     ("vectors", vectors),
@@ -46,6 +46,7 @@ pub const TARGETS: [Target; 15] = [
     ("scene_picture", scene_picture),
     ("walk", walk),
     ("words", words),
+    ("tables", tables),
     ("positions", positions),
     ("http_request", http_request),
 ];
@@ -147,6 +148,43 @@ pub fn land_xml(bytes: &[u8]) {
         let _ = vectors::read("a.xml", bytes, &VectorHints { layer, ..VectorHints::default() });
     }
 }
+
+/// Tables of text, and sheets of the two kinds of spreadsheets as the only or the first one of a workbook.
+pub fn tables(bytes: &[u8]) {
+    let Some((kind, bytes)) = bytes.split_first() else { return };
+    let member = |name: &'static str| (name, bytes);
+    let workbook = |members: &[(&str, &[u8])]| sandtable_base::archive::zip(members).unwrap_or_default();
+    let file = match kind % 4 {
+        0 | 1 => bytes.to_vec(),
+        2 => workbook(&[
+            ("mimetype", b"application/vnd.oasis.opendocument.spreadsheet"),
+            member("content.xml"),
+        ]),
+        _ => {
+            let [root, relations, book] = WORKBOOK_PARTS;
+            workbook(&[
+                ("_rels/.rels", root.as_bytes()),
+                ("xl/workbook.xml", book.as_bytes()),
+                ("xl/_rels/workbook.xml.rels", relations.as_bytes()),
+                member("xl/worksheets/sheet1.xml"),
+            ])
+        }
+    };
+    for columns in [Vec::new(), vec![("position".to_owned(), "a".to_owned())]] {
+        let hints = VectorHints { columns: &columns, ..VectorHints::default() };
+        if let Ok(layer) = vectors::read("a.csv", &file, &hints) {
+            let mut vertices = layer.features.iter().flat_map(|feature| feature.geometry.vertices());
+            assert!(vertices.all(|vertex| vertex.is_finite()), "a row that lies nowhere");
+        }
+    }
+}
+
+/// The root, the relations and the list of sheets of a workbook with one sheet.
+const WORKBOOK_PARTS: [&str; 3] = [
+    r#"<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Id="a" Type="http://schemas.openxmlformats.org/officeDocument/2006/relationships/officeDocument" Target="xl/workbook.xml"/></Relationships>"#,
+    r#"<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Id="a" Type="http://schemas.openxmlformats.org/officeDocument/2006/relationships/worksheet" Target="worksheets/sheet1.xml"/></Relationships>"#,
+    r#"<workbook xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main" xmlns:r="http://schemas.openxmlformats.org/officeDocument/2006/relationships"><sheets><sheet name="a" sheetId="1" r:id="a"/></sheets></workbook>"#,
+];
 
 /// Models with whatever they name beside them.
 pub fn models(bytes: &[u8]) {

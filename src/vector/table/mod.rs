@@ -1,0 +1,35 @@
+//! Tables as vector files: text with separators and sheets of spreadsheets, a feature to a row.
+//!
+//! ```text
+//! CSV, TSV ── text ──────┐
+//!                        ├─► rows ─► the row of names ─► columns with a meaning ─► features
+//! xlsx, ods ─ workbook ──┘
+//! ```
+//!
+//! The names of columns say which hold the place ([`names`]), or the user states it. Columns of the overlay schema become its
+//! properties; every column also keeps its own name. A row that states no place is told by its number and left out.
+
+mod cells;
+mod columns;
+mod layer;
+mod names;
+mod text;
+mod wkt;
+mod workbook;
+
+#[cfg(test)]
+mod tests;
+
+use crate::error::VectorError;
+use crate::feature::VectorLayer;
+use crate::hints::VectorHints;
+
+pub(super) use workbook::{is_workbook, read as read_workbook};
+
+/// Reads a table of text.
+///
+/// # Errors
+/// [`VectorError`]: no column says where the rows lie, or no row is sound.
+pub(super) fn read_text(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
+    layer::read(&text::rows(bytes), hints)
+}
