@@ -173,7 +173,7 @@ impl RowsReader<'_> {
             NumberOrder::EastFirst if is_degrees(pair) => Ok(pair),
             NumberOrder::NorthFirst if is_degrees(swapped) => Ok(swapped),
             NumberOrder::Unknown if is_degrees(pair) || is_degrees(swapped) => Err(format!(
-                "'{}' can be longitude {} and latitude {}, or latitude {} and longitude {}; write their letters, as in 36.3N 84.2W, or state the column's order by two columns",
+                "'{}' can be longitude {} and latitude {}, or latitude {} and longitude {}; write their letters, as in 36.3N 84.2W, or state the key 'crs', whose order is X,Y",
                 shorten(text),
                 pair.x,
                 pair.y,
