@@ -16,7 +16,7 @@ const PROBED_CELLS: usize = 200;
 
 /// Where a row lies, by its columns from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Placement {
+pub(super) enum RowPlace {
     Shape(usize),
     Degrees { longitude: usize, latitude: usize },
     Position(usize),
@@ -27,7 +27,7 @@ pub(super) enum Placement {
 /// The columns of a table.
 #[derive(Debug)]
 pub(super) struct TableColumns {
-    pub placement: Placement,
+    pub placement: RowPlace,
     /// The column of elevations.
     pub elevation: Option<usize>,
     /// The columns of the overlay schema, with its properties.
@@ -139,20 +139,20 @@ fn of_row(table: &TableRows, index: usize, stated: &[(String, String)]) -> Optio
     Some(TableColumns { placement, elevation, properties, names: property_names(header), first: index + 1 })
 }
 
-fn placement(column: &dyn Fn(ColumnRole) -> Option<usize>) -> Option<Placement> {
+fn placement(column: &dyn Fn(ColumnRole) -> Option<usize>) -> Option<RowPlace> {
     if let Some(shape) = column(ColumnRole::Shape) {
-        return Some(Placement::Shape(shape));
+        return Some(RowPlace::Shape(shape));
     }
     if let (Some(longitude), Some(latitude)) = (column(ColumnRole::Longitude), column(ColumnRole::Latitude)) {
-        return Some(Placement::Degrees { longitude, latitude });
+        return Some(RowPlace::Degrees { longitude, latitude });
     }
     if let Some(position) = column(ColumnRole::Position) {
-        return Some(Placement::Position(position));
+        return Some(RowPlace::Position(position));
     }
     let (x, y) = (column(ColumnRole::X)?, column(ColumnRole::Y)?);
     Some(match column(ColumnRole::Zone) {
-        Some(zone) => Placement::Utm { zone, x, y },
-        None => Placement::Plane { x, y },
+        Some(zone) => RowPlace::Utm { zone, x, y },
+        None => RowPlace::Plane { x, y },
     })
 }
 

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use serde_json::Value;
 
 use super::cells::{TableRow, TableRows, cell_number, is_faithful_number, number, written};
-use super::columns::{self, Placement, TableColumns};
+use super::columns::{self, RowPlace, TableColumns};
 use super::wkt;
 use crate::builder::{FeatureParts, LayerBuilder, position};
 use crate::error::{VectorError, shorten};
@@ -57,8 +57,8 @@ fn system(rows: &[TableRow], columns: &TableColumns, hints: &VectorHints) -> Res
     let reason = "has columns of eastings and northings and names no system";
     match (hints.crs, columns.placement) {
         (Some(crs), _) => Ok(crs.clone()),
-        (None, Placement::Plane { .. }) => Err(VectorError::NoCrs { format: FORMAT, reason }),
-        (None, Placement::Shape(column)) => {
+        (None, RowPlace::Plane { .. }) => Err(VectorError::NoCrs { format: FORMAT, reason }),
+        (None, RowPlace::Shape(column)) => {
             let code =
                 rows.iter().filter_map(|row| row.text(column)).find_map(|text| wkt::read(&text).ok()?.1);
             Ok(code.map(Crs::from_epsg).transpose()?.unwrap_or_else(Crs::wgs84))
@@ -78,7 +78,7 @@ enum NumberOrder {
 
 /// The order of degrees without letters: a number beyond 90 can be a longitude only, and says it for all rows.
 fn order(rows: &[TableRow], columns: &TableColumns, hints: &VectorHints) -> NumberOrder {
-    let Placement::Position(column) = columns.placement else { return NumberOrder::EastFirst };
+    let RowPlace::Position(column) = columns.placement else { return NumberOrder::EastFirst };
     if hints.crs.is_some() {
         return NumberOrder::EastFirst;
     }
@@ -106,7 +106,7 @@ struct RowsReader<'a> {
 impl RowsReader<'_> {
     fn parts(&self, row: &TableRow) -> Result<FeatureParts, String> {
         let mut parts = FeatureParts::default();
-        if let Placement::Shape(column) = self.columns.placement {
+        if let RowPlace::Shape(column) = self.columns.placement {
             let text = row.text(column).ok_or_else(|| self.empty(column))?;
             return wkt::read(&text)
                 .map(|(parts, _)| parts)
@@ -124,7 +124,7 @@ impl RowsReader<'_> {
 
     fn place(&self, row: &TableRow) -> Result<DVec2, String> {
         match self.columns.placement {
-            Placement::Degrees { longitude, latitude } => {
+            RowPlace::Degrees { longitude, latitude } => {
                 let plain =
                     (row.cell(longitude).and_then(cell_number), row.cell(latitude).and_then(cell_number));
                 if let (Some(x), Some(y)) = plain {
@@ -144,14 +144,14 @@ impl RowsReader<'_> {
                 let x = angle(longitude, DegreeAxis::Longitude)?;
                 self.placed(Position::on_earth(DVec2::new(x, angle(latitude, DegreeAxis::Latitude)?)))
             }
-            Placement::Plane { x, y } => {
+            RowPlace::Plane { x, y } => {
                 let number = |column: usize| {
                     let cell = row.cell(column).ok_or_else(|| self.empty(column))?;
                     cell_number(cell).ok_or_else(|| format!("'{}' is no number", shorten(&written(cell))))
                 };
                 Ok(DVec2::new(number(x)?, number(y)?))
             }
-            Placement::Utm { zone, x, y } => {
+            RowPlace::Utm { zone, x, y } => {
                 let text = |column: usize| row.text(column).ok_or_else(|| self.empty(column));
                 let number = |column: usize| {
                     let text = text(column)?;
@@ -159,10 +159,8 @@ impl RowsReader<'_> {
                 };
                 self.position(&format!("{} {} {}", text(zone)?, number(x)?, number(y)?))
             }
-            Placement::Position(column) => {
-                self.position(&row.text(column).ok_or_else(|| self.empty(column))?)
-            }
-            Placement::Shape(column) => Err(self.empty(column)),
+            RowPlace::Position(column) => self.position(&row.text(column).ok_or_else(|| self.empty(column))?),
+            RowPlace::Shape(column) => Err(self.empty(column)),
         }
     }
 
@@ -175,7 +173,7 @@ impl RowsReader<'_> {
             NumberOrder::EastFirst if is_degrees(pair) => Ok(pair),
             NumberOrder::NorthFirst if is_degrees(swapped) => Ok(swapped),
             NumberOrder::Unknown if is_degrees(pair) || is_degrees(swapped) => Err(format!(
-                "'{}' can be longitude {} and latitude {}, or latitude {} and longitude {}; write their letters, as in 36.3N 84.2W, or state the column's order by two columns",
+                "'{}' can be longitude {} and latitude {}, or latitude {} and longitude {}; write their letters, as in 36.3N 84.2W, or state the key 'crs', whose order is X,Y",
                 shorten(text),
                 pair.x,
                 pair.y,
