@@ -1,3 +1,5 @@
+//! Tables and spreadsheets that are read.
+
 use serde_json::Value;
 
 use crate::feature::{Geometry, VectorLayer};
