@@ -34,6 +34,10 @@ pub struct NewArguments {
     /// Vector files for the features on the ground, or their addresses
     #[arg(long, value_name = "FILE", num_args = 1..)]
     pub vectors: Vec<PathBuf>,
+    /// Files of units and graphics, or their addresses: ORBAT Mapper, MSDL, NVG, MilX, Cursor on Target, KML, tables; those of
+    /// several moments become phases
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    pub overlay: Vec<PathBuf>,
     /// The picture's title [default: the place's name from the vectors, else the elevation file's]
     #[arg(long, value_name = "TEXT")]
     pub title: Option<String>,
@@ -50,6 +54,7 @@ pub fn run(arguments: &NewArguments) -> Result<(), CliError> {
         folder: arguments.folder.clone(),
         dem: arguments.dem.clone(),
         vectors: arguments.vectors.clone(),
+        overlays: arguments.overlay.clone(),
         title: arguments.title.clone(),
         crs: arguments.crs.clone(),
     };
@@ -58,7 +63,13 @@ pub fn run(arguments: &NewArguments) -> Result<(), CliError> {
     let pictures = PlannedPictures::default();
     let scene = open_scene_for(&path, &allowed, None, ElevationNeed::Pictures(&pictures), &progress);
     steps.finish();
-    let hosts = match arguments.dem.iter().chain(&arguments.vectors).any(|file| is_address_path(file)) {
+    let hosts = match arguments
+        .dem
+        .iter()
+        .chain(&arguments.vectors)
+        .chain(&arguments.overlay)
+        .any(|file| is_address_path(file))
+    {
         true => RemoteAccess::of_run().hosts,
         false => Vec::new(),
     };

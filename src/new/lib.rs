@@ -12,6 +12,7 @@
 mod cameras;
 mod crop;
 mod folder;
+mod overlays;
 mod rules;
 mod survey;
 mod text;
@@ -56,6 +57,8 @@ pub struct NewSceneOptions {
     pub dem: Vec<PathBuf>,
     /// Vector files, or their addresses.
     pub vectors: Vec<PathBuf>,
+    /// Files of units and graphics, or their addresses.
+    pub overlays: Vec<PathBuf>,
     /// The title; where `None`, the name of the most important place or of the district of the vectors, else that of the
     /// first elevation file or its folder.
     pub title: Option<String>,
@@ -105,7 +108,14 @@ pub fn write(
     let dem = options.dem.iter().map(|file| folder.name_of(file)).collect::<Result<Vec<_>, _>>()?;
     let vectors =
         options.vectors.iter().map(|file| survey_file(file, &folder)).collect::<Result<Vec<_>, _>>()?;
-    let on_disk = options.dem.iter().chain(&options.vectors).filter(|file| !is_address_path(file));
+    let overlays =
+        options.overlays.iter().map(|file| overlays::survey(file, &folder)).collect::<Result<Vec<_>, _>>()?;
+    let on_disk = options
+        .dem
+        .iter()
+        .chain(&options.vectors)
+        .chain(&options.overlays)
+        .filter(|file| !is_address_path(file));
     let allowed = folder.folders_to_allow(on_disk)?;
 
     progress("reading elevation");
@@ -124,7 +134,7 @@ pub fn write(
     } else if draft.title.is_empty() {
         draft.title = title::of_file(&options.dem[0]);
     }
-    disk::write(&path, text::scene(&draft, &vectors).as_bytes())?;
+    disk::write(&path, text::scene(&draft, &vectors, &overlays).as_bytes())?;
     Ok(WrittenScene { path, allowed })
 }
 

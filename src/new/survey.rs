@@ -137,6 +137,20 @@ pub(super) fn layers(file: &Path) -> Result<Vec<SurveyedLayer>, SurveyError> {
     surveyed
 }
 
+/// All features of a file of units and graphics.
+///
+/// # Errors
+/// See [`SurveyError`].
+pub(super) fn read_whole(file: &Path) -> Result<VectorLayer, SurveyError> {
+    let bytes = addressed::read(file, ASSET_BYTES.get())?;
+    let companions = addressed::companions(file, ASSET_BYTES.get());
+    let found = |name: &str| companions.get(name);
+    let hints = VectorHints { companions: &found, ..VectorHints::default() };
+    let layer = read::read(&disk::file_name(file), &bytes, &hints);
+    companions.check()?;
+    Ok(layer.map_err(FileError::<VectorError>::at(file))?)
+}
+
 /// The layers of one file without the matches that another layer is named after: of a file with a layer of all
 /// buildings, the schools are among them.
 fn without_excerpts(mut layers: Vec<SurveyedLayer>) -> Vec<SurveyedLayer> {

@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use crate::cameras::CameraDraft;
 use crate::crop::ExtentDraft;
+use crate::overlays::{self, OverlayDraft};
 use crate::rules::{self, RULES};
 use crate::survey::{FeatureSelection, LeftFeatures, SurveyedLayer, TableMatch};
 use sandtable_geom::rect::Rect;
@@ -51,7 +52,7 @@ struct LayerSource<'a> {
 }
 
 /// The text of the scene file.
-pub(super) fn scene(draft: &SceneDraft, vectors: &[VectorDraft]) -> String {
+pub(super) fn scene(draft: &SceneDraft, vectors: &[VectorDraft], overlays: &[OverlayDraft]) -> String {
     let mut out = head(draft);
     out.push_str(&terrain(draft));
     out.push_str(&style(draft));
@@ -67,6 +68,7 @@ pub(super) fn scene(draft: &SceneDraft, vectors: &[VectorDraft]) -> String {
         }
     }
     sources.iter().for_each(|&source| rest(&mut out, source));
+    out.push_str(&overlays::text(overlays));
     out.push_str(
         "\n# A camera without `eye` and `look_at` is fitted to the ground that it shows. `eye`, `eye_height` and `look_at` put\n\
          # it in a place of your own.\n",
@@ -227,6 +229,6 @@ fn corners(Rect { min, max }: &Rect) -> String {
 }
 
 /// A text in double quotes; JSON's escapes are TOML's.
-fn quoted(text: &str) -> String {
+pub(super) fn quoted(text: &str) -> String {
     Value::from(text).to_string()
 }

@@ -1,8 +1,8 @@
 //! KML 2.2 (OGC 07-147r2, 2008): placemarks, on WGS 84.
 //!
 //! Every placemark is a feature. Its properties are `name`, `description`, `folder` (the folder or document that holds
-//! it, whose name also requests it as a layer), `altitudeMode`, and its extended data as text. Overlays, styles, models
-//! and links are not read.
+//! it, whose name also requests it as a layer), `altitudeMode`, its extended data as text, and its style and times by the
+//! names of [`overlay_schema`](crate::overlay_schema). Overlays, models and links are not read.
 //!
 //! Altitudes are meters above sea level, which become elevations. Where `altitudeMode` makes them relative to the
 //! ground they do not; nor where all are 0 and the mode is not `absolute`, since programs fill in 0.
@@ -16,6 +16,7 @@ use crate::builder::{FeatureParts, LayerBuilder, Vertices, position};
 use crate::error::{VectorError, shorten};
 use crate::feature::{Properties, VectorLayer};
 use crate::hints::VectorHints;
+use crate::kml_style::{self, KmlStyles};
 use crate::tally::RecordTally;
 use crate::xml::{self, DecodedXml, XmlElement, XmlReader};
 
@@ -33,6 +34,7 @@ pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, Vec
         wanted: hints.layer,
         folders: Vec::new(),
         layer: LayerBuilder::new(hints.crs_or_wgs84()),
+        styles: KmlStyles::default(),
         unplaced: RecordTally::new(),
     };
     let root = reader.xml.root()?;
@@ -60,6 +62,7 @@ struct KmlReader<'a> {
     /// The names of the folders that hold placemarks, in order.
     folders: Vec<String>,
     layer: LayerBuilder,
+    styles: KmlStyles,
     /// Moments of tracks without a position, which KML allows.
     unplaced: RecordTally,
 }
@@ -106,6 +109,11 @@ impl<'a> KmlReader<'a> {
                 self.add(&element, folder);
                 Ok(())
             }
+            "Style" | "StyleMap" => {
+                let element = self.xml.read(element)?;
+                self.styles.add(&element);
+                Ok(())
+            }
             _ => self.xml.skip(),
         }
     }
@@ -141,9 +149,11 @@ impl<'a> KmlReader<'a> {
                     placemark.properties.insert(name.into(), child.text().into());
                 }
                 "ExtendedData" => placemark.add_extended_data(child),
+                "TimeSpan" | "TimeStamp" => kml_style::add_time(child, &mut placemark.properties),
                 _ => self.add_shape(child, &mut placemark)?,
             }
         }
+        self.styles.apply(element, &mut placemark.properties);
         Ok(placemark)
     }
 

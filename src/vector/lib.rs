@@ -16,6 +16,7 @@ mod geopackage;
 mod gpx;
 pub mod hints;
 mod kml;
+mod kml_style;
 mod landxml;
 mod milx;
 pub mod moment;

@@ -142,3 +142,33 @@ fn layers_of_milx_hold_their_graphics_with_codes_fields_and_colors() {
     assert!((at.x + 58.929_023_566).abs() < 1e-8 && (at.y + 51.647_640_183).abs() < 1e-8, "{at}");
     assert_eq!(text(&hostile.features[0], "unique_designation"), "2BN");
 }
+
+/// The distinct things of a layer, and how many of its features have a code that is drawn without a note.
+fn drawn_whole(layer: &VectorLayer) -> (usize, usize, usize) {
+    let ids: std::collections::BTreeSet<&str> = layer.features.iter().map(|unit| text(unit, "id")).collect();
+    let codes: Vec<&str> =
+        layer.features.iter().map(|unit| text(unit, "sidc")).filter(|code| !code.is_empty()).collect();
+    let is_whole = |code: &&&str| {
+        let code = SymbolCode::parse(code).unwrap_or_else(|error| panic!("{code}: {error}"));
+        sandtable_symbology::symbol::MilitarySymbol::new(&code).is_some_and(|symbol| symbol.notes.is_empty())
+    };
+    (ids.len(), codes.len(), codes.iter().filter(is_whole).count())
+}
+
+#[test]
+fn scenarios_of_orbat_mapper_hold_every_unit_with_a_place_and_draw_it_whole() {
+    // Of 139 units 53 have a place in some state, and 22 are below one of them.
+    let Some(falklands) = layer("military/orbat/falkland82.json", Some("units")) else { return };
+    let (units, states, whole) = drawn_whole(&falklands);
+    assert_eq!((units, states, whole), (75, 154, 154));
+    let notes = falklands.notes.join("\n");
+    for told in ["22 units are where the units above them are", "left out: 64 units without a place"] {
+        assert!(notes.contains(told), "{notes}");
+    }
+    let Some(narvik) = layer("military/orbat/narvik40.json", Some("units")) else { return };
+    let (units, states, whole) = drawn_whole(&narvik);
+    assert_eq!((units, states, whole), (10, 24, 24));
+    // 12 states of 9 items that are shown.
+    let Some(measures) = layer("military/orbat/controlMeasureScenario.json", None) else { return };
+    assert_eq!(measures.features.len(), 12);
+}
