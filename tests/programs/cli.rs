@@ -4,6 +4,7 @@ mod attacks;
 mod check;
 mod convert;
 mod export;
+mod export_features;
 #[cfg(unix)]
 mod faults;
 mod fly;
