@@ -86,11 +86,14 @@ impl SymbolField {
         let around = standing.bounds();
         let feet = PixelBox { min: self.bounds.min - around.min, max: self.bounds.max - around.max };
         let mut has_room = false;
+        let mut places = Vec::new();
         for ring in 0..=rings {
-            let foot_of = |offset: IVec2| (standing.anchor + offset.as_vec2() * step).round();
-            let feet = ring_offsets(ring).map(foot_of).filter(|foot| feet.contains(*foot));
-            for foot in feet {
-                if !standing.boxes.iter().all(|area| self.is_free(area.moved(foot), leader)) {
+            fill_ring(ring, &mut places);
+            for offset in &places {
+                let foot = (standing.anchor + offset.as_vec2() * step).round();
+                if !feet.contains(foot)
+                    || !standing.boxes.iter().all(|area| self.is_free(area.moved(foot), leader))
+                {
                     continue;
                 }
                 has_room = true;
@@ -140,23 +143,33 @@ impl SymbolField {
     }
 }
 
-/// The steps from the middle to the places of a square ring: the nearest first, those above before those below.
-fn ring_offsets(ring: i32) -> impl Iterator<Item = IVec2> {
-    (0..=ring).flat_map(move |along| {
-        let places = [
-            IVec2::new(along, -ring),
-            IVec2::new(-along, -ring),
-            IVec2::new(ring, -along),
-            IVec2::new(-ring, -along),
-            IVec2::new(ring, along),
-            IVec2::new(-ring, along),
-            IVec2::new(along, ring),
-            IVec2::new(-along, ring),
-        ];
-        // Places on an axis and at a corner are named twice.
-        let is_first = move |index: usize| !places[..index].contains(&places[index]);
-        (0..8).filter(move |&index| is_first(index)).map(move |index| places[index])
-    })
+/// Fills `places` with the steps from the middle to the places of a square ring: the nearest first, those above before those below.
+fn fill_ring(ring: i32, places: &mut Vec<IVec2>) {
+    places.clear();
+    if ring == 0 {
+        places.push(IVec2::ZERO);
+        return;
+    }
+    for along in 0..=ring {
+        // Places on an axis and at a corner are on two sides.
+        let (is_off_axis, is_corner) = (along > 0, along == ring);
+        places.push(IVec2::new(along, -ring));
+        if is_off_axis {
+            places.push(IVec2::new(-along, -ring));
+        }
+        if !is_corner {
+            places.push(IVec2::new(ring, -along));
+            places.push(IVec2::new(-ring, -along));
+            if is_off_axis {
+                places.push(IVec2::new(ring, along));
+                places.push(IVec2::new(-ring, along));
+            }
+        }
+        places.push(IVec2::new(along, ring));
+        if is_off_axis {
+            places.push(IVec2::new(-along, ring));
+        }
+    }
 }
 
 /// Which small cells of a picture symbols cover: most places are known not to be free without a look at the boxes.
@@ -213,7 +226,8 @@ mod tests {
     #[test]
     fn a_ring_holds_each_of_its_places_once_the_nearest_first() {
         for ring in 0..6 {
-            let offsets: Vec<IVec2> = ring_offsets(ring).collect();
+            let mut offsets = Vec::new();
+            fill_ring(ring, &mut offsets);
             assert_eq!(offsets.len() as i32, (8 * ring).max(1));
             assert!(offsets.iter().all(|at| at.abs().max_element() == ring));
             assert!(offsets.is_sorted_by_key(|at| at.length_squared()));
