@@ -114,6 +114,7 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
         "vectors" => vec![
             file(0, "assets/jacksboro/lake.geojson"),
             file(0, "assets/jacksboro/crossing.geojson"),
+            whole(0, "assets/jacksboro/crossing.orbat.json"),
             text(4, "<gpx version=\"1.1\"><trk><name>a</name><trkseg><trkpt lat=\"1\" lon=\"2\"><ele>3</ele></trkpt>\
                      <trkpt lat=\"1.1\" lon=\"2\"/></trkseg></trk></gpx>"),
             text(5, "<kml><Document><Placemark><name>a</name><Polygon><outerBoundaryIs><LinearRing><coordinates>0,0 1,0 \
