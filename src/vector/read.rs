@@ -14,7 +14,7 @@
 //! | MilX, MSDL, NVG | the names of its layers or groups, of MSDL units, equipment, installations, graphics; all where none is requested | EPSG:4326 |
 //! | scenarios of ORBAT Mapper | units, and the names of its layers; all where none is requested | EPSG:4326 |
 //! | CSV, TSV | one | that of its column names or grid references, else the `crs` key |
-//! | spreadsheets: xlsx, xlsm, ods | its sheets | as of CSV |
+//! | spreadsheets: xlsx, xlsm, ods, xls | its sheets | as of CSV |
 //! | LandXML | alignments; stations, points, plan_features | its EPSG code |
 //! | OpenStreetMap XML and PBF | points, lines, multipolygons; roads, railways, waterways, water, buildings | EPSG:4326 |
 //!
@@ -133,10 +133,7 @@ fn read_unpacked(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<Vector
         VectorFormat::Table => single(name, hints, table::read_text(bytes, hints)),
         VectorFormat::OsmXml => osm::read_xml(bytes, hints),
         VectorFormat::OsmPbf => osm::read_pbf(bytes, hints),
-        VectorFormat::Workbook97 => Err(VectorError::OtherFormat {
-            format: "a spreadsheet of Excel 97 to 2003",
-            command: format!("soffice --headless --convert-to xlsx \"{name}\""),
-        }),
+        VectorFormat::Workbook97 => table::read_workbook_97(bytes, hints),
         VectorFormat::Other(format) => Err(VectorError::OtherFormat { format, command: conversion(name) }),
         VectorFormat::Unknown => Err(VectorError::UnknownFormat),
     };
@@ -234,7 +231,6 @@ enum VectorFormat {
     Orbat,
     LandXml,
     Table,
-    /// Known, but not read: xls.
     Workbook97,
     OsmXml,
     OsmPbf,
@@ -256,7 +252,7 @@ fn format_of(name: &str, bytes: &[u8]) -> VectorFormat {
         () if flatgeobuf::is_flatgeobuf(bytes) => VectorFormat::FlatGeobuf,
         () if dxf::is_dxf(bytes) => VectorFormat::Dxf,
         () if osm::is_pbf(bytes) => VectorFormat::OsmPbf,
-        () if bytes.starts_with(b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1") => VectorFormat::Workbook97,
+        () if table::is_compound(bytes) => VectorFormat::Workbook97,
         () if bytes.starts_with(b"PAR1") => VectorFormat::Other("GeoParquet"),
         () => xml_format(bytes).or_else(|| format_by_name(name)).unwrap_or_else(|| match text.first() {
             Some(_) if orbat::is_orbat(text) => VectorFormat::Orbat,
@@ -362,7 +358,7 @@ mod tests {
         assert!(error.contains("this is GML"), "{error}");
         assert!(error.contains("ogr2ogr -f GeoJSON \"roads/main.geojson\" \"roads/main.gml\""), "{error}");
         assert!(
-            refusal("a.xls", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1").contains("--convert-to xlsx \"a.xls\"")
+            refusal("a.xls", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1").contains("no workbook that can be read")
         );
         assert!(refusal("a.shx", b"\x00\x00\x27\x0a").contains("give the .shp file"));
         assert!(refusal("a.parquet", b"PAR1").contains("GeoParquet"));

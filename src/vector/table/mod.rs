@@ -3,7 +3,7 @@
 //! ```text
 //! CSV, TSV ── text ──────┐
 //!                        ├─► rows ─► the row of names ─► columns with a meaning ─► features
-//! xlsx, ods ─ workbook ──┘
+//! xlsx, ods, xls ─ workbook ┘
 //! ```
 //!
 //! The names of columns say which hold the place ([`names`]), or the user states it. Columns of the overlay schema become its
@@ -11,11 +11,13 @@
 
 mod cells;
 mod columns;
+mod compound_file;
 mod layer;
 mod names;
 mod text;
 mod wkt;
 mod workbook;
+mod workbook_97;
 
 #[cfg(test)]
 mod tests;
@@ -24,7 +26,8 @@ use crate::error::VectorError;
 use crate::feature::VectorLayer;
 use crate::hints::VectorHints;
 
-pub(super) use workbook::{is_workbook, read as read_workbook};
+pub(super) use compound_file::is_compound;
+pub(super) use workbook::{is_workbook, read as read_workbook, read_97 as read_workbook_97};
 
 /// Reads a table of text.
 ///

@@ -284,3 +284,44 @@ fn thousands_of_rows_are_read_at_once() {
         (0..20_000).map(|index| format!("unit {index},16SGF{:05}{:05}\n", index, 99_999 - index)).collect();
     assert_eq!(table(&format!("unit,mgrs\n{rows}")).features.len(), 20_000);
 }
+
+/// A workbook of Excel 97, made by another program.
+const UNITS_97: &[u8] = include_bytes!("../../../tests/features/units.xls");
+
+#[test]
+fn workbooks_of_excel_97_are_read_as_others_are() {
+    let layer = read::read("units.xls", UNITS_97, &VectorHints::default()).expect("a workbook");
+    assert_eq!(layer.features.len(), 2, "{:?}", layer.faults);
+    let (first, second) = (&layer.features[0].properties, &layer.features[1].properties);
+    for (name, expected) in [
+        ("Unit", Value::from("2-77 IN")),
+        ("sidc", Value::from("10031000161211000000")),
+        ("Strength", Value::from(612.0)),
+        ("Date", Value::from("2026-05-01T06:00:00Z")),
+        ("Ready", Value::Bool(true)),
+    ] {
+        assert_eq!(first[name], expected, "{name}");
+    }
+    assert_eq!((second["Unit"].as_str(), second["Date"].as_str()), (Some("Рота"), Some("2026-05-02")));
+    assert!(layer.faults.join("\n").contains("row 5"), "{:?}", layer.faults);
+}
+
+#[test]
+fn broken_workbooks_of_excel_97_end_with_an_error_or_a_table() {
+    let mut state = 7u64;
+    let mut next = |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    for _ in 0..3000 {
+        let mut bytes = UNITS_97.to_vec();
+        for _ in 0..=next(8) {
+            let at = next(bytes.len());
+            bytes[at] = next(256) as u8;
+        }
+        if next(4) == 0 {
+            bytes.truncate(next(bytes.len()));
+        }
+        let _ = read::read("units.xls", &bytes, &VectorHints::default());
+    }
+}

@@ -2,7 +2,7 @@
 //!
 //! Nothing is allocated by what a sheet declares as its size: only cells that hold something are kept. Members of the archive are
 //! unpacked within a limit before anything else reads them. `calamine`'s reader of OpenDocument repeats cells before it counts
-//! them, and that of xls allocates what the file declares, so that neither is used.
+//! them, and that of xls allocates what the file declares, so that neither is used: [`workbook_97`](super::workbook_97) reads those.
 
 use std::io::Cursor;
 
@@ -10,7 +10,7 @@ use calamine::{DataRef, Reader, Xlsx};
 use serde_json::Value;
 
 use super::cells::{TableRow, TableRows};
-use super::layer;
+use super::{layer, workbook_97};
 use crate::error::VectorError;
 use crate::feature::VectorLayer;
 use crate::hints::VectorHints;
@@ -53,6 +53,27 @@ pub(in super::super) fn read(
     hints: &VectorHints,
 ) -> Result<VectorLayer, VectorError> {
     let sheets = if is_xlsx(zip) { xlsx(bytes, zip, limit)? } else { ods(&zip.read("content.xml", limit)?)? };
+    chosen(sheets, hints)
+}
+
+/// Reads a sheet of a workbook of Excel 97 to 2003, as [`read`] does.
+///
+/// # Errors
+/// As [`read`].
+pub(in super::super) fn read_97(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
+    let found =
+        workbook_97::sheets(bytes).map_err(|reason| VectorError::broken(FORMAT, "its workbook", reason))?;
+    let mut budget = CellBudget::new();
+    let mut sheets = Vec::new();
+    for (name, cells) in found {
+        cells.iter().try_for_each(|(.., value)| budget.take(value))?;
+        sheets.push((name, sheet_of(cells)));
+    }
+    chosen(sheets, hints)
+}
+
+/// The table of the sheet that is meant.
+fn chosen(sheets: Vec<(String, TableRows)>, hints: &VectorHints) -> Result<VectorLayer, VectorError> {
     let filled = || sheets.iter().filter(|(_, rows)| !rows.rows.is_empty());
     let names: Vec<&str> = match hints.layer {
         Some(_) => sheets.iter().map(|(name, _)| name.as_str()).collect(),
@@ -127,22 +148,26 @@ fn xlsx(bytes: &[u8], zip: &ZipReader<'_>, limit: u64) -> Result<Vec<(String, Ta
             let (row, column) = cell.get_position();
             found.push((row, column, value));
         }
-        // Cells come in order, but where a file is odd.
-        found.sort_by_key(|(row, column, _)| (*row, *column));
-        found.dedup_by_key(|(row, column, _)| (*row, *column));
-        let mut sheet = new_sheet();
-        for (row, column, value) in found {
-            let number = row as usize + 1;
-            if sheet.rows.last().is_none_or(|last| last.number != number) {
-                sheet.rows.push(TableRow { number, cells: Vec::new() });
-            }
-            if let Some(last) = sheet.rows.last_mut() {
-                last.cells.push((column as usize, value));
-            }
-        }
-        sheets.push((name, sheet));
+        sheets.push((name, sheet_of(found)));
     }
     Ok(sheets)
+}
+
+/// The rows of the cells of a sheet. Cells come in order, but where a file is odd.
+fn sheet_of(mut found: Vec<(u32, u32, Value)>) -> TableRows {
+    found.sort_by_key(|(row, column, _)| (*row, *column));
+    found.dedup_by_key(|(row, column, _)| (*row, *column));
+    let mut sheet = new_sheet();
+    for (row, column, value) in found {
+        let number = row as usize + 1;
+        if sheet.rows.last().is_none_or(|last| last.number != number) {
+            sheet.rows.push(TableRow { number, cells: Vec::new() });
+        }
+        if let Some(last) = sheet.rows.last_mut() {
+            last.cells.push((column as usize, value));
+        }
+    }
+    sheet
 }
 
 fn xlsx_value(cell: &DataRef<'_>) -> Value {
