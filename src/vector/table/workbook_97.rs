@@ -23,20 +23,20 @@ const BIFF8: u16 = 0x0600;
 const DAYS_TO_1904: f64 = 1462.0;
 
 /// A cell: its row and column from 0, and its value.
-pub(super) type Cell = (u32, u32, Value);
+pub(super) type BiffCell = (u32, u32, Value);
 
 /// A sheet: its name and its cells in the order of the file.
-pub(super) type Sheet = (String, Vec<Cell>);
+pub(super) type BiffSheet = (String, Vec<BiffCell>);
 
 /// The sheets of a workbook.
 ///
 /// # Errors
 /// What is wrong with the file.
-pub(super) fn sheets(bytes: &[u8]) -> Result<Vec<Sheet>, String> {
+pub(super) fn sheets(bytes: &[u8]) -> Result<Vec<BiffSheet>, String> {
     let book =
         stream(bytes, &["Workbook", "Book"]).ok_or("the compound file has no workbook that can be read")?;
-    let records = Records { bytes: &book, at: 0 };
-    let mut globals = Globals::default();
+    let records = BiffRecords { bytes: &book, at: 0 };
+    let mut globals = BookGlobals::default();
     let mut found = Vec::new();
     let mut records = records.peekable();
     match records.next() {
@@ -84,30 +84,30 @@ fn plain_text(data: &[u8], count: usize) -> String {
 }
 
 /// A record: its kind and its content.
-struct Record<'a> {
+struct BiffRecord<'a> {
     kind: u16,
     data: &'a [u8],
 }
 
-struct Records<'a> {
+struct BiffRecords<'a> {
     bytes: &'a [u8],
     at: usize,
 }
 
-impl<'a> Iterator for Records<'a> {
-    type Item = Record<'a>;
+impl<'a> Iterator for BiffRecords<'a> {
+    type Item = BiffRecord<'a>;
 
-    fn next(&mut self) -> Option<Record<'a>> {
+    fn next(&mut self) -> Option<BiffRecord<'a>> {
         let (kind, length) = (u16_at(self.bytes, self.at)?, usize::from(u16_at(self.bytes, self.at + 2)?));
         let data = self.bytes.get(self.at + 4..self.at + 4 + length)?;
         self.at += 4 + length;
-        Some(Record { kind, data })
+        Some(BiffRecord { kind, data })
     }
 }
 
 /// The texts that cells share. Their characters go on in the next record after a new byte of flags.
 fn shared_texts(parts: &[&[u8]]) -> Vec<String> {
-    let mut reader = TextReader { parts, part: 0, at: 8 };
+    let mut reader = SharedTextReader { parts, part: 0, at: 8 };
     let mut texts = Vec::new();
     while let Some(text) = reader.text() {
         texts.push(text);
@@ -115,13 +115,13 @@ fn shared_texts(parts: &[&[u8]]) -> Vec<String> {
     texts
 }
 
-struct TextReader<'a> {
+struct SharedTextReader<'a> {
     parts: &'a [&'a [u8]],
     part: usize,
     at: usize,
 }
 
-impl TextReader<'_> {
+impl SharedTextReader<'_> {
     fn byte(&mut self) -> Option<u8> {
         while self.at >= self.parts.get(self.part)?.len() {
             (self.part, self.at) = (self.part + 1, 0);
@@ -166,7 +166,7 @@ impl TextReader<'_> {
 
 /// What the sheets of a workbook have in common.
 #[derive(Default)]
-struct Globals {
+struct BookGlobals {
     is_1904: bool,
     texts: Vec<String>,
     /// The numbers of formats that show days.
@@ -175,7 +175,7 @@ struct Globals {
     cell_formats: Vec<u16>,
 }
 
-impl Globals {
+impl BookGlobals {
     fn add_format(&mut self, data: &[u8]) {
         let Some(number) = u16_at(data, 0) else { return };
         let count = usize::from(u16_at(data, 2).unwrap_or(0));
@@ -212,12 +212,12 @@ impl Globals {
     }
 
     /// The cells of the sheet that begins at a byte.
-    fn cells(&self, book: &[u8], at: usize) -> Vec<Cell> {
+    fn cells(&self, book: &[u8], at: usize) -> Vec<BiffCell> {
         let mut cells = Vec::new();
         let mut depth = 0;
         // The cell of a formula whose text follows.
         let mut open = None;
-        for Record { kind, data } in (Records { bytes: book, at }) {
+        for BiffRecord { kind, data } in (BiffRecords { bytes: book, at }) {
             match kind {
                 BOF => depth += 1,
                 EOF => {
@@ -239,7 +239,7 @@ impl Globals {
         cells
     }
 
-    fn add(&self, kind: u16, data: &[u8], cells: &mut Vec<Cell>, open: &mut Option<(u32, u32)>) {
+    fn add(&self, kind: u16, data: &[u8], cells: &mut Vec<BiffCell>, open: &mut Option<(u32, u32)>) {
         let (Some(row), Some(column)) = (u16_at(data, 0), u16_at(data, 2)) else { return };
         let (row, column) = (u32::from(row), u32::from(column));
         let look = u16_at(data, 4).unwrap_or(0);
