@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use glam::Vec2;
+use rayon::prelude::*;
 use sandtable_annotate::annotation::{Annotations, PictureSymbol, SymbolHeight};
 use sandtable_annotate::paint::annotate;
 use sandtable_draw::color::Srgba;
@@ -179,8 +180,8 @@ fn symbols_have_the_boxes_anchors_and_dark_pixels_of_milsymbol() {
     let (mut wrong, mut count) = (Vec::new(), 0);
     for (name, rows) in tables().into_iter().filter(|(name, _)| is_wanted(name)) {
         let mut least = (1.0, "");
-        for row in &rows {
-            let (reasons, overlap) = compared(row);
+        let all: Vec<(Vec<String>, f64)> = rows.par_iter().map(compared).collect();
+        for (row, (reasons, overlap)) in rows.iter().zip(all) {
             wrong.extend(reasons);
             if overlap < least.0 {
                 least = (overlap, &row.code);
