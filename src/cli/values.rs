@@ -6,8 +6,8 @@ use std::str::FromStr;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use sandtable_base::message::choice::Choice;
+use sandtable_geom::length_unit::length_of_name;
 use sandtable_query::positions::PositionArgument;
-use sandtable_raster::units::length_of_name;
 use sandtable_sheet::picture::PictureSize;
 
 /// Parses one of the words of a [`Choice`].

@@ -18,6 +18,7 @@ pub mod ground_shape;
 pub mod isolines;
 pub mod join;
 pub mod leg_tree;
+pub mod length_unit;
 pub mod mgrs;
 pub mod morton;
 pub mod offset;

@@ -2,6 +2,7 @@
 //! Esri's programs read alike.
 
 use crate::crs::Crs;
+use crate::length_unit::{FOOT_M, US_SURVEY_FOOT_M};
 use crate::proj_string::ProjString;
 use crate::projection::{Datum, Definition, Ellipsoid, MapProjection};
 use crate::wkt_registered::{registered_axes, registered_projection};
@@ -147,8 +148,8 @@ fn spheroid_name(major_m: f64, inverse_flattening: f64) -> &'static str {
 fn unit_name(meters: f64) -> &'static str {
     match meters {
         1.0 => "metre",
-        0.3048 => "foot",
-        feet if (feet - 1200.0 / 3937.0).abs() < 1e-9 => "US survey foot",
+        FOOT_M => "foot",
+        feet if (feet - US_SURVEY_FOOT_M).abs() < 1e-9 => "US survey foot",
         _ => "unit",
     }
 }

@@ -14,7 +14,7 @@ use crate::table_sources::{SourceRole, table_sources};
 use sandtable_description::features::ModelPlacement;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::words::Clamp;
-use sandtable_raster::units::FOOT_M;
+use sandtable_geom::length_unit::FOOT_M;
 use sandtable_scene::attributes::Attributes;
 use sandtable_scene::placed_model::Placement;
 use sandtable_terrain::query::{Interpolation, ground_height};

@@ -7,8 +7,8 @@ use glam::I64Vec2;
 use crate::mosaic::{Mosaic, MosaicError};
 use crate::nested_tile::Refinement;
 use crate::raster::{Raster, SampleFloat, Samples};
-use crate::units::FOOT_M;
 use crate::windows::RasterWindow;
+use sandtable_geom::length_unit::FOOT_M;
 
 /// The rectangle around all tiles, in the first tile's grid.
 #[derive(Clone, Copy)]

@@ -31,7 +31,6 @@ pub mod sample_type;
 pub mod stats;
 pub mod stored;
 pub mod undeclared;
-pub mod units;
 pub mod unstated_unit;
 pub mod vertical;
 pub mod void_counts;

@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use crate::raster::Raster;
-use crate::units::{FOOT_M, US_SURVEY_FOOT_M};
+use sandtable_geom::length_unit::{FOOT_M, US_SURVEY_FOOT_M};
 
 /// What the units are in meters that are called a foot: the international one, that of US surveys, and older ones.
 pub const FEET_M: Range<f64> = 0.3047..0.3049;

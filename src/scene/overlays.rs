@@ -23,6 +23,7 @@ use crate::shape_place::place;
 use crate::sources::Sources;
 use crate::told_tally::ToldTally;
 use sandtable_base::limits::{SCENE_GRAPHICS, SCENE_SYMBOLS};
+use sandtable_base::message::choice::Choice;
 use sandtable_base::message::numbers::counted;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::feature_source::FeatureSource;
@@ -295,18 +296,8 @@ impl<'a> Overlay<'a> {
             source: self.source.clone(),
             order: None,
             width: None,
-            side: text(attributes, schema::IDENTITY).and_then(|word| match word.as_str() {
-                "friend" => Some(GraphicSide::Friend),
-                "hostile" => Some(GraphicSide::Hostile),
-                "neutral" => Some(GraphicSide::Neutral),
-                "unknown" => Some(GraphicSide::Unknown),
-                _ => None,
-            }),
-            status: text(attributes, schema::STATUS).and_then(|word| match word.as_str() {
-                "planned" => Some(GraphicStatus::Planned),
-                "present" => Some(GraphicStatus::Present),
-                _ => None,
-            }),
+            side: text(attributes, schema::IDENTITY).and_then(|word| GraphicSide::from_word(&word)),
+            status: text(attributes, schema::STATUS).and_then(|word| GraphicStatus::from_word(&word)),
             designation: text(attributes, schema::UNIQUE_DESIGNATION),
             designation_2: text(attributes, schema::DESIGNATION_2),
             echelon: text(attributes, schema::ECHELON),

@@ -32,19 +32,8 @@ impl LabeledSymbol {
             line.write(&mut body);
             bounds = bounds.union(line.bounds());
         }
-        let (min, size) = (bounds.min - MARGIN, bounds.max - bounds.min + 2.0 * MARGIN);
-        let pixels = size * frame_px / 100.0;
-        format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.2}\" height=\"{:.2}\" \
-             viewBox=\"{:.2} {:.2} {:.2} {:.2}\">\n<title>{}</title>\n{body}</svg>\n",
-            pixels.x,
-            pixels.y,
-            min.x,
-            min.y,
-            size.x,
-            size.y,
-            escaped(&self.description())
-        )
+        let title = format!("<title>{}</title>\n", escaped(&self.description()));
+        document(&(title + &body), bounds, frame_px)
     }
 }
 
@@ -53,14 +42,19 @@ impl MilitarySymbol {
     pub fn svg(&self, frame_px: f32) -> String {
         let mut body = String::new();
         self.marks.iter().for_each(|mark| write_mark(mark, &mut body));
-        let (min, size) = (self.bounds.min - MARGIN, self.bounds.max - self.bounds.min + 2.0 * MARGIN);
-        let pixels = size * frame_px / 100.0;
-        format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.2}\" height=\"{:.2}\" \
-             viewBox=\"{:.2} {:.2} {:.2} {:.2}\">\n{body}</svg>\n",
-            pixels.x, pixels.y, min.x, min.y, size.x, size.y
-        )
+        document(&body, self.bounds, frame_px)
     }
+}
+
+/// The picture of what lies within bounds, with a margin.
+fn document(body: &str, bounds: SymbolBox, frame_px: f32) -> String {
+    let (min, size) = (bounds.min - MARGIN, bounds.max - bounds.min + 2.0 * MARGIN);
+    let pixels = size * frame_px / 100.0;
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.2}\" height=\"{:.2}\" \
+         viewBox=\"{:.2} {:.2} {:.2} {:.2}\">\n{body}</svg>\n",
+        pixels.x, pixels.y, min.x, min.y, size.x, size.y
+    )
 }
 
 /// A line of text round a frame: where its baseline begins, is centered, or ends.

@@ -165,17 +165,22 @@ fn tiles_of_which_one_has_an_odd_sample_name_it() {
     assert_eq!(dataset.reading_notes().iter().filter(|note| told(note)).count(), 1);
 }
 
-#[test]
-fn lines_that_shape_the_ground_tell_heights_what_was_left_out() {
-    let scratch = Scratch::new();
-    scratch.write("a.asc", ascii("105"));
+/// GeoJSON of two lines, of which the second has a coordinate that is no number.
+fn two_lines() -> String {
     let line = |coordinates: &str| {
         format!(
             "{{\"type\":\"Feature\",\"properties\":{{}},\"geometry\":{{\"type\":\"LineString\",\"coordinates\":{coordinates}}}}}"
         )
     };
     let lines = [line("[[500010,4500050],[500110,4500060]]"), line("[[\"a\",1],[2,3]]")].join(",");
-    scratch.write("roads.geojson", format!("{{\"type\":\"FeatureCollection\",\"features\":[{lines}]}}"));
+    format!("{{\"type\":\"FeatureCollection\",\"features\":[{lines}]}}")
+}
+
+#[test]
+fn lines_that_shape_the_ground_tell_heights_what_was_left_out() {
+    let scratch = Scratch::new();
+    scratch.write("a.asc", ascii("105"));
+    scratch.write("roads.geojson", two_lines());
     let road = "[[road]]\nfile = \"roads.geojson\"\ncrs = \"EPSG:32633\"\nprofile = \"conform\"\nwidth = 4\n";
     let scene = format!("[terrain]\ndem = \"a.asc\"\ncrs = \"EPSG:32633\"\n{road}");
     let dataset = Dataset::open(&scratch.write("scene.toml", scene), &DatasetOptions::default());
@@ -187,13 +192,7 @@ fn lines_that_shape_the_ground_tell_heights_what_was_left_out() {
 fn a_file_of_a_flight_is_told_of_by_the_check_and_by_the_flight() {
     let scratch = Scratch::new();
     scratch.write("a.asc", ascii("105"));
-    let line = |coordinates: &str| {
-        format!(
-            "{{\"type\":\"Feature\",\"properties\":{{}},\"geometry\":{{\"type\":\"LineString\",\"coordinates\":{coordinates}}}}}"
-        )
-    };
-    let lines = [line("[[500010,4500050],[500110,4500060]]"), line("[[\"a\",1],[2,3]]")].join(",");
-    scratch.write("way.geojson", format!("{{\"type\":\"FeatureCollection\",\"features\":[{lines}]}}"));
+    scratch.write("way.geojson", two_lines());
     let flight = "[[flight]]\nname = \"over\"\nfile = \"way.geojson\"\ncrs = \"EPSG:32633\"\nheight = 50\n";
     let scene = format!("[terrain]\ndem = \"a.asc\"\ncrs = \"EPSG:32633\"\n{flight}");
     let scene = scratch.write("scene.toml", scene);

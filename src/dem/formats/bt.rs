@@ -31,12 +31,12 @@ use crate::formats::sample_layout::{FileSize, NoData, SampleLayout};
 use crate::written::{WriteError, WrittenDem};
 use sandtable_base::bytes::{ByteFields, ByteOrder};
 use sandtable_geom::crs::Crs;
+use sandtable_geom::length_unit::{FOOT_M, US_SURVEY_FOOT_M};
 use sandtable_raster::error::DemErrorKind;
 use sandtable_raster::georef::crs_on_earth;
 use sandtable_raster::raster::{Raster, north_up_nodes};
 use sandtable_raster::sample_type::SampleType;
 use sandtable_raster::stored::StoredSamples;
-use sandtable_raster::units::{FOOT_M, US_SURVEY_FOOT_M};
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "BT terrain",

@@ -22,10 +22,10 @@ use crate::dem_format::{DemFormat, Recognition, any_size};
 use crate::formats::gpkg_tiles::read_tiles;
 use sandtable_database::{open, quoted};
 use sandtable_geom::crs::Crs;
+use sandtable_geom::length_unit::length_of_name;
 use sandtable_raster::error::DemErrorKind;
 use sandtable_raster::limits::SizeClaim;
 use sandtable_raster::raster::{Raster, Samples, north_up};
-use sandtable_raster::units::length_of_name;
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "GeoPackage",

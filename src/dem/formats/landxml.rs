@@ -27,6 +27,7 @@ use crate::gridding::{self, BeyondHull};
 use crate::points::cloud::PointCloud;
 use sandtable_base::limits::XML_DEPTH;
 use sandtable_geom::crs::Crs;
+use sandtable_geom::length_unit::length_of_land_xml;
 use sandtable_geom::polygon;
 use sandtable_geom::rect::Rect;
 use sandtable_raster::cell_grid::CellGrid;
@@ -347,8 +348,9 @@ impl SurfaceReader {
     fn units(&mut self, start: &BytesStart<'_>, is_imperial: bool) -> Result<(), String> {
         let stated = attribute(start, "linearUnit");
         let default = if is_imperial { "foot" } else { "meter" };
-        let unit =
-            |name: &str| meters(name).ok_or_else(|| format!("the unit '{}' is unknown", shortened(name)));
+        let unit = |name: &str| {
+            length_of_land_xml(name).ok_or_else(|| format!("the unit '{}' is unknown", shortened(name)))
+        };
         let linear_m = unit(stated.as_deref().unwrap_or(default))?;
         self.found.linear_m = linear_m;
         self.found.elevation_m = match attribute(start, "elevationUnit") {
@@ -435,21 +437,6 @@ fn points(text: &str, numbers_each: usize) -> Result<Vec<DVec3>, String> {
     }
     let point = |at: &[f64]| DVec3::new(at[1], at[0], at.get(2).copied().unwrap_or(f64::NAN));
     Ok(numbers.chunks_exact(numbers_each).map(point).collect())
-}
-
-/// Meters per unit, by the names of the schema.
-fn meters(unit: &str) -> Option<f64> {
-    Some(match unit {
-        "millimeter" => 0.001,
-        "centimeter" => 0.01,
-        "meter" => 1.0,
-        "kilometer" => 1000.0,
-        "inch" => 0.0254,
-        "foot" | "feet" => 0.3048,
-        "USSurveyFoot" => 1200.0 / 3937.0,
-        "mile" | "miles" => 1609.344,
-        _ => return None,
-    })
 }
 
 #[cfg(test)]

@@ -17,11 +17,11 @@ use glam::DVec2;
 use crate::dem_file::DemFile;
 use crate::dem_format::{DemFormat, Recognition, any_size};
 use sandtable_geom::crs::Crs;
+use sandtable_geom::length_unit::{FOOT_M, US_SURVEY_FOOT_M};
 use sandtable_geom::projection::utm_code;
 use sandtable_raster::error::DemErrorKind;
 use sandtable_raster::limits::SizeClaim;
 use sandtable_raster::raster::{Raster, Samples, north_up_nodes};
-use sandtable_raster::units::{FOOT_M, US_SURVEY_FOOT_M};
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "USGS elevation model",

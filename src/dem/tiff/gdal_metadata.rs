@@ -1,8 +1,8 @@
 //! GDAL's metadata tag: XML with scale, offset and unit of bands.
 
 use crate::tiff::fault;
+use sandtable_geom::length_unit::length_of_name;
 use sandtable_raster::error::DemErrorKind;
-use sandtable_raster::units::length_of_name;
 
 pub(crate) const GDAL_METADATA: u16 = 42112;
 

@@ -3,9 +3,9 @@
 
 use crate::tiff::geokey_codes as key;
 use sandtable_geom::crs::Crs;
+use sandtable_geom::length_unit::{FOOT_M, US_SURVEY_FOOT_M, length_of_code};
 use sandtable_geom::projection::{Datum, Definition, Ellipsoid, MapProjection};
 use sandtable_raster::error::DemErrorKind;
-use sandtable_raster::units::{FOOT_M, US_SURVEY_FOOT_M, length_of_code};
 use sandtable_raster::vertical;
 
 /// EPSG's vertical systems in US survey feet: NGVD29, NAVD88, mean sea level.

@@ -20,12 +20,12 @@ use rayon::prelude::*;
 use crate::tiff::gdal_metadata::GDAL_METADATA;
 use crate::tiff::write_geokeys::GeoKeyTags;
 use crate::written::{WriteError, WriteWindowsError, WrittenDem, WrittenWindows};
+use sandtable_geom::length_unit::name_of_length;
 use sandtable_raster::content::WrittenContent;
 use sandtable_raster::raster::{Raster, SampleFloat, Samples};
 use sandtable_raster::read_ahead::read_ahead;
 use sandtable_raster::sample_type::{NumberKind, SampleType};
 use sandtable_raster::stored::{SampleSurvey, StoredSamples};
-use sandtable_raster::units::name_of_length;
 use sandtable_raster::unstated_unit::foot_of_coordinates;
 use sandtable_raster::windows::{ByteRows, RasterWindow, Windows};
 

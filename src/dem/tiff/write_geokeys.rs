@@ -7,10 +7,10 @@
 use crate::tiff::geokey_codes as key;
 use crate::tiff::geokeys::GeoKeyValue;
 use sandtable_geom::crs::Crs;
+use sandtable_geom::length_unit::code_of_length;
 use sandtable_geom::projection::{Datum, Definition, MapProjection};
 use sandtable_raster::georef::crs_on_earth;
 use sandtable_raster::raster::Raster;
-use sandtable_raster::units::code_of_length;
 use sandtable_raster::unstated_unit;
 use sandtable_raster::vertical;
 

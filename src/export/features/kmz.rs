@@ -3,12 +3,11 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use serde_json::Value;
 
 use super::xml_text::{XmlText, decimal};
 use super::{
     ExportFeature, ExportKind, ExportLayer, ExportShape, ExportedFeatures, FeatureExportError, MadeFile,
-    counted,
+    counted, written,
 };
 use crate::page::PageSymbol;
 use crate::page_symbols::symbol_picture;
@@ -144,11 +143,7 @@ fn icon_style(xml: &mut XmlText, number: usize, icon: &PageSymbol) {
 
 fn placemark(xml: &mut XmlText, layer: &ExportLayer, feature: &ExportFeature, icon: Option<usize>) {
     xml.open("Placemark", &[]);
-    let text = |name: &str| match feature.properties.get(name) {
-        Some(Value::String(text)) => text.clone(),
-        Some(Value::Null) | None => String::new(),
-        Some(other) => other.to_string(),
-    };
+    let text = |name: &str| feature.text(name);
     let name = [layer.label, "name", "text"].into_iter().map(text).find(|name| !name.is_empty());
     if let Some(name) = name {
         xml.element("name", &name);
@@ -158,7 +153,7 @@ fn placemark(xml: &mut XmlText, layer: &ExportLayer, feature: &ExportFeature, ic
     if !feature.properties.is_empty() {
         xml.open("ExtendedData", &[]);
         for (key, value) in &feature.properties {
-            let value = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+            let value = written(value);
             xml.open("Data", &[("name", key)]).element("value", &value).close();
         }
         xml.close();

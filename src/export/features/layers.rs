@@ -6,6 +6,7 @@ use serde_json::Value;
 use super::features_of::{MapPlaces, feature, meters, properties};
 use super::outlines::{of_plan, of_solid};
 use super::{ExportFeature, ExportKind, ExportLayer, ExportShape, LayerLook};
+use sandtable_annotate::nice::NiceNumber;
 use sandtable_base::message::choice::Choice;
 use sandtable_description::words::{GraphicSide, GraphicStatus};
 use sandtable_draw::color::Srgba;
@@ -235,12 +236,7 @@ fn contours(places: &MapPlaces<'_>) -> Vec<ExportFeature> {
 
 /// 1, 2 or 5 times a power of ten, not below a length.
 fn nice_interval(least: f32) -> f32 {
-    let power = 10f32.powf(least.max(1e-3).log10().floor());
-    [1.0, 2.0, 5.0, 10.0]
-        .map(|step| step * power)
-        .into_iter()
-        .find(|step| *step >= least)
-        .unwrap_or(10.0 * power)
+    NiceNumber::at_least(f64::from(least).max(1e-3)).map_or(1.0, |nice| nice.value() as f32)
 }
 
 /// What solids cover, with their heights.
@@ -371,14 +367,13 @@ fn graphics(places: &MapPlaces<'_>) -> [Vec<ExportFeature>; 3] {
 fn graphic_properties(places: &MapPlaces<'_>, graphic: &SceneGraphic) -> serde_json::Map<String, Value> {
     let fields = &graphic.fields;
     let text = |text: &str| Value::from(text);
-    let planned = graphic.status == GraphicStatus::Planned;
     let numbers = |list: &[f64]| Value::from(list.iter().map(f64::to_string).collect::<Vec<_>>().join(" "));
     let mut all = properties([
         (schema::SIDC, Value::from(graphic_code(graphic).unwrap_or_default())),
         (schema::KIND, text(graphic.kind.word)),
         (schema::NAME, places.name(graphic.feature)),
         (schema::IDENTITY, text(graphic.side.word())),
-        (schema::STATUS, text(if planned { "planned" } else { "present" })),
+        (schema::STATUS, text(graphic.status.word())),
         (schema::UNIQUE_DESIGNATION, text(&fields.designation)),
         (schema::DESIGNATION_2, text(&fields.designation_2)),
         (schema::ECHELON, text(&fields.echelon)),

@@ -107,6 +107,21 @@ pub struct ExportFeature {
     pub symbol: Option<usize>,
 }
 
+impl ExportFeature {
+    /// A property as text; empty where it has none.
+    fn text(&self, name: &str) -> String {
+        match self.properties.get(name) {
+            Some(Value::Null) | None => String::new(),
+            Some(value) => written(value),
+        }
+    }
+}
+
+/// A value as text, without the quotes of JSON.
+fn written(value: &Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
+}
+
 /// The kind of the shapes of a layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExportKind {

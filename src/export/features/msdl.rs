@@ -2,7 +2,6 @@
 //! units, equipment and tactical graphics with codes of letters.
 
 use glam::DVec3;
-use serde_json::Value;
 
 use super::nvg::left_out;
 use super::xml_text::{XmlText, decimal};
@@ -153,23 +152,15 @@ fn sides(xml: &mut XmlText) {
     xml.close();
 }
 
-fn text(feature: &ExportFeature, name: &str) -> String {
-    match feature.properties.get(name) {
-        Some(Value::String(text)) => text.clone(),
-        Some(Value::Null) | None => String::new(),
-        Some(other) => other.to_string(),
-    }
-}
-
 fn thing(xml: &mut XmlText, (element, modifiers): (&str, &str), coded: &Coded<'_>, number: usize) {
     let feature = coded.feature;
     xml.open(element, &[])
         .element("ObjectHandle", &handle(2, number))
         .element("SymbolIdentifier", &coded.letters);
-    xml.element("Name", &text(feature, schema::NAME));
+    xml.element("Name", &feature.text(schema::NAME));
     xml.open(modifiers, &[]);
     for (name, property) in MODIFIERS {
-        let stated = text(feature, property);
+        let stated = feature.text(property);
         let stated = match (property, stated.as_str()) {
             (schema::REINFORCED, "(+)") => "R".to_owned(),
             (schema::REINFORCED, "(-)" | "(\u{2212})") => "D".to_owned(),
@@ -180,7 +171,7 @@ fn thing(xml: &mut XmlText, (element, modifiers): (&str, &str), coded: &Coded<'_
             xml.element(name, &stated);
         }
     }
-    let kind = text(feature, schema::TYPE);
+    let kind = feature.text(schema::TYPE);
     if coded.is_equipment && !kind.is_empty() {
         xml.element("EquipmentType", &kind);
     }
@@ -189,7 +180,7 @@ fn thing(xml: &mut XmlText, (element, modifiers): (&str, &str), coded: &Coded<'_
     if let ExportShape::Point(at) = &feature.shape {
         location(xml, at);
     }
-    let direction = text(feature, schema::DIRECTION);
+    let direction = feature.text(schema::DIRECTION);
     if !direction.is_empty() {
         xml.element("DirectionOfMovement", &direction);
     }
@@ -217,9 +208,9 @@ fn graphic(xml: &mut XmlText, coded: &Coded<'_>, number: usize) {
     xml.open("TacticalGraphic", &[])
         .element("ObjectHandle", &handle(3, number))
         .element("SymbolIdentifier", &coded.letters);
-    xml.element("Name", &text(feature, schema::UNIQUE_DESIGNATION));
+    xml.element("Name", &feature.text(schema::UNIQUE_DESIGNATION));
     xml.open("TacticalGraphicSymbolModifiers", &[]);
-    let designation = text(feature, schema::UNIQUE_DESIGNATION);
+    let designation = feature.text(schema::UNIQUE_DESIGNATION);
     if !designation.is_empty() {
         xml.element("UniqueDesignation", &designation);
     }

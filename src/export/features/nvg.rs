@@ -1,10 +1,8 @@
 //! Symbols and graphics as NATO Vector Graphics 2.0: points, polylines and polygons with their codes, fields and styles.
 
-use serde_json::Value;
-
 use super::xml_text::{XmlText, decimal};
 use super::{
-    ExportFeature, ExportLayer, ExportShape, ExportedFeatures, FeatureExportError, MadeFile, counted,
+    ExportFeature, ExportLayer, ExportShape, ExportedFeatures, FeatureExportError, MadeFile, counted, written,
 };
 use sandtable_draw::color::Srgba;
 use sandtable_vector::overlay_schema as schema;
@@ -52,11 +50,7 @@ pub(super) fn left_out(layers: &[&ExportLayer], format: &str) -> Vec<String> {
 }
 
 fn element(xml: &mut XmlText, layer: &ExportLayer, feature: &ExportFeature) {
-    let text = |name: &str| match feature.properties.get(name) {
-        Some(Value::String(text)) => text.clone(),
-        Some(Value::Null) | None => String::new(),
-        Some(other) => other.to_string(),
-    };
+    let text = |name: &str| feature.text(name);
     let code = text(schema::SIDC);
     let label = [schema::NAME, schema::UNIQUE_DESIGNATION, "text"]
         .into_iter()
@@ -134,7 +128,7 @@ fn style(layer: &ExportLayer, feature: &ExportFeature) -> String {
     .into_iter()
     .filter_map(|key| {
         let value = feature.properties.get(key)?;
-        Some(format!("{key}:{}", value.as_str().map_or_else(|| value.to_string(), str::to_owned)))
+        Some(format!("{key}:{}", written(value)))
     })
     .collect();
     if stated.is_empty() {

@@ -69,7 +69,7 @@ pub(super) const ACTIVITIES: &[SymbolEntity] = &[
     entity(131100, "raid on house", "@house; text 22 100,69 RAID"),
     entity(131200, "emergency operation", "@emergency-operation"),
     entity(131201, "emergency operation, emergency collection evacuation point", "@emergency-operation 0,0 0.7; text 22 100,69 ECEP"),
-    entity(131202, "emergency operation, emergency food distribution", "@food-distribution-activity"),
+    entity(131202, "emergency operation, emergency food distribution", "@food-distribution"),
     entity(131203, "emergency operation, emergency incident command center", "@emergency-operation 0,0 0.7; text 22 100,69 EICC"),
     entity(131204, "emergency operations center", "@emergency-operation 0,0 0.7; text 25 100,69 EOC"),
     entity(131205, "emergency operation, emergency public information center", "@emergency-operation; text 45 i"),

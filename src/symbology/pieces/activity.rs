@@ -49,27 +49,12 @@ pub(super) const SHARED: &[SharedPiece] = &[
 ];
 
 /// In each frame another.
-pub(super) const FRAMED: &[FramedPiece] = &[
-    (
-        "food-distribution-activity",
-        [
-            "M111,115 C96.3,110 96.3,89.5 111,84 C100,79.7 87.5,86.3 87.5,99.5 C87.5,113 100,119 111,115 Z M25,120 \
-             L175,120",
-            "M111,115 C96.3,110 96.3,89.5 111,84 C100,79.7 87.5,86.3 87.5,99.5 C87.5,113 100,119 111,115 Z M50,120 \
-             L150,120",
-            "M111,115 C96.3,110 96.3,89.5 111,84 C100,79.7 87.5,86.3 87.5,99.5 C87.5,113 100,119 111,115 Z M45,120 \
-             L155,120",
-            "M111,115 C96.3,110 96.3,89.5 111,84 C100,79.7 87.5,86.3 87.5,99.5 C87.5,113 100,119 111,115 Z M35,120 \
-             L165,120",
-        ],
-    ),
-    (
-        "radio-and-television-psychological",
-        [
-            "@psychological-operations; M25,50 L100,110 L100,90 L175,150",
-            "@psychological-operations; M57,70 L100,110 L100,90 L143,130",
-            "@psychological-operations; M45,45 L100,110 L100,90 L155,155",
-            "@psychological-operations; M50,65 L100,110 L100,90 L150,135",
-        ],
-    ),
-];
+pub(super) const FRAMED: &[FramedPiece] = &[(
+    "radio-and-television-psychological",
+    [
+        "@psychological-operations; M25,50 L100,110 L100,90 L175,150",
+        "@psychological-operations; M57,70 L100,110 L100,90 L143,130",
+        "@psychological-operations; M45,45 L100,110 L100,90 L155,155",
+        "@psychological-operations; M50,65 L100,110 L100,90 L150,135",
+    ],
+)];

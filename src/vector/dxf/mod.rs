@@ -39,6 +39,7 @@ use crate::feature::{Properties, VectorLayer};
 use crate::hints::VectorHints;
 use crate::rings::{HoleRule, RingSorter};
 use sandtable_base::limits::DESIGN_VERTICES;
+use sandtable_geom::length_unit::US_SURVEY_FOOT_M;
 
 const FORMAT: &str = "DXF file";
 
@@ -64,7 +65,7 @@ const UNITS: [(i64, &str, f64); 12] = [
     (14, "decimeters", 0.1),
     (15, "decameters", 10.0),
     (16, "hectometers", 100.0),
-    (21, "US survey feet", 1200.0 / 3937.0),
+    (21, "US survey feet", US_SURVEY_FOOT_M),
 ];
 
 /// Whether bytes are those of a drawing.

@@ -1,6 +1,7 @@
 //! The units of a LandXML file: `Metric` or `Imperial`, with a linear unit and, of metric ones, one of elevations.
 
 use crate::xml::XmlElement;
+use sandtable_geom::length_unit::length_of_land_xml;
 
 /// What the numbers of a file are in.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,11 +26,11 @@ impl LandUnits {
         let Some(stated) = units.children().next() else { return Some(Self::default()) };
         let is_imperial = stated.name() == "Imperial";
         let default = if is_imperial { "foot" } else { "meter" };
-        let linear_m = meters(&stated.attribute("linearUnit").unwrap_or(default.into()))?;
+        let linear_m = length_of_land_xml(&stated.attribute("linearUnit").unwrap_or(default.into()))?;
         let elevation_m = match stated.attribute("elevationUnit") {
             // Written beside survey feet by programs that mean these.
             Some(unit) if is_foot(&unit) && is_imperial => linear_m,
-            Some(unit) => meters(&unit)?,
+            Some(unit) => length_of_land_xml(&unit)?,
             None => linear_m,
         };
         Some(Self { linear_m, elevation_m, is_imperial })
@@ -38,19 +39,4 @@ impl LandUnits {
 
 fn is_foot(unit: &str) -> bool {
     matches!(unit, "foot" | "feet")
-}
-
-/// Meters per unit, by the names of the schema.
-fn meters(unit: &str) -> Option<f64> {
-    Some(match unit {
-        "millimeter" => 0.001,
-        "centimeter" => 0.01,
-        "meter" => 1.0,
-        "kilometer" => 1000.0,
-        "inch" => 0.0254,
-        "foot" | "feet" => 0.3048,
-        "USSurveyFoot" => 1200.0 / 3937.0,
-        "mile" | "miles" => 1609.344,
-        _ => return None,
-    })
 }

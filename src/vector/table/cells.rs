@@ -36,6 +36,14 @@ impl TableRow {
     }
 }
 
+/// The cell that holds a text, without the spaces round it; null for an empty one.
+pub(super) fn text_value(text: &str) -> Value {
+    match text.trim() {
+        "" => Value::Null,
+        text => Value::String(text.to_owned()),
+    }
+}
+
 /// A cell as text.
 pub(super) fn written(cell: &Value) -> String {
     match cell {

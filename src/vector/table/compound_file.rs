@@ -32,6 +32,8 @@ pub(in super::super) fn is_compound(bytes: &[u8]) -> bool {
 struct CompoundFile<'a> {
     bytes: &'a [u8],
     sector_bytes: usize,
+    /// Where sector 0 begins.
+    first_at: usize,
     /// The sector after each.
     next: Vec<u32>,
 }
@@ -46,7 +48,7 @@ pub(super) fn stream(bytes: &[u8], names: &[&str]) -> Option<Vec<u8>> {
         9 | 12 => 1usize << shift,
         _ => return None,
     };
-    let mut file = CompoundFile { bytes, sector_bytes, next: Vec::new() };
+    let mut file = CompoundFile { bytes, sector_bytes, first_at: sector_bytes, next: Vec::new() };
     file.next = file.allocation()?;
     let directory = file.chain(u32_at(bytes, 48)?, usize::MAX)?;
     let entry = |index: usize| directory.get(index * ENTRY_BYTES..(index + 1) * ENTRY_BYTES);
@@ -63,7 +65,7 @@ pub(super) fn stream(bytes: &[u8], names: &[&str]) -> Option<Vec<u8>> {
     let container = file.chain(u32_at(root, 116)?, usize::MAX)?;
     let table = file.chain(u32_at(bytes, 60)?, usize::MAX)?;
     let next = (0..table.len() / 4).filter_map(|index| u32_at(&table, index * 4)).collect();
-    CompoundFile { bytes: &container, sector_bytes: 64, next }.small_chain(start, size)
+    CompoundFile { bytes: &container, sector_bytes: 64, first_at: 0, next }.chain(start, size)
 }
 
 /// The name of an entry of the directory.
@@ -76,7 +78,7 @@ fn name_of(entry: &[u8]) -> String {
 
 impl CompoundFile<'_> {
     fn sector(&self, number: u32) -> Option<&[u8]> {
-        let start = (number as usize).checked_add(1)?.checked_mul(self.sector_bytes)?;
+        let start = (number as usize).checked_mul(self.sector_bytes)?.checked_add(self.first_at)?;
         // The last sector of a file may be cut short.
         self.bytes.get(start..).map(|rest| &rest[..rest.len().min(self.sector_bytes)])
     }
@@ -117,23 +119,6 @@ impl CompoundFile<'_> {
                 return Some(bytes);
             }
             bytes.extend_from_slice(self.sector(number)?);
-            number = *self.next.get(number as usize)?;
-        }
-        None
-    }
-
-    /// [`Self::chain`] of small sectors, which begin at the container's first byte.
-    fn small_chain(&self, start: u32, most: usize) -> Option<Vec<u8>> {
-        let mut bytes = Vec::new();
-        let mut number = start;
-        for _ in 0..=self.sectors() {
-            if number >= FIRST_MARK || bytes.len() >= most {
-                bytes.truncate(most);
-                return Some(bytes);
-            }
-            let from = (number as usize).checked_mul(self.sector_bytes)?;
-            let rest = self.bytes.get(from..)?;
-            bytes.extend_from_slice(&rest[..rest.len().min(self.sector_bytes)]);
             number = *self.next.get(number as usize)?;
         }
         None

@@ -9,7 +9,7 @@ use std::io::Cursor;
 use calamine::{DataRef, Reader, Xlsx};
 use serde_json::Value;
 
-use super::cells::{TableRow, TableRows};
+use super::cells::{TableRow, TableRows, text_value};
 use super::{layer, workbook_97};
 use crate::error::VectorError;
 use crate::feature::VectorLayer;
@@ -171,15 +171,13 @@ fn sheet_of(mut found: Vec<(u32, u32, Value)>) -> TableRows {
 }
 
 fn xlsx_value(cell: &DataRef<'_>) -> Value {
-    let text = |text: &str| match text.trim() {
-        "" => Value::Null,
-        text => Value::String(text.to_owned()),
-    };
     match cell {
         DataRef::Int(number) => Value::from(*number),
         DataRef::Float(number) => Value::from(*number),
-        DataRef::String(found) | DataRef::DateTimeIso(found) | DataRef::DurationIso(found) => text(found),
-        DataRef::SharedString(found) => text(found),
+        DataRef::String(found) | DataRef::DateTimeIso(found) | DataRef::DurationIso(found) => {
+            text_value(found)
+        }
+        DataRef::SharedString(found) => text_value(found),
         DataRef::Bool(is) => Value::Bool(*is),
         DataRef::DateTime(moment) if moment.is_datetime() && (0.0..3e6).contains(&moment.as_f64()) => {
             let (year, month, day, hour, minute, second, _) = moment.to_ymd_hms_milli();

@@ -11,6 +11,7 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 
+use super::cells::text_value;
 use super::compound_file::{f64_at, stream, u16_at, u32_at};
 
 const BOF: u16 = 0x0809;
@@ -273,13 +274,6 @@ impl BookGlobals {
             _ => None,
         };
         cells.extend(value.filter(|value| !value.is_null()).map(|value| (row, column, value)));
-    }
-}
-
-fn text_value(text: &str) -> Value {
-    match text.trim() {
-        "" => Value::Null,
-        text => Value::String(text.to_owned()),
     }
 }
 

@@ -33,6 +33,21 @@ pub fn length_of_name(name: &str) -> Option<f64> {
     LENGTHS.iter().find(|(.., names)| is_named(names)).map(|(_, meters, _)| *meters)
 }
 
+/// Meters in a unit by its name in LandXML (its types `metLinear`, `impLinear` and `elevationType`).
+pub fn length_of_land_xml(name: &str) -> Option<f64> {
+    Some(match name {
+        "millimeter" => 0.001,
+        "centimeter" => 0.01,
+        "meter" => 1.0,
+        "kilometer" => 1000.0,
+        "inch" => 0.0254,
+        "foot" | "feet" => FOOT_M,
+        "USSurveyFoot" => US_SURVEY_FOOT_M,
+        "mile" | "miles" => 1609.344,
+        _ => return None,
+    })
+}
+
 /// GDAL's name of a unit of `meters`: a meter or a foot.
 pub fn name_of_length(meters: f64) -> Option<&'static str> {
     let code = code_of_length(meters).filter(|code| *code != 9036)?;
