@@ -1,0 +1,6 @@
+//! Landing and sites on the land.
+
+use crate::run::KindFunction;
+
+/// The functions of the family's kinds.
+pub(crate) const FUNCTIONS: &[(&str, KindFunction)] = &[];

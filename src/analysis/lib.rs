@@ -1,0 +1,20 @@
+//! Terrain analysis: functions from the land to rasters, features and tables, with units and sources.
+//!
+//! ```text
+//! land, arguments ──► run ──► surface, movement, observation, landing, water, earth ──► outcome
+//! ```
+//!
+//! A kind is a row of `sandtable-catalog` and a function here. It knows the land as layers on a lattice; no scene, no file
+//! and no pixel. The same land and arguments give the same bits, whatever the number of threads.
+
+pub mod arguments;
+pub mod earth;
+pub mod error;
+pub mod land;
+pub mod landing;
+pub mod movement;
+pub mod observation;
+pub mod outcome;
+pub mod run;
+pub mod surface;
+pub mod water;

@@ -1,0 +1,199 @@
+//! What an analysis gives: a raster, features, tables and figures, with units and notes.
+
+use glam::DVec2;
+
+/// What an analysis gives.
+#[derive(Clone, Debug, Default)]
+pub struct Outcome {
+    /// A value for each post.
+    pub raster: Option<OutcomeRaster>,
+    /// Points, lines and areas, in drawing order.
+    pub features: Vec<OutcomeFeature>,
+    /// Tables, such as the legs of a route.
+    pub tables: Vec<OutcomeTable>,
+    /// Single numbers, such as an area.
+    pub figures: Vec<Figure>,
+    /// What it left out or does not know, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// A value for each post of the land, row by row from the south-west.
+#[derive(Clone, Debug)]
+pub struct OutcomeRaster {
+    /// What the values are, such as `slope`.
+    pub name: &'static str,
+    /// Their unit; empty where they have none.
+    pub unit: &'static str,
+    /// The values.
+    pub values: PostValues,
+    /// How a picture divides them; rising, without gaps. Empty where they are shown by a ramp.
+    pub classes: Vec<ValueClass>,
+}
+
+/// Values of posts.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PostValues {
+    /// Numbers; NaN is no data.
+    Numbers(Vec<f32>),
+    /// Codes; [`PostValues::NO_CODE`] is no data.
+    Codes(Vec<u8>),
+}
+
+impl PostValues {
+    /// The code of posts without data.
+    pub const NO_CODE: u8 = 255;
+
+    /// The number of posts.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Numbers(values) => values.len(),
+            Self::Codes(codes) => codes.len(),
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The value of a post; NaN where it has no data.
+    #[inline]
+    pub fn value(&self, index: usize) -> f32 {
+        match self {
+            Self::Numbers(values) => values[index],
+            Self::Codes(codes) if codes[index] == Self::NO_CODE => f32::NAN,
+            Self::Codes(codes) => f32::from(codes[index]),
+        }
+    }
+}
+
+/// Values that a picture shows alike: from `from`, below the next class's.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ValueClass {
+    /// The least value of the class.
+    pub from: f32,
+    /// Its name in legends.
+    pub label: String,
+    /// How it is drawn.
+    pub look: ClassLook,
+}
+
+/// How a class is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClassLook {
+    /// The tint: red, green, blue and opacity; all zeros for none.
+    pub tint: [u8; 4],
+    /// Its hatching, which alone shows it in black on white.
+    pub hatching: Hatching,
+}
+
+/// Hatching of an area.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Hatching {
+    /// None.
+    #[default]
+    None,
+    /// Lines in one direction: restricted ground.
+    Single,
+    /// Lines in two directions: severely restricted ground.
+    Crossed,
+    /// Dots.
+    Dots,
+    /// Level lines: water.
+    Level,
+}
+
+/// A point, line or area.
+#[derive(Clone, Debug)]
+pub struct OutcomeFeature {
+    /// Its shape, in map coordinates.
+    pub shape: OutcomeShape,
+    /// Its name on pictures; may be empty.
+    pub name: String,
+    /// How it is drawn.
+    pub role: FeatureRole,
+    /// Its properties, by name, in order.
+    pub properties: Vec<(&'static str, PropertyValue)>,
+}
+
+/// The shape of a feature, in map coordinates.
+#[derive(Clone, Debug, PartialEq)]
+pub enum OutcomeShape {
+    /// A point.
+    Point(DVec2),
+    /// A line of two positions or more.
+    Line(Vec<DVec2>),
+    /// Rings, the outer one first and counter-clockwise, holes clockwise, each without its closing position.
+    Area(Vec<Vec<DVec2>>),
+}
+
+/// How a feature is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FeatureRole {
+    /// A place: a cross with its name.
+    Place,
+    /// An observer, a weapon, a radar: a dot in a ring.
+    Post,
+    /// A route: a strong line with way-points.
+    Route,
+    /// A corridor or an avenue: an arrow as wide as the ground.
+    Corridor,
+    /// A line of equal value.
+    Isoline,
+    /// A stream; its property `order` gives its width.
+    Stream,
+    /// A ridge or valley line.
+    FormLine,
+    /// A site: an outline, filled lightly.
+    Site,
+    /// An outline without fill.
+    Outline,
+    /// A line of a graph in sight of each other (green) or not (red, dashed), by its property `seen`.
+    Link,
+}
+
+/// The value of a property.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PropertyValue {
+    /// A number.
+    Number(f64),
+    /// A whole number.
+    Whole(i64),
+    /// Text.
+    Text(String),
+    /// True or false.
+    Truth(bool),
+}
+
+/// A table.
+#[derive(Clone, Debug)]
+pub struct OutcomeTable {
+    /// Its title.
+    pub title: String,
+    /// The heading of each column, with its unit, such as `km`.
+    pub columns: Vec<TableColumn>,
+    /// Its rows, a cell for each column.
+    pub rows: Vec<Vec<PropertyValue>>,
+}
+
+/// A column of a table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TableColumn {
+    /// Its heading.
+    pub name: &'static str,
+    /// The unit; empty where it has none.
+    pub unit: &'static str,
+    /// Decimals of its numbers on sheets.
+    pub decimals: usize,
+}
+
+/// A number about the whole.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// What it is.
+    pub name: String,
+    /// The number.
+    pub value: f64,
+    /// Its unit; empty where it has none.
+    pub unit: &'static str,
+}

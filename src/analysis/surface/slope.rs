@@ -1,0 +1,57 @@
+//! The slope of the ground, from the eight neighbors of a post (Horn 1981) or from four (Zevenbergen and Thorne 1987).
+
+use rayon::prelude::*;
+
+use crate::arguments::AnalysisArguments;
+use crate::error::AnalysisError;
+use crate::land::Land;
+use crate::outcome::{ClassLook, Hatching, Outcome, OutcomeRaster, PostValues, ValueClass};
+use sandtable_terrain::stop_flag::StopFlag;
+
+/// The slope at each post; no data at the border and beside posts without data.
+///
+/// # Errors
+/// None but [`AnalysisError::Stopped`].
+pub(crate) fn slope(
+    land: &Land,
+    arguments: &AnalysisArguments,
+    _stop: &StopFlag,
+) -> Result<Outcome, AnalysisError> {
+    let ground = &*land.ground;
+    let columns = ground.columns() as usize;
+    let mut values = vec![f32::NAN; ground.heights().len()];
+    let is_percent = arguments.word("unit") == "percent";
+    values.par_chunks_mut(columns).enumerate().for_each(|(row, values)| {
+        for (value, slopes) in values.iter_mut().zip(ground.slopes_of_row(row as u32)) {
+            let tangent = slopes.length();
+            *value = if is_percent { tangent * 100.0 } else { libm::atanf(tangent).to_degrees() };
+        }
+    });
+    let unit = if is_percent { "%" } else { "°" };
+    let raster = OutcomeRaster {
+        name: "slope",
+        unit,
+        values: PostValues::Numbers(values),
+        classes: classes(is_percent),
+    };
+    Ok(Outcome { raster: Some(raster), ..Outcome::default() })
+}
+
+/// The classes of FM 5-33 for cross-country movement.
+fn classes(is_percent: bool) -> Vec<ValueClass> {
+    let rows = [
+        (0.0, "0–3 %", [0, 0, 0, 0], Hatching::None),
+        (3.0, "3–10 %", [255, 245, 170, 90], Hatching::None),
+        (10.0, "10–20 %", [254, 217, 118, 110], Hatching::Dots),
+        (20.0, "20–30 %", [253, 160, 60, 120], Hatching::Dots),
+        (30.0, "30–45 %", [240, 59, 32, 130], Hatching::Single),
+        (45.0, "over 45 %", [150, 0, 38, 140], Hatching::Crossed),
+    ];
+    let from = |percent: f32| if is_percent { percent } else { libm::atanf(percent / 100.0).to_degrees() };
+    let class = |(percent, label, tint, hatching): (f32, &str, [u8; 4], Hatching)| ValueClass {
+        from: from(percent),
+        label: label.to_owned(),
+        look: ClassLook { tint, hatching },
+    };
+    rows.map(class).into()
+}

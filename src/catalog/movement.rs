@@ -1,0 +1,6 @@
+//! Kinds of the family movement.
+
+use crate::kind::AnalysisKind;
+
+/// The kinds.
+pub(crate) const KINDS: &[AnalysisKind] = &[];

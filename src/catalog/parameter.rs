@@ -1,0 +1,116 @@
+//! Parameters of an analysis.
+
+/// A parameter: a key of `[[analysis]]`, an option of the command, a query of the service.
+#[derive(Debug)]
+pub struct AnalysisParameter {
+    /// The key, in `snake_case`; the command line writes `-` for `_`.
+    pub name: &'static str,
+    /// What values it takes.
+    pub form: ParameterForm,
+    /// The unit of its numbers; empty where they have none.
+    pub unit: &'static str,
+    /// What holds where it is not stated.
+    pub default: ParameterDefault,
+    /// What it says, a sentence.
+    pub doc: &'static str,
+}
+
+/// The values that a parameter takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ParameterForm {
+    /// A number from `least` to `greatest`.
+    Number {
+        /// The smallest that is allowed.
+        least: f64,
+        /// The largest.
+        greatest: f64,
+    },
+    /// One number or more, rising, each from `least` to `greatest`.
+    Numbers {
+        /// The smallest that is allowed.
+        least: f64,
+        /// The largest.
+        greatest: f64,
+    },
+    /// One of these words.
+    Word(&'static [&'static str]),
+    /// True or false.
+    Switch,
+    /// At least so many positions.
+    Points {
+        /// The fewest that are allowed.
+        least: usize,
+    },
+    /// A line through at least two positions.
+    Line,
+    /// A ring of at least three positions, closed by itself.
+    Area,
+    /// The name of a vehicle: one of the scene's `[vehicle.NAME]`, or a built-in one.
+    Vehicle,
+    /// Another ground to compare with: an elevation file, or `source`, the elevation before the scene's earthworks.
+    Ground,
+}
+
+/// What holds where a parameter is not stated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ParameterDefault {
+    /// It must be stated.
+    Required,
+    /// This value, as it is written.
+    Value(&'static str),
+    /// No value; the text says what then holds.
+    Otherwise(&'static str),
+}
+
+impl AnalysisParameter {
+    /// A parameter with a number in a unit.
+    pub const fn number(
+        name: &'static str,
+        (least, greatest): (f64, f64),
+        unit: &'static str,
+        default: ParameterDefault,
+        doc: &'static str,
+    ) -> Self {
+        Self { name, form: ParameterForm::Number { least, greatest }, unit, default, doc }
+    }
+
+    /// A parameter with rising numbers in a unit.
+    pub const fn numbers(
+        name: &'static str,
+        (least, greatest): (f64, f64),
+        unit: &'static str,
+        default: ParameterDefault,
+        doc: &'static str,
+    ) -> Self {
+        Self { name, form: ParameterForm::Numbers { least, greatest }, unit, default, doc }
+    }
+
+    /// A parameter with one of `words`, the default among them.
+    pub const fn word(
+        name: &'static str,
+        words: &'static [&'static str],
+        default: &'static str,
+        doc: &'static str,
+    ) -> Self {
+        let default = ParameterDefault::Value(default);
+        Self { name, form: ParameterForm::Word(words), unit: "", default, doc }
+    }
+
+    /// A parameter of another form, without a unit.
+    pub const fn plain(
+        name: &'static str,
+        form: ParameterForm,
+        default: ParameterDefault,
+        doc: &'static str,
+    ) -> Self {
+        Self { name, form, unit: "", default, doc }
+    }
+
+    /// The default as it is written, or what holds without one; empty where the parameter is required.
+    pub const fn default_text(&self) -> &'static str {
+        match self.default {
+            ParameterDefault::Required => "",
+            ParameterDefault::Value(text) | ParameterDefault::Otherwise(text) => text,
+        }
+    }
+}
