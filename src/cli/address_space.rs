@@ -43,6 +43,7 @@ fn floor_of(command: &Command) -> Option<u64> {
         | Command::New(_)
         | Command::Serve(_)
         | Command::Viewshed(_)
+        | Command::Analyze(_)
         | Command::Plan { .. }
         | Command::Gather(_) => Some(50),
         Command::Profile(_) | Command::Los(_) | Command::Symbol(_) => Some(25),

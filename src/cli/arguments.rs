@@ -2,6 +2,7 @@
 
 use clap::{Parser, Subcommand};
 
+use crate::analyze::AnalyzeCommand;
 use crate::check::CheckArguments;
 use crate::convert::ConvertArguments;
 use crate::dem_info::DemInfoArguments;
@@ -84,6 +85,9 @@ pub enum Command {
     Los(LosArguments),
     /// Print, map or write as a raster what can be seen from a point
     Viewshed(ViewshedArguments),
+    /// Analyze the ground: its form, movement, observation, landing, water, earth
+    #[command(subcommand)]
+    Analyze(AnalyzeCommand),
     /// Cut work that is too long for one machine into shards
     Plan {
         #[command(subcommand)]

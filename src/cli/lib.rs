@@ -2,6 +2,7 @@
 //! it and prints the result.
 
 mod address_space;
+mod analyze;
 mod arguments;
 mod backend;
 mod check;
@@ -124,6 +125,7 @@ fn run(arguments: &Arguments, programs: BuiltInPrograms) -> Result<(), CliError>
         Command::Profile(arguments) => profile::run(arguments),
         Command::Los(arguments) => los::run(arguments),
         Command::Viewshed(arguments) => viewshed::run(arguments),
+        Command::Analyze(command) => analyze::run(command),
         Command::Plan { command } => plan::run(command),
         Command::Work(arguments) => work::run(arguments),
         Command::Gather(arguments) => gather::run(arguments),

@@ -15,7 +15,7 @@ use super::{
 use sandtable_database::quoted;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::wkt_writer;
-use sandtable_scene::scene_model::SceneModel;
+use sandtable_scene::military::SceneSymbol;
 
 /// All tables say they changed then: the same scene gives the same bytes.
 const MOMENT: &str = "2000-01-01T00:00:00.000Z";
@@ -50,16 +50,17 @@ CREATE TABLE layer_styles (id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, f_tabl
 pub(super) fn file(
     layers: &[ExportLayer],
     crs: &Crs,
-    scene: &SceneModel,
+    symbols: &[SceneSymbol],
 ) -> Result<MadeFile, FeatureExportError> {
     if layers.is_empty() {
         return Err(FeatureExportError::Empty("a .gpkg"));
     }
-    let bytes = database(layers, crs, scene).map_err(|error| FeatureExportError::Make(error.to_string()))?;
+    let bytes =
+        database(layers, crs, symbols).map_err(|error| FeatureExportError::Make(error.to_string()))?;
     Ok(MadeFile { bytes, told: ExportedFeatures { layers: counted(layers), notes: Vec::new() } })
 }
 
-fn database(layers: &[ExportLayer], crs: &Crs, scene: &SceneModel) -> rusqlite::Result<Vec<u8>> {
+fn database(layers: &[ExportLayer], crs: &Crs, symbols: &[SceneSymbol]) -> rusqlite::Result<Vec<u8>> {
     let mut database = Connection::open_in_memory()?;
     database.pragma_update(None, "application_id", APPLICATION_ID)?;
     database.pragma_update(None, "user_version", USER_VERSION)?;
@@ -68,7 +69,7 @@ fn database(layers: &[ExportLayer], crs: &Crs, scene: &SceneModel) -> rusqlite::
     let srs_id = add_systems(&database, crs)?;
     for layer in layers {
         add_layer(&database, layer, srs_id)?;
-        let pictures = if layer.name == "symbols" { pictures(layer, scene) } else { Vec::new() };
+        let pictures = if layer.name == "symbols" { pictures(layer, symbols) } else { Vec::new() };
         database.execute(
             "INSERT INTO layer_styles (f_table_catalog, f_table_schema, f_table_name, f_geometry_column, styleName, styleQML,
              styleSLD, useAsDefault, description, owner, ui, update_time) VALUES ('', '', ?1, 'geom', ?1, ?2, '', 1, '', '', NULL, ?3)",
@@ -224,9 +225,9 @@ impl Wkb {
 }
 
 /// A picture for each code of the layer, without texts, which labels say.
-fn pictures(layer: &ExportLayer, scene: &SceneModel) -> Vec<CodePicture> {
+fn pictures(layer: &ExportLayer, symbols: &[SceneSymbol]) -> Vec<CodePicture> {
     let mut pictures: BTreeMap<String, CodePicture> = BTreeMap::new();
-    for symbol in layer.features.iter().filter_map(|feature| scene.military.get(feature.symbol?)) {
+    for symbol in layer.features.iter().filter_map(|feature| symbols.get(feature.symbol?)) {
         let code = symbol.code.digits();
         pictures.entry(code.clone()).or_insert_with(|| {
             let bounds = symbol.symbol.bounds;

@@ -16,6 +16,7 @@ mod kmz;
 mod layers;
 mod msdl;
 mod nvg;
+pub mod outcome;
 mod outlines;
 mod qgis_style;
 mod xml_text;
@@ -206,7 +207,7 @@ pub fn export_features(
     progress("writing");
     let title = scene.title.as_deref().unwrap_or("A scene");
     let made = match format {
-        FeatureFormat::GeoPackage => geopackage::file(&layers, system, scene)?,
+        FeatureFormat::GeoPackage => geopackage::file(&layers, system, &scene.military)?,
         FeatureFormat::GeoJson => json::file(&layers, title),
         FeatureFormat::Kmz => kmz::file(&layers, title, scene)?,
         FeatureFormat::Msdl => msdl::file(&layers, title, scene)?,

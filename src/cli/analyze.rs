@@ -1,0 +1,273 @@
+//! `sandtable analyze`: an analysis of the ground, as a raster, features, or figures and tables.
+//!
+//! The kinds and their options are those of the catalog, so that the command has no list of its own.
+
+use std::path::{Path, PathBuf};
+use std::slice::from_ref;
+
+use clap::error::ErrorKind;
+use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, Subcommand};
+use serde_json::{Map, Value, json};
+
+use crate::error::CliError;
+use crate::options::DatasetArguments;
+use crate::output::{print, print_lines, row, warn};
+use crate::output_format::output_format;
+use crate::progress::StepTimer;
+use sandtable_analysis::outcome::{Figure, Outcome, OutcomeTable, PropertyValue};
+use sandtable_catalog::kind::AnalysisKind;
+use sandtable_catalog::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
+use sandtable_catalog::{kind, kinds};
+use sandtable_dem::dem_format::DemFormat;
+use sandtable_dem::formats::WRITTEN_EXTENSIONS;
+use sandtable_export::features::FeatureFormat;
+use sandtable_export::features::outcome::{OutcomeFrame, export_outcome};
+use sandtable_files::raster_file;
+use sandtable_query::analysis::{Analyzed, WrittenArgument, analyze, raster};
+use sandtable_terrain::stop_flag::StopFlag;
+
+/// An analysis and its options.
+#[derive(Debug)]
+pub struct AnalyzeCommand {
+    kind: &'static AnalysisKind,
+    dataset: DatasetArguments,
+    arguments: Vec<WrittenArgument>,
+    output: Option<PathBuf>,
+}
+
+/// A file to write.
+#[derive(Clone, Copy)]
+enum AnalysisFormat {
+    Raster(&'static DemFormat),
+    Features(FeatureFormat),
+}
+
+impl Subcommand for AnalyzeCommand {
+    fn augment_subcommands(command: Command) -> Command {
+        kinds().fold(command.subcommand_required(true).arg_required_else_help(true), |command, kind| {
+            command.subcommand(kind_command(kind))
+        })
+    }
+
+    fn augment_subcommands_for_update(command: Command) -> Command {
+        Self::augment_subcommands(command)
+    }
+
+    fn has_subcommand(name: &str) -> bool {
+        kind(name).is_some()
+    }
+}
+
+impl FromArgMatches for AnalyzeCommand {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let missing = || clap::Error::raw(ErrorKind::MissingSubcommand, "name a kind of analysis");
+        let (name, matches) = matches.subcommand().ok_or_else(missing)?;
+        let kind = kind(name).ok_or_else(missing)?;
+        let written = |parameter: &AnalysisParameter| {
+            let text = matches.get_one::<String>(parameter.name)?;
+            Some(WrittenArgument { name: parameter.name.to_owned(), text: text.clone() })
+        };
+        Ok(Self {
+            kind,
+            dataset: DatasetArguments::from_arg_matches(matches)?,
+            arguments: kind.parameters.iter().filter_map(written).collect(),
+            output: matches.get_one::<PathBuf>("output").cloned(),
+        })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+/// The command of a kind.
+fn kind_command(kind: &'static AnalysisKind) -> Command {
+    let command = Command::new(kind.name).about(kind.summary.trim_end_matches('.')).after_help(format!(
+        "Source: {}.\nLimits: {}",
+        kind.source,
+        kind.limits.join(" ")
+    ));
+    let command = DatasetArguments::augment_args(command);
+    let output = Arg::new("output")
+        .short('o')
+        .long("output")
+        .value_name("OUT")
+        .value_parser(clap::value_parser!(PathBuf))
+        .help("Write the answer to this file: a raster as .tif or .asc, features as .gpkg or .geojson");
+    kind.parameters.iter().fold(command, |command, parameter| command.arg(option(parameter))).arg(output)
+}
+
+/// The option of a parameter.
+fn option(parameter: &'static AnalysisParameter) -> Arg {
+    let default = match parameter.default {
+        ParameterDefault::Required => String::new(),
+        ParameterDefault::Value(text) | ParameterDefault::Otherwise(text) => format!(" [default: {text}]"),
+    };
+    let long: &'static str = parameter.name;
+    Arg::new(long)
+        .long(long.replace('_', "-"))
+        .value_name(value_name(parameter))
+        .allow_hyphen_values(true)
+        .required(parameter.default == ParameterDefault::Required)
+        .display_order(0)
+        .help(format!("{}{default}", parameter.doc.trim_end_matches('.')))
+}
+
+fn value_name(parameter: &AnalysisParameter) -> String {
+    match parameter.form {
+        ParameterForm::Number { .. } if parameter.unit.is_empty() => "NUMBER".into(),
+        ParameterForm::Number { .. } => parameter.unit.to_uppercase(),
+        ParameterForm::Numbers { .. } => "N,N,…".into(),
+        ParameterForm::Word(words) => words.join("|"),
+        ParameterForm::Switch => "true|false".into(),
+        ParameterForm::Points { least: 1 } => "X,Y[;X,Y…]".into(),
+        ParameterForm::Points { .. } | ParameterForm::Line | ParameterForm::Area => "X,Y;X,Y…".into(),
+        ParameterForm::Vehicle => "VEHICLE".into(),
+        ParameterForm::Ground => "FILE|source".into(),
+    }
+}
+
+pub fn run(command: &AnalyzeCommand) -> Result<(), CliError> {
+    let input = from_ref(&command.dataset.file);
+    let output =
+        command.output.as_deref().map(|path| Ok::<_, CliError>((path, format(path, input)?))).transpose()?;
+    let steps = StepTimer::default();
+    steps.begin("reading the ground");
+    let dataset = command.dataset.open()?;
+    let crs = command.dataset.crs(&dataset);
+    command.dataset.note_ground(&dataset)?;
+    steps.begin("analyzing");
+    let analyzed = analyze(&dataset, command.kind, &command.arguments, &crs, &StopFlag::default())?;
+    if let Some((path, format)) = output {
+        steps.begin("writing");
+        write(command, &analyzed, path, format)?;
+    }
+    steps.finish();
+    analyzed.outcome.notes.iter().for_each(|note| warn(&format!("note: {note}")));
+    if command.dataset.json {
+        return print(&format!("{:#}\n", json(command, &analyzed.outcome)));
+    }
+    print_lines(&text(command, &analyzed.outcome))
+}
+
+fn format(path: &Path, inputs: &[PathBuf]) -> Result<AnalysisFormat, CliError> {
+    let features = |extension: &str| {
+        let format = FeatureFormat::from_extension(extension)?;
+        matches!(format, FeatureFormat::GeoPackage | FeatureFormat::GeoJson)
+            .then_some(AnalysisFormat::Features(format))
+    };
+    let either = |extension: &str| {
+        DemFormat::to_write(extension).map(AnalysisFormat::Raster).or_else(|| features(extension))
+    };
+    let written = format!("analyses are written as .gpkg or .geojson, and rasters as {WRITTEN_EXTENSIONS}");
+    output_format(path, inputs, either, &written)
+}
+
+fn write(
+    command: &AnalyzeCommand,
+    analyzed: &Analyzed,
+    path: &Path,
+    format: AnalysisFormat,
+) -> Result<(), CliError> {
+    let inputs = from_ref(&command.dataset.file);
+    let Analyzed { ground, crs, outcome } = analyzed;
+    match (format, &outcome.raster) {
+        (AnalysisFormat::Raster(format), Some(values)) => {
+            raster_file::write(&raster(values, ground, crs), format, path, inputs)?;
+        }
+        (AnalysisFormat::Raster(_), None) => {
+            let name = command.kind.name;
+            return Err(CliError::usage(format!("{name} gives no raster; write it as .gpkg or .geojson")));
+        }
+        (AnalysisFormat::Features(format), _) => {
+            let frame = OutcomeFrame { ground, crs };
+            export_outcome(outcome, frame, path, format, command.kind.title, inputs)?;
+        }
+    }
+    Ok(())
+}
+
+fn value(value: &PropertyValue) -> Value {
+    match value {
+        PropertyValue::Number(number) => Value::from(*number),
+        PropertyValue::Whole(number) => Value::from(*number),
+        PropertyValue::Text(text) => Value::from(text.as_str()),
+        PropertyValue::Truth(truth) => Value::from(*truth),
+    }
+}
+
+fn json(command: &AnalyzeCommand, outcome: &Outcome) -> Value {
+    let figures: Vec<Value> = outcome
+        .figures
+        .iter()
+        .map(|Figure { name, value, unit }| json!({ "name": name, "value": value, "unit": unit }))
+        .collect();
+    let table = |table: &OutcomeTable| {
+        let object = |row: &Vec<PropertyValue>| -> Map<String, Value> {
+            table
+                .columns
+                .iter()
+                .zip(row)
+                .map(|(column, cell)| (column.name.to_owned(), value(cell)))
+                .collect()
+        };
+        json!({ "title": table.title, "rows": table.rows.iter().map(object).collect::<Vec<_>>() })
+    };
+    json!({
+        "kind": command.kind.name,
+        "source": command.kind.source,
+        "limits": command.kind.limits,
+        "arguments": command.arguments.iter().map(|argument| (argument.name.clone(), Value::from(argument.text.as_str()))).collect::<Map<_, _>>(),
+        "figures": figures,
+        "tables": outcome.tables.iter().map(table).collect::<Vec<_>>(),
+        "features": outcome.features.len(),
+        "notes": outcome.notes,
+        "output": command.output.as_ref().map(|path| path.display().to_string()),
+    })
+}
+
+fn text(command: &AnalyzeCommand, outcome: &Outcome) -> Vec<String> {
+    let mut lines: Vec<String> = command.output.iter().map(|path| path.display().to_string()).collect();
+    let width = outcome.figures.iter().map(|figure| figure.name.chars().count()).max().unwrap_or(0).max(8);
+    for Figure { name, value, unit } in &outcome.figures {
+        lines.push(row(width, name, format!("{} {unit}", short(*value)).trim_end()));
+    }
+    if !outcome.features.is_empty() {
+        lines.push(row(width, "features", outcome.features.len()));
+    }
+    outcome.tables.iter().for_each(|table| lines.extend(table_lines(table)));
+    lines
+}
+
+/// A number with three decimals at most.
+fn short(number: f64) -> String {
+    let text = format!("{number:.3}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// A table in columns.
+fn table_lines(table: &OutcomeTable) -> Vec<String> {
+    let heading =
+        |name: &str, unit: &str| if unit.is_empty() { name.to_owned() } else { format!("{name} ({unit})") };
+    let head: Vec<String> = table.columns.iter().map(|column| heading(column.name, column.unit)).collect();
+    let cell = |cell: &PropertyValue, decimals: usize| match cell {
+        PropertyValue::Number(number) => format!("{number:.decimals$}"),
+        PropertyValue::Whole(number) => number.to_string(),
+        PropertyValue::Text(text) => text.clone(),
+        PropertyValue::Truth(truth) => if *truth { "yes" } else { "no" }.into(),
+    };
+    let cells = |row: &Vec<PropertyValue>| -> Vec<String> {
+        row.iter().zip(&table.columns).map(|(value, column)| cell(value, column.decimals)).collect()
+    };
+    let rows: Vec<Vec<String>> = std::iter::once(head).chain(table.rows.iter().map(cells)).collect();
+    let width = |column: usize| {
+        rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..table.columns.len()).map(width).collect();
+    let line = |row: &Vec<String>| {
+        let padded = row.iter().zip(&widths).map(|(cell, width)| format!("  {cell:>width$}"));
+        padded.collect::<String>()
+    };
+    std::iter::once(table.title.clone()).chain(rows.iter().map(line)).collect()
+}

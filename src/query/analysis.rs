@@ -1,0 +1,287 @@
+//! Terrain analyses of a dataset: arguments from text, the land, and rasters of outcomes.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use glam::DVec2;
+
+use crate::dataset::{Dataset, DatasetOptions, OpenError, QueryError};
+use crate::ground::GroundError;
+use crate::positions::PositionArgument;
+use crate::windowed_elevation::GroundReach;
+use sandtable_analysis::arguments::{AnalysisArguments, ArgumentValue};
+use sandtable_analysis::error::AnalysisError;
+use sandtable_analysis::land::Land;
+use sandtable_analysis::outcome::{Outcome, OutcomeRaster, PostValues};
+use sandtable_analysis::run::run;
+use sandtable_base::message::suggest::{quoted, remedy};
+use sandtable_catalog::kind::AnalysisKind;
+use sandtable_catalog::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
+use sandtable_geom::crs::Crs;
+use sandtable_raster::raster::{Raster, Samples, north_up_nodes};
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::query::{Interpolation, Surface};
+use sandtable_terrain::stop_flag::StopFlag;
+
+/// An argument as users write it, and its parameter's name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WrittenArgument {
+    /// The name.
+    pub name: String,
+    /// The value.
+    pub text: String,
+}
+
+/// An analysis that has no outcome.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
+pub enum AnalyzeError {
+    /// An argument is wrong.
+    #[error("`{name}`: {problem}")]
+    Argument { name: String, problem: String },
+    #[error(transparent)]
+    Query(#[from] QueryError),
+    #[error(transparent)]
+    Ground(#[from] GroundError),
+    /// The ground to compare with cannot be opened.
+    #[error("`{name}`")]
+    Other { name: String, source: Box<OpenError> },
+    #[error(transparent)]
+    Analysis(#[from] AnalysisError),
+}
+
+impl AnalyzeError {
+    fn argument(name: &str, problem: impl Into<String>) -> Self {
+        Self::Argument { name: name.to_owned(), problem: problem.into() }
+    }
+}
+
+/// An analysis that was made: its land and what it gives.
+pub struct Analyzed {
+    /// The ground of the land; values of rasters are those of its posts.
+    pub ground: Arc<Lattice>,
+    /// The system of the land and of features.
+    pub crs: Crs,
+    /// What the analysis gives.
+    pub outcome: Outcome,
+}
+
+/// Analyzes a dataset. Positions of `arguments` are in coordinates of `crs`.
+///
+/// # Errors
+/// See [`AnalyzeError`].
+pub fn analyze(
+    dataset: &Dataset,
+    kind: &'static AnalysisKind,
+    arguments: &[WrittenArgument],
+    crs: &Crs,
+    stop: &StopFlag,
+) -> Result<Analyzed, AnalyzeError> {
+    let ground = dataset.ground(&GroundReach { crs, at: &[], around_m: f64::INFINITY })?;
+    let lattice = ground.held_lattice()?;
+    let mut land = Land::bare(lattice, ground.crs.clone());
+    let arguments = read(kind, arguments, crs, &land.crs)?;
+    for parameter in kind.parameters.iter().filter(|parameter| parameter.form == ParameterForm::Ground) {
+        let file = arguments.word(parameter.name);
+        if !file.is_empty() {
+            land.other_ground = Some(other_ground(parameter.name, &file, dataset, &land)?);
+        }
+    }
+    let outcome = run(&land, &arguments, stop)?;
+    Ok(Analyzed { ground: land.ground, crs: land.crs, outcome })
+}
+
+/// The word for the elevation of a dataset before its scene's earthworks.
+const SOURCE: &str = "source";
+
+/// The heights of an elevation file or scene at the posts of the land, NaN where it has none: of `file`, or of the dataset's
+/// own elevation before earthworks where that is `source`.
+fn other_ground(
+    name: &str,
+    file: &str,
+    dataset: &Dataset,
+    land: &Land,
+) -> Result<Arc<Lattice>, AnalyzeError> {
+    let unreadable =
+        |source: OpenError| AnalyzeError::Other { name: name.to_owned(), source: Box::new(source) };
+    let opened = match file {
+        SOURCE => None,
+        _ => Some(Dataset::open(Path::new(file), &DatasetOptions::default()).map_err(unreadable)?),
+    };
+    let (other, surface) = match &opened {
+        Some(other) => (other, Surface::Ground),
+        None => (dataset, Surface::Source),
+    };
+    let (columns, rows) = (land.ground.columns(), land.ground.rows());
+    let mut heights = Vec::with_capacity(columns as usize * rows as usize);
+    for row in 0..rows {
+        let at: Vec<DVec2> =
+            (0..columns).map(|column| land.ground.map_position(Post { column, row })).collect();
+        let answers = other.heights(surface, Interpolation::default(), &land.crs, &at)?;
+        heights
+            .extend(answers.iter().map(|answer| answer.height_m().map_or(f32::NAN, |height| height as f32)));
+    }
+    let none = |_| AnalyzeError::argument(name, format!("{file} has no ground at the posts of the land"));
+    Lattice::new(land.ground.origin(), land.ground.cell(), columns, heights).map(Arc::new).map_err(none)
+}
+
+/// The arguments of a kind from what users wrote, positions brought from `crs` to `land_crs`.
+///
+/// # Errors
+/// [`AnalyzeError::Argument`]: a name that the kind does not know, a value out of its range or of another form, a parameter
+/// that is required and missing.
+pub fn read(
+    kind: &'static AnalysisKind,
+    written: &[WrittenArgument],
+    crs: &Crs,
+    land_crs: &Crs,
+) -> Result<AnalysisArguments, AnalyzeError> {
+    let mut arguments = AnalysisArguments::new(kind);
+    for WrittenArgument { name, text } in written {
+        let Some(parameter) = kind.parameter(name) else {
+            let names: Vec<&str> = kind.parameters.iter().map(|parameter| parameter.name).collect();
+            let help = remedy(name, &names, "it has none");
+            return Err(AnalyzeError::argument(
+                name,
+                format!("the analysis {} does not have it; {help}", kind.name),
+            ));
+        };
+        let value = value(parameter, text, crs, land_crs)
+            .map_err(|problem| AnalyzeError::argument(parameter.name, problem))?;
+        arguments = arguments.with(parameter.name, value);
+    }
+    let is_stated =
+        |parameter: &AnalysisParameter| written.iter().any(|argument| argument.name == parameter.name);
+    let required = kind.parameters.iter().filter(|parameter| parameter.default == ParameterDefault::Required);
+    match required.into_iter().find(|parameter| !is_stated(parameter)) {
+        Some(missing) => Err(AnalyzeError::argument(
+            missing.name,
+            format!("{} must be stated: {}", kind.name, missing.doc),
+        )),
+        None => Ok(arguments),
+    }
+}
+
+fn value(
+    parameter: &AnalysisParameter,
+    text: &str,
+    crs: &Crs,
+    land_crs: &Crs,
+) -> Result<ArgumentValue, String> {
+    match parameter.form {
+        ParameterForm::Number { least, greatest } => {
+            number(text, (least, greatest), parameter.unit).map(ArgumentValue::Number)
+        }
+        ParameterForm::Numbers { least, greatest } => {
+            let numbers: Vec<f64> = text
+                .split(',')
+                .map(|text| number(text, (least, greatest), parameter.unit))
+                .collect::<Result<_, _>>()?;
+            match numbers.is_sorted_by(|low, high| low < high) {
+                true => Ok(ArgumentValue::Numbers(numbers)),
+                false => Err(format!("{text} does not rise; write each number greater than the one before")),
+            }
+        }
+        ParameterForm::Word(words) => match words.contains(&text) {
+            true => Ok(ArgumentValue::Word(text.to_owned())),
+            false => Err(format!("{} is none of its words; {}", quoted(text), remedy(text, words, ""))),
+        },
+        ParameterForm::Switch => match text {
+            "true" => Ok(ArgumentValue::Switch(true)),
+            "false" => Ok(ArgumentValue::Switch(false)),
+            _ => Err(format!("{} is neither true nor false", quoted(text))),
+        },
+        ParameterForm::Points { least } => points(text, least, crs, land_crs),
+        ParameterForm::Line => points(text, 2, crs, land_crs),
+        ParameterForm::Area => points(text, 3, crs, land_crs),
+        ParameterForm::Vehicle | ParameterForm::Ground => Ok(ArgumentValue::Word(text.to_owned())),
+    }
+}
+
+fn number(text: &str, (least, greatest): (f64, f64), unit: &str) -> Result<f64, String> {
+    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+    let wanted = format!("write a number from {least} to {greatest}{unit}");
+    let number: f64 = text.trim().parse().map_err(|_| format!("{} is no number; {wanted}", quoted(text)))?;
+    match (least..=greatest).contains(&number) {
+        true => Ok(number),
+        false => Err(format!("{number} is out of range; {wanted}")),
+    }
+}
+
+/// Positions with semicolons between.
+fn points(text: &str, least: usize, crs: &Crs, land_crs: &Crs) -> Result<ArgumentValue, String> {
+    let parts = text.split(';').map(str::trim).filter(|part| !part.is_empty());
+    let place = |part: &str| {
+        let position = PositionArgument::parse(part).map_err(|error| error.with_forms())?;
+        let written = position.written(crs).map_err(|error| error.to_string())?;
+        crs.transform(land_crs, written.at).map_err(|error| error.to_string())
+    };
+    let points: Vec<DVec2> = parts.map(place).collect::<Result<_, _>>()?;
+    match points.len() >= least {
+        true => Ok(ArgumentValue::Points(points)),
+        false => Err(format!(
+            "it needs at least {least} position{}, found {}; write them with semicolons between",
+            if least == 1 { "" } else { "s" },
+            points.len()
+        )),
+    }
+}
+
+/// The raster of an outcome, north up, its samples at the posts of `ground`.
+pub fn raster(outcome: &OutcomeRaster, ground: &Lattice, crs: &Crs) -> Raster {
+    let (columns, rows) = (ground.columns(), ground.rows());
+    let north_west = ground.map_position(Post { column: 0, row: rows - 1 });
+    let (data_type, nodata) = match outcome.values {
+        PostValues::Numbers(_) => ("Float32", -9999.0),
+        PostValues::Codes(_) => ("Byte", f64::from(PostValues::NO_CODE)),
+    };
+    let samples = (0..rows).rev().flat_map(|row| {
+        let first = row as usize * columns as usize;
+        (first..first + columns as usize).map(|index| outcome.values.value(index))
+    });
+    let header = Raster {
+        driver: outcome.name,
+        data_type,
+        crs: (*crs != Crs::local()).then(|| crs.clone()),
+        nodata: Some(nodata),
+        samples: Samples::F32(samples.collect()),
+        ..Raster::without_place(columns, rows)
+    };
+    header.placed(north_up_nodes(north_west, ground.cell()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read_slope(name: &str, text: &str) -> Result<AnalysisArguments, String> {
+        let kind = sandtable_catalog::kind("slope").expect("a kind");
+        let written = [WrittenArgument { name: name.into(), text: text.into() }];
+        read(kind, &written, &Crs::local(), &Crs::local()).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_word_is_read_and_another_is_refused_with_the_nearest() {
+        assert_eq!(read_slope("unit", "degrees").map(|read| read.word("unit")), Ok("degrees".to_owned()));
+        let refused = read_slope("unit", "degree").expect_err("no word");
+        assert!(refused.starts_with("`unit`: ") && refused.contains("degrees"), "{refused}");
+    }
+
+    #[test]
+    fn a_parameter_of_no_kind_is_refused_by_its_name() {
+        let refused = read_slope("units", "degrees").expect_err("no parameter");
+        assert!(refused.contains("`units`") && refused.contains("unit"), "{refused}");
+    }
+
+    #[test]
+    fn too_few_positions_are_counted() {
+        assert_eq!(
+            points("1,2", 2, &Crs::local(), &Crs::local()),
+            Err("it needs at least 2 positions, found 1; write them with semicolons between".into())
+        );
+        assert_eq!(
+            points("1,2; 3,4", 2, &Crs::local(), &Crs::local()),
+            Ok(ArgumentValue::Points(vec![DVec2::new(1.0, 2.0), DVec2::new(3.0, 4.0)]))
+        );
+    }
+}
