@@ -23,7 +23,11 @@ use sandtable_dem::formats::WRITTEN_EXTENSIONS;
 use sandtable_export::features::FeatureFormat;
 use sandtable_export::features::outcome::{OutcomeFrame, export_outcome};
 use sandtable_files::raster_file;
-use sandtable_query::analysis::{Analyzed, WrittenArgument, analyze, raster};
+use sandtable_geom::crs::Crs;
+use sandtable_query::analysis::{Analyzed, WrittenArgument, analyze, analyze_land, raster};
+use sandtable_query::dataset::Dataset;
+use sandtable_scene::land::land_of;
+use sandtable_scene::scene_file::open_scene_true_to_scale;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// An analysis and its options.
@@ -138,7 +142,7 @@ pub fn run(command: &AnalyzeCommand) -> Result<(), CliError> {
     let crs = command.dataset.crs(&dataset);
     command.dataset.note_ground(&dataset)?;
     steps.begin("analyzing");
-    let analyzed = analyze(&dataset, command.kind, &command.arguments, &crs, &StopFlag::default())?;
+    let analyzed = analyzed(command, &dataset, &crs, &steps)?;
     if let Some((path, format)) = output {
         steps.begin("writing");
         write(command, &analyzed, path, format)?;
@@ -149,6 +153,23 @@ pub fn run(command: &AnalyzeCommand) -> Result<(), CliError> {
         return print(&format!("{:#}\n", json(command, &analyzed.outcome)));
     }
     print_lines(&text(command, &analyzed.outcome))
+}
+
+/// The analysis; a scene is built only for a kind that uses what lies on the ground.
+fn analyzed(
+    command: &AnalyzeCommand,
+    dataset: &Dataset,
+    crs: &Crs,
+    steps: &StepTimer,
+) -> Result<Analyzed, CliError> {
+    let (kind, stop) = (command.kind, StopFlag::default());
+    if dataset.scene_files().is_none() || kind.layers.is_empty() {
+        return Ok(analyze(dataset, kind, &command.arguments, crs, &stop)?);
+    }
+    let progress = |step| steps.begin(step);
+    let scene = open_scene_true_to_scale(&command.dataset.file, &command.dataset.access.allow, &progress)?;
+    steps.begin("analyzing");
+    Ok(analyze_land(land_of(&scene), dataset, (kind, &command.arguments), crs, &stop)?)
 }
 
 fn format(path: &Path, inputs: &[PathBuf]) -> Result<AnalysisFormat, CliError> {

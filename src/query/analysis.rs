@@ -78,8 +78,21 @@ pub fn analyze(
     stop: &StopFlag,
 ) -> Result<Analyzed, AnalyzeError> {
     let ground = dataset.ground(&GroundReach { crs, at: &[], around_m: f64::INFINITY })?;
-    let lattice = ground.held_lattice()?;
-    let mut land = Land::bare(lattice, ground.crs.clone());
+    let land = Land::bare(ground.held_lattice()?, ground.crs.clone());
+    analyze_land(land, dataset, (kind, arguments), crs, stop)
+}
+
+/// [`analyze`], of the land of a scene with all its layers, of which `dataset` is the ground.
+///
+/// # Errors
+/// See [`AnalyzeError`].
+pub fn analyze_land(
+    mut land: Land,
+    dataset: &Dataset,
+    (kind, arguments): (&'static AnalysisKind, &[WrittenArgument]),
+    crs: &Crs,
+    stop: &StopFlag,
+) -> Result<Analyzed, AnalyzeError> {
     let arguments = read(kind, arguments, crs, &land.crs)?;
     for parameter in kind.parameters.iter().filter(|parameter| parameter.form == ParameterForm::Ground) {
         let file = arguments.word(parameter.name);

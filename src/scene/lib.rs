@@ -45,6 +45,7 @@ pub mod ground_window;
 pub mod imagery;
 pub mod label_course;
 mod labels;
+pub mod land;
 pub mod land_cover;
 mod meant_number;
 pub mod military;
