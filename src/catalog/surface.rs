@@ -99,4 +99,74 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
         source: "Evans 1980; Minár, Evans and Jenčo 2020",
         limits: &["Level ground has no direction of fall: all but the mean curvature are 0 there.", BORDER],
     },
+    AnalysisKind {
+        name: "ruggedness",
+        family: AnalysisFamily::Surface,
+        title: "Ruggedness",
+        summary: "How uneven the ground is around each post.",
+        parameters: &[
+            AnalysisParameter::word(
+                "measure",
+                &["tri", "tpi", "vrm", "roughness"],
+                "tri",
+                "What is measured: `tri` the differences from the eight neighbors, `tpi` the height above the mean of the \
+                 square's other posts, `vrm` how far normals differ in direction, from 0 to 1, `roughness` the \
+                 difference of the highest post and the lowest.",
+            ),
+            AnalysisParameter::number(
+                "radius",
+                (1.0, 200.0),
+                "posts",
+                ParameterDefault::Value("1"),
+                "How far the square around a post reaches to each side, a whole number; `tri` allows 1 alone.",
+            ),
+        ],
+        yields: AnalysisYield::Raster,
+        // Normals reach a post farther than the square.
+        reach: AnalysisReach::Whole,
+        layers: &[],
+        source: "Riley, DeGloria and Elliot 1999 (TRI); Weiss 2001 (TPI); Sappington, Longshore and Thompson 2007 (VRM); \
+                 Wilson et al. 2007 (roughness)",
+        limits: &[
+            "The neighborhood is a square; Weiss's was a ring.",
+            "Posts whose square reaches beyond the border, or holds a post without data, have no data.",
+        ],
+    },
+    AnalysisKind {
+        name: "geomorphons",
+        family: AnalysisFamily::Surface,
+        title: "Landforms",
+        summary: "Which of ten landforms a post belongs to, by what it sees in eight directions.",
+        parameters: &[
+            AnalysisParameter::number(
+                "radius",
+                (2.0, 500.0),
+                "posts",
+                ParameterDefault::Value("20"),
+                "How far a post sees, a whole number of the longer side of a cell; posts that far do not count.",
+            ),
+            AnalysisParameter::number(
+                "skip",
+                (0.0, 499.0),
+                "posts",
+                ParameterDefault::Value("0"),
+                "How many posts next to the post do not count, a whole number.",
+            ),
+            AnalysisParameter::number(
+                "flatness",
+                (0.0, 45.0),
+                "°",
+                ParameterDefault::Value("1"),
+                "Which slope of a line of sight still counts as level.",
+            ),
+        ],
+        yields: AnalysisYield::Raster,
+        reach: AnalysisReach::PostsBy("radius"),
+        layers: &[],
+        source: "Jasiewicz and Stepinski 2013, as r.geomorphon",
+        limits: &[
+            "Forms wider than the radius are not seen, and the land ends at its border.",
+            "Posts at the border have no data.",
+        ],
+    },
 ];

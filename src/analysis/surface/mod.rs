@@ -2,7 +2,11 @@
 
 pub mod aspect;
 pub mod curvature;
+#[cfg(test)]
+mod gdaldem_tables;
+pub mod geomorphons;
 pub mod hillshade;
+pub mod ruggedness;
 pub mod slope;
 mod window;
 
@@ -14,4 +18,6 @@ pub(crate) const FUNCTIONS: &[(&str, KindFunction)] = &[
     ("aspect", aspect::aspect),
     ("hillshade", hillshade::hillshade),
     ("curvature", curvature::curvature),
+    ("ruggedness", ruggedness::ruggedness),
+    ("geomorphons", geomorphons::geomorphons),
 ];
