@@ -1,7 +1,7 @@
 //! Kinds about the form of the ground.
 
 use crate::kind::{AnalysisFamily, AnalysisKind, AnalysisReach, AnalysisYield};
-use crate::parameter::AnalysisParameter;
+use crate::parameter::{AnalysisParameter, ParameterDefault};
 
 /// The two ways of taking a slope from neighbors.
 const METHOD: AnalysisParameter = AnalysisParameter::word(
@@ -11,19 +11,162 @@ const METHOD: AnalysisParameter = AnalysisParameter::word(
     "How the slope follows from neighbors: `horn` from eight with weights 1-2-1, `zevenbergen-thorne` from four.",
 );
 
+/// What kinds that read a window of 3 × 3 posts do not know.
+const BORDER: &str = "Posts at the border, and beside a post without data, have no data.";
+
+/// What all slopes of a lattice do not know.
+const COARSE: &str = "Ground between posts may be steeper: coarse elevation models flatten slopes.";
+
 /// The kinds.
-pub(crate) const KINDS: &[AnalysisKind] = &[AnalysisKind {
-    name: "slope",
-    family: AnalysisFamily::Surface,
-    title: "Slope",
-    summary: "The slope of the ground at each post.",
-    parameters: &[
-        AnalysisParameter::word("unit", &["percent", "degrees"], "percent", "The unit of the slope."),
-        METHOD,
-    ],
-    yields: AnalysisYield::Raster,
-    reach: AnalysisReach::Posts(1),
-    layers: &[],
-    source: "Horn 1981; Zevenbergen and Thorne 1987; classes of FM 5-33",
-    limits: &["Ground between posts may be steeper: coarse elevation models flatten slopes."],
-}];
+pub(crate) const KINDS: &[AnalysisKind] = &[
+    AnalysisKind {
+        name: "slope",
+        family: AnalysisFamily::Surface,
+        title: "Slope",
+        summary: "The slope of the ground at each post.",
+        parameters: &[
+            AnalysisParameter::word("unit", &["percent", "degrees"], "percent", "The unit of the slope."),
+            METHOD,
+        ],
+        yields: AnalysisYield::Raster,
+        reach: AnalysisReach::Posts(1),
+        layers: &[],
+        source: "Horn 1981; Zevenbergen and Thorne 1987; classes of FM 5-33",
+        limits: &[COARSE, BORDER],
+    },
+    AnalysisKind {
+        name: "aspect",
+        family: AnalysisFamily::Surface,
+        title: "Aspect",
+        summary: "The azimuth toward which the ground falls at each post, clockwise from the grid's north.",
+        parameters: &[METHOD],
+        yields: AnalysisYield::Raster,
+        reach: AnalysisReach::Posts(1),
+        layers: &[],
+        source: "Horn 1981; Zevenbergen and Thorne 1987",
+        limits: &["Level ground has no aspect and no data.", BORDER],
+    },
+    AnalysisKind {
+        name: "hillshade",
+        family: AnalysisFamily::Surface,
+        title: "Hillshade",
+        summary: "How directly the ground faces the sun at each post, from 1 to 255.",
+        parameters: &[
+            AnalysisParameter::number(
+                "azimuth",
+                (0.0, 360.0),
+                "°",
+                ParameterDefault::Value("315"),
+                "The sun's azimuth, clockwise from the grid's north.",
+            ),
+            AnalysisParameter::number(
+                "altitude",
+                (0.0, 90.0),
+                "°",
+                ParameterDefault::Value("45"),
+                "The sun's altitude above the horizon.",
+            ),
+            AnalysisParameter::number(
+                "exaggeration",
+                (0.01, 100.0),
+                "",
+                ParameterDefault::Value("1"),
+                "What heights are multiplied with.",
+            ),
+            METHOD,
+        ],
+        yields: AnalysisYield::Raster,
+        reach: AnalysisReach::Posts(1),
+        layers: &[],
+        source: "Horn 1981, as gdaldem hillshade",
+        limits: &["Ground casts no shadow on other ground.", BORDER],
+    },
+    AnalysisKind {
+        name: "curvature",
+        family: AnalysisFamily::Surface,
+        title: "Curvature",
+        summary: "How the ground bends at each post, positive where it is convex.",
+        parameters: &[AnalysisParameter::word(
+            "direction",
+            &["profile", "plan", "tangential", "mean"],
+            "profile",
+            "Which curvature: `profile` along the fall line, `plan` of the contour, `tangential` of the section across \
+             the fall line, `mean` over all directions.",
+        )],
+        yields: AnalysisYield::Raster,
+        reach: AnalysisReach::Posts(1),
+        layers: &[],
+        source: "Evans 1980; Minár, Evans and Jenčo 2020",
+        limits: &["Level ground has no direction of fall: all but the mean curvature are 0 there.", BORDER],
+    },
+    AnalysisKind {
+        name: "ruggedness",
+        family: AnalysisFamily::Surface,
+        title: "Ruggedness",
+        summary: "How uneven the ground is around each post.",
+        parameters: &[
+            AnalysisParameter::word(
+                "measure",
+                &["tri", "tpi", "vrm", "roughness"],
+                "tri",
+                "What is measured: `tri` the differences from the eight neighbors, `tpi` the height above the mean of the \
+                 square's other posts, `vrm` how far normals differ in direction, from 0 to 1, `roughness` the \
+                 difference of the highest post and the lowest.",
+            ),
+            AnalysisParameter::number(
+                "radius",
+                (1.0, 200.0),
+                "posts",
+                ParameterDefault::Value("1"),
+                "How far the square around a post reaches to each side, a whole number; `tri` allows 1 alone.",
+            ),
+        ],
+        yields: AnalysisYield::Raster,
+        // Normals reach a post farther than the square.
+        reach: AnalysisReach::Whole,
+        layers: &[],
+        source: "Riley, DeGloria and Elliot 1999 (TRI); Weiss 2001 (TPI); Sappington, Longshore and Thompson 2007 (VRM); \
+                 Wilson et al. 2007 (roughness)",
+        limits: &[
+            "The neighborhood is a square; Weiss's was a ring.",
+            "Posts whose square reaches beyond the border, or holds a post without data, have no data.",
+        ],
+    },
+    AnalysisKind {
+        name: "geomorphons",
+        family: AnalysisFamily::Surface,
+        title: "Landforms",
+        summary: "Which of ten landforms a post belongs to, by what it sees in eight directions.",
+        parameters: &[
+            AnalysisParameter::number(
+                "radius",
+                (2.0, 500.0),
+                "posts",
+                ParameterDefault::Value("20"),
+                "How far a post sees, a whole number of the longer side of a cell; posts that far do not count.",
+            ),
+            AnalysisParameter::number(
+                "skip",
+                (0.0, 499.0),
+                "posts",
+                ParameterDefault::Value("0"),
+                "How many posts next to the post do not count, a whole number.",
+            ),
+            AnalysisParameter::number(
+                "flatness",
+                (0.0, 45.0),
+                "°",
+                ParameterDefault::Value("1"),
+                "Which slope of a line of sight still counts as level.",
+            ),
+        ],
+        yields: AnalysisYield::Raster,
+        reach: AnalysisReach::PostsBy("radius"),
+        layers: &[],
+        source: "Jasiewicz and Stepinski 2013, as r.geomorphon",
+        limits: &[
+            "Forms wider than the radius are not seen, and the land ends at its border.",
+            "Posts at the border have no data.",
+        ],
+    },
+];

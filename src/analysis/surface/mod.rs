@@ -1,8 +1,23 @@
 //! The form of the ground.
 
+pub mod aspect;
+pub mod curvature;
+#[cfg(test)]
+mod gdaldem_tables;
+pub mod geomorphons;
+pub mod hillshade;
+pub mod ruggedness;
 pub mod slope;
+mod window;
 
 use crate::run::KindFunction;
 
 /// The functions of the family's kinds.
-pub(crate) const FUNCTIONS: &[(&str, KindFunction)] = &[("slope", slope::slope)];
+pub(crate) const FUNCTIONS: &[(&str, KindFunction)] = &[
+    ("slope", slope::slope),
+    ("aspect", aspect::aspect),
+    ("hillshade", hillshade::hillshade),
+    ("curvature", curvature::curvature),
+    ("ruggedness", ruggedness::ruggedness),
+    ("geomorphons", geomorphons::geomorphons),
+];

@@ -1,7 +1,7 @@
-//! The slope of the ground, from the eight neighbors of a post (Horn 1981) or from four (Zevenbergen and Thorne 1987).
+//! The slope of the ground, from the eight neighbors of a post (Horn 1981) or from four (Zevenbergen and Thorne 1987):
+//! what `gdaldem slope` gives.
 
-use rayon::prelude::*;
-
+use super::window::{GradientMethod, WindowGradient, by_window};
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
@@ -15,18 +15,15 @@ use sandtable_terrain::stop_flag::StopFlag;
 pub(crate) fn slope(
     land: &Land,
     arguments: &AnalysisArguments,
-    _stop: &StopFlag,
+    stop: &StopFlag,
 ) -> Result<Outcome, AnalysisError> {
-    let ground = &*land.ground;
-    let columns = ground.columns() as usize;
-    let mut values = vec![f32::NAN; ground.heights().len()];
+    let gradient = WindowGradient::new(&land.ground, GradientMethod::of(&arguments.word("method")));
     let is_percent = arguments.word("unit") == "percent";
-    values.par_chunks_mut(columns).enumerate().for_each(|(row, values)| {
-        for (value, slopes) in values.iter_mut().zip(ground.slopes_of_row(row as u32)) {
-            let tangent = slopes.length();
-            *value = if is_percent { tangent * 100.0 } else { libm::atanf(tangent).to_degrees() };
-        }
-    });
+    let values = if is_percent {
+        by_window(&land.ground, stop, |window| tangent(gradient.of(window)) * 100.0)?
+    } else {
+        by_window(&land.ground, stop, |window| libm::atanf(tangent(gradient.of(window))).to_degrees())?
+    };
     let unit = if is_percent { "%" } else { "°" };
     let raster = OutcomeRaster {
         name: "slope",
@@ -35,6 +32,11 @@ pub(crate) fn slope(
         classes: classes(is_percent),
     };
     Ok(Outcome { raster: Some(raster), ..Outcome::default() })
+}
+
+#[inline(always)]
+fn tangent([east, north]: [f32; 2]) -> f32 {
+    (east * east + north * north).sqrt()
 }
 
 /// The classes of FM 5-33 for cross-country movement.

@@ -1,0 +1,213 @@
+//! Lookouts: the places from which posts, weapons and radars look, and what each of them sees.
+//!
+//! A viewshed is computed on the posts of the lattice within its range alone, which gives the bits of the whole lattice:
+//! with a short range, a look costs no more on a large land than on a small one.
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::arguments::AnalysisArguments;
+use crate::error::AnalysisError;
+use crate::land::Land;
+use crate::outcome::{
+    ClassLook, FeatureRole, Hatching, OutcomeFeature, OutcomeShape, PropertyValue, ValueClass,
+};
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::post_rect::PostRect;
+use sandtable_terrain::query::{Interpolation, ground_height};
+use sandtable_terrain::sight::Curvature;
+use sandtable_terrain::sight::line::SightEnd;
+use sandtable_terrain::sight::viewshed::{PostVisibility, Viewshed, ViewshedOptions, viewshed_until};
+use sandtable_terrain::stop_flag::StopFlag;
+
+/// Posts of ground that the viewsheds of an analysis may look at in all: some ten minutes on two cores.
+const MOST_LOOKS: f64 = 1e10;
+
+/// A place from which something looks.
+#[derive(Clone, Debug)]
+pub(crate) struct Lookout {
+    /// Its number, from 1.
+    pub number: usize,
+    /// Its position and the height of its eye.
+    pub end: SightEnd,
+    /// The height of the ground there, meters.
+    pub ground_m: f64,
+}
+
+/// What a lookout sees of the posts within its range.
+pub(crate) struct LookoutView {
+    /// The posts that were looked at, among those of the land.
+    pub held: PostRect,
+    /// Their visibility.
+    pub view: Viewshed,
+}
+
+impl Lookout {
+    /// The lookouts at the points of a parameter, all `above_m` above the ground.
+    ///
+    /// # Errors
+    /// [`AnalysisError::Place`] of the first point without ground.
+    pub fn all(
+        land: &Land,
+        arguments: &AnalysisArguments,
+        key: &'static str,
+        above_m: f64,
+    ) -> Result<Vec<Self>, AnalysisError> {
+        let lookout = |(index, &at): (usize, &DVec2)| {
+            let ground_m = height_under(&land.ground, key, at)?;
+            Ok(Self { number: index + 1, end: SightEnd { at, above_m }, ground_m })
+        };
+        arguments.points(key).iter().enumerate().map(lookout).collect()
+    }
+
+    /// Its feature, with its number as its name and these properties after the height of its ground.
+    pub fn feature(&self, properties: Vec<(&'static str, PropertyValue)>) -> OutcomeFeature {
+        let ground = ("ground_m", PropertyValue::Number(self.ground_m));
+        OutcomeFeature {
+            shape: OutcomeShape::Point(self.end.at),
+            name: self.number.to_string(),
+            role: FeatureRole::Post,
+            properties: std::iter::once(ground).chain(properties).collect(),
+        }
+    }
+}
+
+/// The height of the ground at a position of a parameter, meters.
+///
+/// # Errors
+/// [`AnalysisError::Place`] where there is none.
+pub(crate) fn height_under(ground: &Lattice, key: &'static str, at: DVec2) -> Result<f64, AnalysisError> {
+    let height_m = ground_height(ground, Interpolation::Planar, at).height_m();
+    height_m.ok_or_else(|| AnalysisError::Place { key, at, problem: missing_ground(ground, at) })
+}
+
+fn missing_ground(ground: &Lattice, at: DVec2) -> &'static str {
+    if ground.map_extent().contains(at) { "there is no elevation there" } else { "lies off the land" }
+}
+
+/// The Earth's shape, with the refraction of the parameter of that name.
+pub(crate) fn curvature(arguments: &AnalysisArguments) -> Curvature {
+    let usual = Curvature::default();
+    Curvature { refraction: arguments.number_if("refraction").unwrap_or(usual.refraction), ..usual }
+}
+
+/// The range of the parameter of that name in meters; infinite where none is stated.
+pub(crate) fn range_m(arguments: &AnalysisArguments) -> f64 {
+    arguments.number_if("range").unwrap_or(f64::INFINITY)
+}
+
+/// The number of posts of the land that lie in the square around a range at most.
+pub(crate) fn posts_within(ground: &Lattice, range_m: f64) -> f64 {
+    let along = |cell_m: f64, posts: u32| (2.0 * range_m / cell_m + 4.0).min(f64::from(posts));
+    along(ground.cell().x, ground.columns()) * along(ground.cell().y, ground.rows())
+}
+
+/// Checks that so many looks over as many posts of ground each end in bounded time.
+///
+/// # Errors
+/// They do not; the message names `key`.
+pub(crate) fn check_looks(key: &'static str, looks: f64, posts_each: f64) -> Result<(), AnalysisError> {
+    check_work(key, looks, posts_each, MOST_LOOKS)
+}
+
+/// [`check_looks`] with another limit.
+///
+/// # Errors
+/// There are more than `most`.
+pub(crate) fn check_work(
+    key: &'static str,
+    looks: f64,
+    posts_each: f64,
+    most: f64,
+) -> Result<(), AnalysisError> {
+    if looks * posts_each <= most {
+        return Ok(());
+    }
+    let problem = format!(
+        "asks for {looks} looks over {posts_each:.0} posts of ground each, more than {most:e} in all; state fewer places, a \
+         shorter range or a smaller extent"
+    );
+    Err(AnalysisError::argument(key, problem))
+}
+
+/// What is seen of the land; see [`viewshed_until`].
+///
+/// # Errors
+/// The observer has no ground, or the analysis was stopped.
+pub(crate) fn look(
+    ground: &Lattice,
+    key: &'static str,
+    options: &ViewshedOptions,
+    stop: &StopFlag,
+) -> Result<LookoutView, AnalysisError> {
+    let at = options.observer.at;
+    let place = |_| AnalysisError::Place { key, at, problem: missing_ground(ground, at) };
+    let all = PostRect::all(ground);
+    let held = posts_around(ground, at, options.range_m);
+    let view = if held == all {
+        viewshed_until(ground, options, stop)
+    } else {
+        viewshed_until(&ground.holding_only(held), options, stop)
+    };
+    let view = view.map_err(place)?.ok_or(AnalysisError::Stopped)?;
+    Ok(LookoutView { held, view })
+}
+
+/// The posts within a range and those of a cell around them.
+fn posts_around(ground: &Lattice, at: DVec2, range_m: f64) -> PostRect {
+    let reach = DVec2::splat(range_m) / ground.cell() + 2.0;
+    let at = ground.grid_from_map(at);
+    let around = PostRect::between(ground, (at - reach).floor(), (at + reach).ceil());
+    around.unwrap_or_else(|| PostRect::all(ground))
+}
+
+impl LookoutView {
+    /// Merges the view into values of all posts of the land, `columns` a row: `merge` changes a value by what is seen there.
+    pub fn merge_into<T: Send>(
+        &self,
+        values: &mut [T],
+        columns: usize,
+        merge: impl Fn(&mut T, PostVisibility) + Sync,
+    ) {
+        let (first, width) = (self.held.first, self.held.width());
+        let rows = values.par_chunks_mut(columns).skip(first.row as usize).take(self.held.height());
+        rows.zip(self.view.posts.par_chunks(width)).for_each(|(values, posts)| {
+            let values = &mut values[first.column as usize..][..width];
+            values.iter_mut().zip(posts).for_each(|(value, &post)| merge(value, post));
+        });
+    }
+
+    /// The number of posts in sight, and of those that could be: within range and sector, with data.
+    pub fn seen_of(&self) -> (usize, usize) {
+        let counts = self.view.counts();
+        (counts.visible, counts.visible + counts.hidden)
+    }
+}
+
+/// A part of a whole in percent; 0 of nothing.
+pub(crate) fn percent(part: usize, whole: usize) -> f64 {
+    if whole == 0 { 0.0 } else { part as f64 / whole as f64 * 100.0 }
+}
+
+/// So many posts as an area in km².
+pub(crate) fn area_km2(ground: &Lattice, posts: usize) -> f64 {
+    posts as f64 * ground.cell_m2() / 1e6
+}
+
+/// Classes for the number of lookouts that see or hit a place: none, one, two, three, and more; as many as can occur.
+pub(crate) fn count_classes(lookouts: usize, none: &str) -> Vec<ValueClass> {
+    const LOOKS: [ClassLook; 5] = [
+        ClassLook { tint: [90, 90, 90, 110], hatching: Hatching::Single },
+        ClassLook { tint: [255, 237, 160, 110], hatching: Hatching::None },
+        ClassLook { tint: [173, 221, 142, 110], hatching: Hatching::None },
+        ClassLook { tint: [65, 171, 93, 110], hatching: Hatching::None },
+        ClassLook { tint: [0, 90, 50, 120], hatching: Hatching::None },
+    ];
+    let label = |count: usize| match count {
+        0 => none.to_owned(),
+        4 if lookouts > 4 => "4 or more".to_owned(),
+        count => count.to_string(),
+    };
+    let class = |(count, look)| ValueClass { from: count as f32, label: label(count), look };
+    LOOKS.into_iter().enumerate().take(lookouts.saturating_add(1)).map(class).collect()
+}

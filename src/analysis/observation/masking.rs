@@ -1,0 +1,292 @@
+//! Masking heights: how high above the ground a target must rise to be seen by radars.
+//!
+//! Where a viewshed shows the ground itself, the height is 0; elsewhere it is the rise of the target that clears the line of
+//! sight, by the same lines as everywhere.
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::arguments::AnalysisArguments;
+use crate::error::AnalysisError;
+use crate::land::Land;
+use crate::observation::lookout::{
+    Lookout, check_work, curvature, height_under, look, percent, posts_within, range_m,
+};
+use crate::outcome::{
+    ClassLook, Figure, Hatching, Outcome, OutcomeRaster, OutcomeTable, PostValues, PropertyValue,
+    TableColumn, ValueClass,
+};
+use sandtable_base::limits::memory::check_memory;
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::sight::Curvature;
+use sandtable_terrain::sight::ground::SightGround;
+use sandtable_terrain::sight::line::SightEnd;
+use sandtable_terrain::sight::rise::Raised;
+use sandtable_terrain::sight::viewshed::{PostVisibility, ViewshedOptions};
+use sandtable_terrain::stop_flag::StopFlag;
+
+/// Posts of ground that the radars of an analysis may look at in all: each may cost a line of sight of its own.
+const MOST_LINES: f64 = 1e9;
+
+/// A value and the visibility of each post, with what a viewshed needs while it is computed.
+const BYTES_PER_POST: u64 = 8;
+
+/// Heights above the ground at which the hidden share is a figure, meters.
+const LEVELS_M: [f32; 4] = [0.0, 50.0, 100.0, 300.0];
+
+/// What looks for targets.
+struct MaskingWatch<'a> {
+    ground: SightGround,
+    radars: &'a [Lookout],
+    curvature: Curvature,
+    range_m: f64,
+    /// Whether the nearest radar's sight alone counts.
+    is_nearest_alone: bool,
+}
+
+/// The height above the ground, meters, from which a target at each post is seen; no data beyond the range of all radars.
+///
+/// # Errors
+/// `radars` off the ground or too many, memory, and [`AnalysisError::Stopped`].
+pub(crate) fn masking(
+    land: &Land,
+    arguments: &AnalysisArguments,
+    stop: &StopFlag,
+) -> Result<Outcome, AnalysisError> {
+    let ground = &*land.ground;
+    let range_m = range_m(arguments);
+    let count = arguments.points("radars").len();
+    check_work("radars", count as f64, posts_within(ground, range_m), MOST_LINES)?;
+    let radars = Lookout::all(land, arguments, "radars", arguments.number("radar_height"))?;
+    let posts = ground.heights().len();
+    check_memory(posts as u64 * BYTES_PER_POST, "the masking heights", "state a smaller `extent`")?;
+    let watch = MaskingWatch {
+        ground: SightGround::new(land.ground.clone()),
+        radars: &radars,
+        curvature: curvature(arguments),
+        range_m,
+        is_nearest_alone: arguments.word("seen_by") == "nearest",
+    };
+    let mut values = vec![f32::NAN; posts];
+    let mut shares = Vec::with_capacity(count);
+    for index in 0..radars.len() {
+        shares.push(watch.merge(index, &mut values, stop)?);
+    }
+    let known = values.par_iter().filter(|value| !value.is_nan()).count();
+    let hidden = LEVELS_M.map(|level_m| Figure {
+        name: format!("hidden at {level_m} m above the ground"),
+        value: percent(values.par_iter().filter(|&&value| value > level_m).count(), known),
+        unit: "%",
+    });
+    let share = |share: f64| PropertyValue::Number(share);
+    let row = |(radar, &seen): (&Lookout, &f64)| {
+        vec![
+            PropertyValue::Whole(radar.number as i64),
+            PropertyValue::Number(radar.ground_m),
+            PropertyValue::Number(radar.ground_m + radar.end.above_m),
+            share(seen),
+        ]
+    };
+    let table = OutcomeTable {
+        title: "Radars".into(),
+        columns: vec![
+            TableColumn { name: "radar", unit: "", decimals: 0 },
+            TableColumn { name: "ground", unit: "m", decimals: 0 },
+            TableColumn { name: "antenna", unit: "m", decimals: 0 },
+            TableColumn { name: "ground in sight", unit: "%", decimals: 1 },
+        ],
+        rows: radars.iter().zip(&shares).map(row).collect(),
+    };
+    let feature =
+        |(radar, &seen): (&Lookout, &f64)| radar.feature(vec![("ground_in_sight_percent", share(seen))]);
+    Ok(Outcome {
+        features: radars.iter().zip(&shares).map(feature).collect(),
+        tables: vec![table],
+        figures: hidden.into(),
+        raster: Some(OutcomeRaster {
+            name: "masking height",
+            unit: "m",
+            values: PostValues::Numbers(values),
+            classes: classes(),
+        }),
+        ..Outcome::default()
+    })
+}
+
+impl MaskingWatch<'_> {
+    /// Merges a radar's masking heights into the values of all posts; the share of the ground that it sees, percent.
+    fn merge(&self, index: usize, values: &mut [f32], stop: &StopFlag) -> Result<f64, AnalysisError> {
+        let ground = &**self.ground.lattice();
+        let radar = &self.radars[index];
+        let options = ViewshedOptions {
+            range_m: self.range_m,
+            curvature: self.curvature,
+            ..ViewshedOptions::new(radar.end)
+        };
+        let look = look(ground, "radars", &options, stop)?;
+        let (first, width) = (look.held.first, look.held.width());
+        let rows = values.par_chunks_mut(ground.columns() as usize).enumerate();
+        let rows = rows.skip(first.row as usize).take(look.held.height());
+        rows.zip(look.view.posts.par_chunks(width)).for_each(|((row, values), posts)| {
+            if stop.is_stopped() {
+                return;
+            }
+            let values = &mut values[first.column as usize..][..width];
+            for ((column, value), &visibility) in (first.column..).zip(values).zip(posts) {
+                let post = Post { column, row: row as u32 };
+                let counts = matches!(visibility, PostVisibility::Visible | PostVisibility::Hidden)
+                    && *value != 0.0
+                    && (!self.is_nearest_alone || self.nearest(ground.map_position(post)) == index);
+                if counts {
+                    let height_m = match visibility {
+                        PostVisibility::Visible => 0.0,
+                        _ => self.rise_m(radar, post),
+                    };
+                    // The lesser number; no data gives way.
+                    *value = value.min(height_m);
+                }
+            }
+        });
+        if stop.is_stopped() {
+            return Err(AnalysisError::Stopped);
+        }
+        let (seen, of) = look.seen_of();
+        Ok(percent(seen, of))
+    }
+
+    /// The radar nearest to a place, of equal ones the first.
+    fn nearest(&self, at: DVec2) -> usize {
+        let distance = |&index: &usize| self.radars[index].end.at.distance_squared(at);
+        (0..self.radars.len()).min_by(|one, other| distance(one).total_cmp(&distance(other))).unwrap_or(0)
+    }
+
+    /// The rise of a target on a hidden post that lets the radar see it, meters; NaN where the post has no ground around it.
+    fn rise_m(&self, radar: &Lookout, post: Post) -> f32 {
+        let Some(at) = grounded(self.ground.lattice(), post) else { return f32::NAN };
+        let target = SightEnd { at, above_m: 0.0 };
+        match self.ground.required_rise(radar.end, target, self.curvature, Raised::Target) {
+            Ok(rise) => rise.map_or(0.0, |rise| rise.rise_m.max(0.0)) as f32,
+            Err(_) => f32::NAN,
+        }
+    }
+}
+
+/// The map coordinates of a post where there is ground: rounding may put them beside a border post or a hole's rim, and then
+/// a millionth of a cell off is as good.
+fn grounded(ground: &Lattice, post: Post) -> Option<DVec2> {
+    const ASIDE: [DVec2; 5] = [
+        DVec2::ZERO,
+        DVec2::splat(1e-6),
+        DVec2::splat(-1e-6),
+        DVec2::new(1e-6, -1e-6),
+        DVec2::new(-1e-6, 1e-6),
+    ];
+    let at = ground.map_position(post);
+    let mut places = ASIDE.iter().map(|aside| at + *aside * ground.cell());
+    places.find(|&at| height_under(ground, "radars", at).is_ok())
+}
+
+fn classes() -> Vec<ValueClass> {
+    let rows = [
+        (0.0, "up to 10 m", [0, 0, 0, 0], Hatching::None),
+        (10.0, "10–30 m", [255, 255, 178, 90], Hatching::None),
+        (30.0, "30–100 m", [254, 204, 92, 110], Hatching::Dots),
+        (100.0, "100–300 m", [253, 141, 60, 120], Hatching::Single),
+        (300.0, "over 300 m", [189, 0, 38, 130], Hatching::Crossed),
+    ];
+    let class = |(from, label, tint, hatching): (f32, &str, [u8; 4], Hatching)| ValueClass {
+        from,
+        label: label.to_owned(),
+        look: ClassLook { tint, hatching },
+    };
+    rows.map(class).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arguments::ArgumentValue;
+    use crate::observation::test_land::{at, land, on_pool, ripples, run_kind};
+    use sandtable_terrain::sight::line::{Sight, line_of_sight};
+
+    const CURVATURE: Curvature = Curvature { radius_m: 6_371_008.8, refraction: 0.25 };
+
+    fn arguments(places: &[(f64, f64)], height_m: f64, seen_by: &str) -> Vec<(&'static str, ArgumentValue)> {
+        let radars = places.iter().map(|&(column, row)| at(column, row)).collect();
+        vec![
+            ("radars", ArgumentValue::Points(radars)),
+            ("radar_height", ArgumentValue::Number(height_m)),
+            ("range", ArgumentValue::Number(140.0)),
+            ("seen_by", ArgumentValue::Word(seen_by.into())),
+        ]
+    }
+
+    fn value(land: &Land, outcome: &Outcome, (column, row): (u32, u32)) -> f32 {
+        let raster = outcome.raster.as_ref().expect("a raster");
+        raster.values.value(land.ground.index(Post { column, row }))
+    }
+
+    #[test]
+    fn behind_a_wall_the_masking_height_is_that_of_the_line_over_its_top() {
+        let land = land(21, |column, _| if column == 5 { 10.0 } else { 0.0 });
+        let outcome = run_kind("masking", &land, arguments(&[(0.0, 10.0)], 20.0, "any")).expect("sound");
+        for (column, expected) in [(2, 0.0), (5, 0.0), (7, 6.0), (9, 2.0), (12, 0.0)] {
+            let height_m = value(&land, &outcome, (column, 10));
+            assert!((height_m - expected).abs() < 1e-3, "{column}: {height_m}");
+        }
+        assert!(value(&land, &outcome, (15, 10)).is_nan(), "beyond the range");
+    }
+
+    #[test]
+    fn a_target_is_seen_just_above_the_masking_height_and_hidden_just_below() {
+        let land = land(20, ripples);
+        let places = [(2.0, 3.0), (15.4, 12.2)];
+        let [any, nearest] = ["any", "nearest"]
+            .map(|seen_by| run_kind("masking", &land, arguments(&places, 2.0, seen_by)).expect("sound"));
+        let radars = places.map(|(column, row)| SightEnd { at: at(column, row), above_m: 2.0 });
+        let is_seen = |radar: SightEnd, post: Post, above_m: f64| {
+            let target = SightEnd { at: land.ground.map_position(post), above_m };
+            radar.at.distance(target.at) <= 140.0
+                && line_of_sight(&land.ground, radar, target, CURVATURE) == Sight::Clear
+        };
+        let mut hidden = 0;
+        for post in land.ground.posts().filter(|&post| !land.ground.height(post).is_nan()) {
+            let at = land.ground.map_position(post);
+            let near = usize::from(radars[1].at.distance(at) < radars[0].at.distance(at));
+            for (outcome, radars) in [(&any, &radars[..]), (&nearest, &radars[near..=near])] {
+                let height_m = f64::from(value(&land, outcome, (post.column, post.row)));
+                if height_m.is_nan() {
+                    assert!(radars.iter().all(|radar| radar.at.distance(at) > 140.0), "{post:?}");
+                    continue;
+                }
+                let seen = |above_m| radars.iter().any(|&radar| is_seen(radar, post, above_m));
+                assert!(seen(height_m + 1e-4), "{post:?}: {height_m}");
+                hidden += usize::from(height_m > 0.0);
+                assert!(height_m == 0.0 || !seen(height_m - 1e-4), "{post:?}: {height_m}");
+            }
+        }
+        assert!(hidden > 200, "{hidden}");
+    }
+
+    #[test]
+    fn any_number_of_threads_gives_the_same_bits_and_no_post_with_ground_is_left_out() {
+        let land = land(20, ripples);
+        let mut arguments = arguments(&[(2.0, 3.0), (15.4, 12.2)], 2.0, "any");
+        arguments.retain(|(name, _)| *name != "range");
+        let run = || run_kind("masking", &land, arguments.clone()).expect("sound");
+        let text = |threads| on_pool(threads, || format!("{:?}", run()));
+        assert_eq!(text(1), text(4));
+        let outcome = run();
+        for post in land.ground.posts() {
+            let height_m = value(&land, &outcome, (post.column, post.row));
+            assert_eq!(height_m.is_nan(), land.ground.height(post).is_nan(), "{post:?}");
+        }
+    }
+
+    #[test]
+    fn radars_off_the_land_are_an_error_that_names_the_key() {
+        let land = land(20, ripples);
+        let error = run_kind("masking", &land, arguments(&[(2.0, 3.0), (10.0, 17.0)], 2.0, "any"));
+        assert_eq!(error.err().and_then(|error| error.key()), Some("radars"));
+    }
+}

@@ -1,0 +1,301 @@
+//! Viewsheds of many posts: how many see each place, which one sees it first, and what none of them sees.
+
+use crate::arguments::AnalysisArguments;
+use crate::error::AnalysisError;
+use crate::land::Land;
+use crate::observation::lookout::{
+    Lookout, area_km2, check_looks, count_classes, curvature, look, percent, posts_within, range_m,
+};
+use crate::outcome::{
+    ClassLook, Figure, Hatching, Outcome, OutcomeRaster, OutcomeTable, PostValues, PropertyValue,
+    TableColumn, ValueClass,
+};
+use rayon::prelude::*;
+use sandtable_base::limits::memory::check_memory;
+use sandtable_terrain::sight::viewshed::{PostVisibility, ViewshedOptions};
+use sandtable_terrain::stop_flag::StopFlag;
+
+/// A value and the visibility of each post, with what a viewshed needs while it is computed.
+const BYTES_PER_POST: u64 = 8;
+
+/// What the values of viewsheds are.
+#[derive(Clone, Copy, PartialEq)]
+enum ViewshedShow {
+    Count,
+    First,
+    Dead,
+}
+
+/// What posts see together, a value a post; no data where there is no ground and beyond the range of all.
+///
+/// # Errors
+/// `posts` off the ground or too many, memory, and [`AnalysisError::Stopped`].
+pub(crate) fn viewsheds(
+    land: &Land,
+    arguments: &AnalysisArguments,
+    stop: &StopFlag,
+) -> Result<Outcome, AnalysisError> {
+    let ground = &*land.ground;
+    let show = match arguments.word("show").as_str() {
+        "first" => ViewshedShow::First,
+        "dead" => ViewshedShow::Dead,
+        _ => ViewshedShow::Count,
+    };
+    let range_m = range_m(arguments);
+    check_looks("posts", arguments.points("posts").len() as f64, posts_within(ground, range_m))?;
+    let lookouts = Lookout::all(land, arguments, "posts", arguments.number("observer_height"))?;
+    let posts = ground.heights().len();
+    check_memory(posts as u64 * BYTES_PER_POST, "the viewsheds", "state a smaller `extent`")?;
+    let mut values = vec![f32::NAN; posts];
+    let mut shares = Vec::with_capacity(lookouts.len());
+    for lookout in &lookouts {
+        let options = ViewshedOptions {
+            target_above_m: arguments.number("target_height"),
+            range_m,
+            curvature: curvature(arguments),
+            ..ViewshedOptions::new(lookout.end)
+        };
+        let view = look(ground, "posts", &options, stop)?;
+        let number = lookout.number as f32;
+        view.merge_into(&mut values, ground.columns() as usize, |value, post| {
+            *value = merged(show, number, *value, post);
+        });
+        shares.push(view.seen_of());
+    }
+    let seen = values
+        .par_iter()
+        .filter(|&&value| if show == ViewshedShow::Dead { value == 0.0 } else { value > 0.0 });
+    let (seen, all) = (seen.count(), values.par_iter().filter(|value| !value.is_nan()).count());
+    let mut outcome = Outcome {
+        features: lookouts
+            .iter()
+            .zip(&shares)
+            .map(|(lookout, &share)| {
+                let (seen, of) = share;
+                lookout.feature(vec![
+                    ("seen_km2", PropertyValue::Number(area_km2(ground, seen))),
+                    ("share_percent", PropertyValue::Number(percent(seen, of))),
+                ])
+            })
+            .collect(),
+        tables: vec![table(land, &lookouts, &shares)],
+        figures: shares
+            .iter()
+            .zip(&lookouts)
+            .map(|(&(seen, of), lookout)| Figure {
+                name: format!("seen from post {}", lookout.number),
+                value: percent(seen, of),
+                unit: "%",
+            })
+            .collect(),
+        ..Outcome::default()
+    };
+    outcome.figures.extend([
+        Figure { name: "seen from any post".into(), value: percent(seen, all), unit: "%" },
+        Figure { name: "dead ground".into(), value: percent(all - seen, all), unit: "%" },
+        Figure { name: "dead ground, area".into(), value: area_km2(ground, all - seen), unit: "km²" },
+    ]);
+    outcome.raster = Some(raster(show, values, lookouts.len()));
+    Ok(outcome)
+}
+
+/// A value after one more post looked at its place.
+#[inline]
+fn merged(show: ViewshedShow, number: f32, value: f32, post: PostVisibility) -> f32 {
+    match (post, show) {
+        (PostVisibility::Beyond | PostVisibility::NoData, _) => value,
+        (PostVisibility::Hidden, ViewshedShow::Dead) if value.is_nan() => 1.0,
+        (PostVisibility::Hidden, _) if value.is_nan() => 0.0,
+        (PostVisibility::Hidden, _) => value,
+        (PostVisibility::Visible, ViewshedShow::Dead) => 0.0,
+        (PostVisibility::Visible, ViewshedShow::First) if value > 0.0 => value,
+        (PostVisibility::Visible, ViewshedShow::First) => number,
+        (PostVisibility::Visible, ViewshedShow::Count) => {
+            if value.is_nan() {
+                1.0
+            } else {
+                value + 1.0
+            }
+        }
+    }
+}
+
+fn raster(show: ViewshedShow, values: Vec<f32>, lookouts: usize) -> OutcomeRaster {
+    match show {
+        ViewshedShow::Count => OutcomeRaster {
+            name: "posts in sight",
+            unit: "",
+            values: PostValues::Numbers(values),
+            classes: count_classes(lookouts, "dead ground"),
+        },
+        ViewshedShow::First => OutcomeRaster {
+            name: "first post in sight",
+            unit: "",
+            values: PostValues::Numbers(values),
+            classes: first_classes(lookouts),
+        },
+        ViewshedShow::Dead => {
+            let code = |value: &f32| if value.is_nan() { PostValues::NO_CODE } else { *value as u8 };
+            let look = ClassLook { tint: [90, 90, 90, 110], hatching: Hatching::Single };
+            let classes = vec![
+                ValueClass {
+                    from: 0.0,
+                    label: "in sight".into(),
+                    look: ClassLook { tint: [0; 4], hatching: Hatching::None },
+                },
+                ValueClass { from: 1.0, label: "dead ground".into(), look },
+            ];
+            let values = PostValues::Codes(values.par_iter().map(code).collect());
+            OutcomeRaster { name: "dead ground", unit: "", values, classes }
+        }
+    }
+}
+
+/// A class for each post; none, and thus a ramp, for more posts than tints can tell apart.
+fn first_classes(lookouts: usize) -> Vec<ValueClass> {
+    const TINTS: [[u8; 4]; 8] = [
+        [31, 120, 180, 110],
+        [51, 160, 44, 110],
+        [255, 127, 0, 110],
+        [106, 61, 154, 110],
+        [227, 26, 28, 110],
+        [166, 206, 227, 110],
+        [178, 223, 138, 110],
+        [253, 191, 111, 110],
+    ];
+    if lookouts > TINTS.len() {
+        return Vec::new();
+    }
+    let dead = ClassLook { tint: [90, 90, 90, 110], hatching: Hatching::Single };
+    let none = ValueClass { from: 0.0, label: "dead ground".into(), look: dead };
+    let first = TINTS.into_iter().take(lookouts).enumerate().map(|(index, tint)| ValueClass {
+        from: (index + 1) as f32,
+        label: format!("post {}", index + 1),
+        look: ClassLook { tint, hatching: Hatching::None },
+    });
+    std::iter::once(none).chain(first).collect()
+}
+
+fn table(land: &Land, lookouts: &[Lookout], shares: &[(usize, usize)]) -> OutcomeTable {
+    let row = |(lookout, &(seen, of)): (&Lookout, &(usize, usize))| {
+        vec![
+            PropertyValue::Whole(lookout.number as i64),
+            PropertyValue::Number(lookout.ground_m),
+            PropertyValue::Number(area_km2(&land.ground, seen)),
+            PropertyValue::Number(percent(seen, of)),
+        ]
+    };
+    OutcomeTable {
+        title: "Posts".into(),
+        columns: vec![
+            TableColumn { name: "post", unit: "", decimals: 0 },
+            TableColumn { name: "ground", unit: "m", decimals: 0 },
+            TableColumn { name: "in sight", unit: "km²", decimals: 2 },
+            TableColumn { name: "share", unit: "%", decimals: 1 },
+        ],
+        rows: lookouts.iter().zip(shares).map(row).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+
+    use super::*;
+    use crate::arguments::ArgumentValue;
+    use crate::observation::test_land::{at, land, on_pool, ripples, run_kind};
+    use sandtable_terrain::sight::Curvature;
+    use sandtable_terrain::sight::line::{Sight, SightEnd, line_of_sight};
+
+    fn values(outcome: &Outcome) -> Vec<f32> {
+        let values = &outcome.raster.as_ref().expect("a raster").values;
+        (0..values.len()).map(|index| values.value(index)).collect()
+    }
+
+    fn two_posts() -> Vec<(&'static str, ArgumentValue)> {
+        vec![
+            ("posts", ArgumentValue::Points(vec![at(3.0, 4.0), at(13.3, 9.7)])),
+            ("observer_height", ArgumentValue::Number(9.0)),
+            ("range", ArgumentValue::Number(120.0)),
+        ]
+    }
+
+    #[test]
+    fn counts_firsts_and_dead_ground_are_those_of_one_line_of_sight_for_each_post_of_the_ground() {
+        let land = land(20, ripples);
+        let show = |word: &str| {
+            let mut arguments = two_posts();
+            arguments.push(("show", ArgumentValue::Word(word.into())));
+            values(&run_kind("viewsheds", &land, arguments).expect("sound"))
+        };
+        let (count, first, dead) = (show("count"), show("first"), show("dead"));
+        let mut kinds = [0; 4];
+        for post in land.ground.posts() {
+            let index = land.ground.index(post);
+            let target = land.ground.map_position(post);
+            let sees = [at(3.0, 4.0), at(13.3, 9.7)].map(|from| {
+                let ends = [(from, 9.0), (target, 0.0)].map(|(at, above_m)| SightEnd { at, above_m });
+                let sight = line_of_sight(&land.ground, ends[0], ends[1], Curvature::default());
+                (from.distance(target) <= 120.0).then_some(sight == Sight::Clear)
+            });
+            let expected = match sees {
+                _ if land.ground.height(post).is_nan() => [f32::NAN; 3],
+                [None, None] => [f32::NAN; 3],
+                [one, two] => {
+                    let (one, two) = (one == Some(true), two == Some(true));
+                    let count = f32::from(u8::from(one) + u8::from(two));
+                    kinds[usize::from(one) + 2 * usize::from(two)] += 1;
+                    [
+                        count,
+                        if one {
+                            1.0
+                        } else if two {
+                            2.0
+                        } else {
+                            0.0
+                        },
+                        f32::from(u8::from(count == 0.0)),
+                    ]
+                }
+            };
+            for (value, expected) in [count[index], first[index], dead[index]].into_iter().zip(expected) {
+                assert_eq!(value.to_bits(), expected.to_bits(), "{post:?}: {value} for {expected}");
+            }
+        }
+        assert!(kinds.iter().all(|&posts| posts > 4), "{kinds:?}");
+    }
+
+    #[test]
+    fn a_wall_leaves_half_of_the_land_dead_to_a_post_before_it() {
+        let land = land(11, |column, _| if column == 5 { 100.0 } else { 0.0 });
+        let outcome =
+            run_kind("viewsheds", &land, vec![("posts", ArgumentValue::Points(vec![at(0.0, 5.0)]))])
+                .expect("sound");
+        let dead = outcome.figures.iter().find(|figure| figure.name == "dead ground").expect("a figure");
+        assert_eq!(dead.value, 5.0 / 11.0 * 100.0, "5 columns of 11 lie behind it");
+        let area = outcome.figures.iter().find(|figure| figure.unit == "km²").expect("a figure");
+        assert_eq!(area.value, 55.0 * 100.0 / 1e6);
+    }
+
+    #[test]
+    fn any_number_of_threads_gives_the_same_bits() {
+        let land = land(20, ripples);
+        let run =
+            |threads| on_pool(threads, || values(&run_kind("viewsheds", &land, two_posts()).expect("sound")));
+        let bits = |values: Vec<f32>| values.into_iter().map(f32::to_bits).collect::<Vec<_>>();
+        assert_eq!(bits(run(1)), bits(run(5)));
+    }
+
+    #[test]
+    fn posts_off_the_land_over_a_hole_or_too_many_are_errors_that_name_the_key() {
+        let land = land(20, ripples);
+        for place in [at(-1.0, 3.0), at(10.0, 17.5), DVec2::splat(f64::NAN)] {
+            let error = run_kind("viewsheds", &land, vec![("posts", ArgumentValue::Points(vec![place]))]);
+            assert_eq!(error.err().and_then(|error| error.key()), Some("posts"), "{place}");
+        }
+        let error = check_looks("posts", 601.0, posts_within(&land.ground, f64::INFINITY) * 41_667.0);
+        let error = error.expect_err("1.0016e10 posts of ground");
+        assert!(error.to_string().contains("`posts` asks for 601 looks over 16666800 posts"), "{error}");
+        assert_eq!(check_looks("posts", 599.0, 16_666_800.0), Ok(()));
+    }
+}

@@ -1,0 +1,162 @@
+//! Values of posts from the heights of their 3 × 3 windows, row by row.
+//!
+//! ```text
+//!   w[6] w[7] w[8]   north
+//!   w[3] w[4] w[5]
+//!   w[0] w[1] w[2]   south
+//! ```
+//!
+//! A post at the border, or with one of the nine heights missing, has no data, as `gdaldem` leaves it without
+//! `-compute_edges`. The loop over a row is written for the compiler to vectorize.
+
+use rayon::prelude::*;
+
+use crate::error::AnalysisError;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::stop_flag::StopFlag;
+
+/// The heights of a window, row by row from the south-west, meters.
+pub(super) type WindowHeights = [f32; 9];
+
+/// How slopes follow from a window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum GradientMethod {
+    /// From eight neighbors with weights 1-2-1 (Horn 1981).
+    Horn,
+    /// From four neighbors (Zevenbergen and Thorne 1987).
+    ZevenbergenThorne,
+}
+
+impl GradientMethod {
+    /// The method of the parameter `method`.
+    pub(super) fn of(word: &str) -> Self {
+        if word == "zevenbergen-thorne" { Self::ZevenbergenThorne } else { Self::Horn }
+    }
+}
+
+/// The gradient of windows on a lattice.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WindowGradient {
+    method: GradientMethod,
+    per_east: f32,
+    per_north: f32,
+}
+
+impl WindowGradient {
+    /// For the windows of a lattice.
+    pub(super) fn new(lattice: &Lattice, method: GradientMethod) -> Self {
+        let cells = if method == GradientMethod::Horn { 8.0 } else { 2.0 };
+        let cell = lattice.cell() * cells;
+        Self { method, per_east: (1.0 / cell.x) as f32, per_north: (1.0 / cell.y) as f32 }
+    }
+
+    /// The rise per meter eastward and northward.
+    #[inline(always)]
+    pub(super) fn of(&self, w: &WindowHeights) -> [f32; 2] {
+        let [east, north] = match self.method {
+            GradientMethod::Horn => [
+                (w[2] - w[0]) + 2.0 * (w[5] - w[3]) + (w[8] - w[6]),
+                (w[6] - w[0]) + 2.0 * (w[7] - w[1]) + (w[8] - w[2]),
+            ],
+            GradientMethod::ZevenbergenThorne => [w[5] - w[3], w[7] - w[1]],
+        };
+        [east * self.per_east, north * self.per_north]
+    }
+}
+
+/// The value of each post that has a whole window; NaN for the others.
+///
+/// # Errors
+/// [`AnalysisError::Stopped`].
+pub(super) fn by_window(
+    lattice: &Lattice,
+    stop: &StopFlag,
+    value: impl Fn(&WindowHeights) -> f32 + Sync,
+) -> Result<Vec<f32>, AnalysisError> {
+    let (columns, rows) = (lattice.columns() as usize, lattice.rows() as usize);
+    let heights = lattice.heights();
+    let mut values = vec![f32::NAN; heights.len()];
+    values.par_chunks_mut(columns).enumerate().for_each(|(row, values)| {
+        if row == 0 || row + 1 >= rows || stop.is_stopped() {
+            return;
+        }
+        let line = |row: usize| heights[row * columns..][..columns].windows(3);
+        let windows = line(row - 1).zip(line(row)).zip(line(row + 1));
+        for (value_out, ((south, own), north)) in values[1..].iter_mut().zip(windows) {
+            let window = [south[0], south[1], south[2], own[0], own[1], own[2], north[0], north[1], north[2]];
+            // Heights are finite or NaN: 0, or NaN where one is missing.
+            let lack: f32 = window.iter().map(|height| height * 0.0).sum();
+            *value_out = value(&window) + lack;
+        }
+    });
+    if stop.is_stopped() { Err(AnalysisError::Stopped) } else { Ok(values) }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use glam::DVec2;
+
+    use super::*;
+    use crate::arguments::{AnalysisArguments, ArgumentValue};
+    use crate::land::Land;
+    use crate::outcome::Outcome;
+    use sandtable_geom::crs::Crs;
+    use sandtable_terrain::lattice::Post;
+
+    /// Bare land with posts `cell` meters apart.
+    pub(in crate::surface) fn land(cell: DVec2, columns: u32, heights: Vec<f32>) -> Land {
+        let lattice =
+            Lattice::part((DVec2::new(1000.0, 2000.0), cell), Post { column: 0, row: 0 }, columns, heights);
+        Land::bare(lattice.expect("a lattice").into(), Crs::local())
+    }
+
+    /// The outcome of a kind with words and numbers stated.
+    pub(in crate::surface) fn outcome(
+        land: &Land,
+        kind: &str,
+        words: &[(&str, &str)],
+        numbers: &[(&str, f64)],
+    ) -> Result<Outcome, AnalysisError> {
+        let kind = sandtable_catalog::kind(kind).expect("a kind");
+        let mut arguments = AnalysisArguments::new(kind);
+        for &(name, word) in words {
+            arguments = arguments.with(name, ArgumentValue::Word(word.to_owned()));
+        }
+        for &(name, number) in numbers {
+            arguments = arguments.with(name, ArgumentValue::Number(number));
+        }
+        crate::run::run(land, &arguments, &StopFlag::default())
+    }
+
+    /// The values of a kind's raster.
+    pub(in crate::surface) fn values(
+        land: &Land,
+        kind: &str,
+        words: &[(&str, &str)],
+        numbers: &[(&str, f64)],
+    ) -> Vec<f32> {
+        let raster = outcome(land, kind, words, numbers).expect("an outcome").raster.expect("a raster");
+        (0..raster.values.len()).map(|index| raster.values.value(index)).collect()
+    }
+
+    #[test]
+    fn posts_at_the_border_and_around_a_hole_have_no_data() {
+        let mut heights = vec![3.0; 49];
+        heights[16] = f32::NAN;
+        let land = land(DVec2::ONE, 7, heights);
+        let sums = by_window(&land.ground, &StopFlag::default(), |window| window.iter().sum());
+        let sums = sums.expect("not stopped");
+        let holds: Vec<usize> = (0..49).filter(|&index| !sums[index].is_nan()).collect();
+        // Of the inner 5 × 5 those beyond column 3 or row 3.
+        assert_eq!(holds, [11, 12, 18, 19, 25, 26, 29, 30, 31, 32, 33, 36, 37, 38, 39, 40]);
+        assert!(holds.iter().all(|&index| sums[index] == 27.0));
+    }
+
+    #[test]
+    fn lattices_of_two_rows_or_columns_have_no_data_at_all() {
+        for columns in [2, 6] {
+            let land = land(DVec2::ONE, columns, vec![1.0; 12]);
+            assert!(values(&land, "slope", &[], &[]).iter().all(|value| value.is_nan()));
+        }
+    }
+}
