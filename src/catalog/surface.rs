@@ -159,13 +159,20 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
                 ParameterDefault::Value("1"),
                 "Which slope of a line of sight still counts as level.",
             ),
+            AnalysisParameter::word(
+                "comparison",
+                &["signed", "magnitude"],
+                "signed",
+                "How rise and fall along a line of sight are compared: `signed`, so that evenly sloping ground is a slope, \
+                 or by `magnitude` as r.geomorphon does, where a line of even slope counts as level.",
+            ),
         ],
         yields: AnalysisYield::Raster,
         reach: AnalysisReach::PostsBy("radius"),
         layers: &[],
         source: "Jasiewicz and Stepinski 2013, as r.geomorphon",
         limits: &[
-            "Forms wider than the radius are not seen, and the land ends at its border.",
+            "Forms wider than the radius are not seen, and sight ends at the border.",
             "Posts at the border have no data.",
         ],
     },

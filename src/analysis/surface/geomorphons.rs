@@ -4,6 +4,8 @@
 //! higher where the rise is steeper than the fall, lower where the fall is steeper, and level where both are within the
 //! flatness or equal. The numbers of lower and higher directions give one of ten forms.
 //!
+//! Slopes along a direction are compared per step, not per meter: equal slopes then are equal to the last bit.
+//!
 //! A row is done at once: for each step of each direction, one pass over the row that the compiler can vectorize.
 
 use rayon::prelude::*;
@@ -54,7 +56,7 @@ const FORMS: [[u8; 9]; 9] = {
 /// height. A direction whose first post has no data is level; other posts without data along it are passed over.
 ///
 /// # Errors
-/// [`AnalysisError::Argument`] where `radius` or `skip` is not whole, or `skip` is not below `radius`.
+/// [`AnalysisError::Argument`] where `radius` or `skip` is not whole, or `skip` leaves nothing of `radius`.
 pub(crate) fn geomorphons(
     land: &Land,
     arguments: &AnalysisArguments,
@@ -66,12 +68,14 @@ pub(crate) fn geomorphons(
         if number.fract() == 0.0 { Ok(number as usize) } else { Err(AnalysisError::argument(key, problem())) }
     };
     let (radius, skip) = (posts("radius")?, posts("skip")?);
-    if skip >= radius {
+    if skip + 1 >= radius {
         let problem = format!("is {skip}, which leaves nothing of a `radius` of {radius} posts; state less");
         return Err(AnalysisError::argument("skip", problem));
     }
     let flatness = libm::tan(arguments.number("flatness").to_radians());
-    let sights = FormSights::new(&land.ground, radius, skip, flatness);
+    let is_magnitude = arguments.word("comparison") == "magnitude";
+    let comparison = if is_magnitude { SightComparison::Magnitude } else { SightComparison::Signed };
+    let sights = FormSights::new(&land.ground, radius, skip, flatness, comparison);
     let columns = sights.columns as usize;
     let mut codes = vec![PostValues::NO_CODE; land.ground.heights().len()];
     codes.par_chunks_mut(columns).enumerate().for_each_init(
@@ -96,9 +100,30 @@ struct FormSights<'a> {
     columns: isize,
     rows: isize,
     skip: isize,
-    flatness: f64,
-    /// For each direction, the distances of its steps in meters, from the step after `skip`.
-    distances_m: [Vec<f64>; 8],
+    comparison: SightComparison,
+    lines: [FormLineOfSight; 8],
+}
+
+/// How the steepest rise and the steepest fall along a direction are compared.
+#[derive(Clone, Copy)]
+enum SightComparison {
+    /// Without their signs, as `r.geomorphon` does: a direction of one even slope has both equal, and is level.
+    Magnitude,
+    /// With them, as the paper does: what rises evenly is higher, what falls evenly is lower.
+    Signed,
+}
+
+/// A direction in which posts look.
+#[derive(Clone, Copy)]
+struct FormLineOfSight {
+    /// Columns of a step.
+    east: isize,
+    /// Rows of a step.
+    north: isize,
+    /// The number of steps after those that are skipped.
+    steps: usize,
+    /// The rise in meters per step that still is level.
+    flat: f64,
 }
 
 /// What a row of posts sees.
@@ -121,25 +146,30 @@ impl SightRow {
 }
 
 impl<'a> FormSights<'a> {
-    fn new(ground: &'a Lattice, radius: usize, skip: usize, flatness: f64) -> Self {
+    fn new(
+        ground: &'a Lattice,
+        radius: usize,
+        skip: usize,
+        flatness: f64,
+        comparison: SightComparison,
+    ) -> Self {
         let cell = ground.cell();
         let search_m = radius as f64 * cell.x.max(cell.y);
-        let distances_m = DIRECTIONS.map(|(east, north)| {
-            let far = |step: usize| {
-                let (east, north) = (east as f64 * step as f64 * cell.x, north as f64 * step as f64 * cell.y);
-                (east * east + north * north).sqrt()
-            };
-            // Steps beyond the lattice see nothing.
-            let most = ground.columns().max(ground.rows()) as usize;
-            (skip + 1..=most).map(far).take_while(|&distance| distance < search_m).collect()
+        // Steps beyond the lattice see nothing.
+        let most = radius.min(ground.columns().max(ground.rows()) as usize);
+        let lines = DIRECTIONS.map(|(east, north)| {
+            let (east_m, north_m) = (east as f64 * cell.x, north as f64 * cell.y);
+            let step_m = (east_m * east_m + north_m * north_m).sqrt();
+            let steps = (skip + 1..most).take_while(|&step| step as f64 * step_m < search_m).count();
+            FormLineOfSight { east, north, steps, flat: flatness * step_m }
         });
         Self {
             heights: ground.heights(),
             columns: ground.columns() as isize,
             rows: ground.rows() as isize,
             skip: skip as isize,
-            flatness,
-            distances_m,
+            comparison,
+            lines,
         }
     }
 
@@ -151,8 +181,8 @@ impl<'a> FormSights<'a> {
         }
         sight.lower.fill(0);
         sight.higher.fill(0);
-        for (direction, distances_m) in DIRECTIONS.iter().zip(&self.distances_m) {
-            self.look(row, *direction, distances_m, sight);
+        for line in &self.lines {
+            self.look(row, line, sight);
         }
         let own = self.line(row);
         for column in margin as usize..(self.columns - margin) as usize {
@@ -163,29 +193,34 @@ impl<'a> FormSights<'a> {
     }
 
     /// Looks along a direction from all posts of a row.
-    fn look(&self, row: isize, (east, north): (isize, isize), distances_m: &[f64], sight: &mut SightRow) {
+    fn look(&self, row: isize, line: &FormLineOfSight, sight: &mut SightRow) {
+        let &FormLineOfSight { east, north, flat, .. } = line;
         sight.rise.fill(f64::NEG_INFINITY);
         sight.fall.fill(f64::INFINITY);
         let own = self.line(row);
-        for (step, &distance_m) in (self.skip + 1..).zip(distances_m) {
+        for step in (self.skip + 1..).take(line.steps) {
             let other_row = row + north * step;
             if other_row < 0 || other_row >= self.rows || step >= self.columns && east != 0 {
                 break;
             }
             let (from, others) = self.shifted(other_row, east * step);
             let count = others.len();
+            let per_step = step as f64;
             let sights = sight.rise[from..][..count].iter_mut().zip(&mut sight.fall[from..][..count]);
             for ((rise, fall), (own, other)) in sights.zip(own[from..][..count].iter().zip(others)) {
-                let tangent = (f64::from(*other) - f64::from(*own)) / distance_m;
-                *rise = if tangent > *rise { tangent } else { *rise };
-                *fall = if tangent < *fall { tangent } else { *fall };
+                let slope = (f64::from(*other) - f64::from(*own)) / per_step;
+                *rise = if slope > *rise { slope } else { *rise };
+                *fall = if slope < *fall { slope } else { *fall };
             }
         }
         // A direction begins with the neighbor: without it there is no sight.
         let (from, neighbors) = self.shifted(row + north, east);
         for (column, neighbor) in (from..).zip(neighbors) {
-            let (rise, fall) = (sight.rise[column].abs(), sight.fall[column].abs());
-            let is_seen = !neighbor.is_nan() && (rise > self.flatness || fall > self.flatness);
+            let (rise, fall) = match self.comparison {
+                SightComparison::Magnitude => (sight.rise[column].abs(), sight.fall[column].abs()),
+                SightComparison::Signed => (sight.rise[column], -sight.fall[column]),
+            };
+            let is_seen = !neighbor.is_nan() && (rise > flat || fall > flat);
             sight.higher[column] += u8::from(is_seen && rise > fall);
             sight.lower[column] += u8::from(is_seen && fall > rise);
         }
@@ -226,4 +261,113 @@ fn classes() -> Vec<ValueClass> {
         look: ClassLook { tint, hatching },
     };
     (1..).zip(rows).map(class).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+
+    use super::super::window::tests::{land, outcome, values};
+    use super::*;
+
+    /// The form of the middle of 21 × 21 posts with heights by columns east and rows north of it.
+    fn middle(height: impl Fn(f32, f32) -> f32) -> f32 {
+        let height = |index: i32| height((index % 21 - 10) as f32, (index / 21 - 10) as f32);
+        let land = land(DVec2::splat(1.0), 21, (0..441).map(height).collect());
+        values(&land, "geomorphons", &[], &[("radius", 8.0), ("flatness", 2.0)])[220]
+    }
+
+    #[test]
+    fn plain_shapes_have_their_forms() {
+        assert_eq!(middle(|_, _| 5.0), f32::from(form::FL));
+        assert_eq!(middle(|x, y| -x.hypot(y)), f32::from(form::PK));
+        assert_eq!(middle(|x, y| x.hypot(y)), f32::from(form::PT));
+        assert_eq!(middle(|x, _| -x.abs()), f32::from(form::RI));
+        assert_eq!(middle(|x, _| x.abs()), f32::from(form::VL));
+        assert_eq!(middle(|x, _| x), f32::from(form::SL));
+        assert_eq!(middle(|x, _| x.min(0.0)), f32::from(form::SH));
+        assert_eq!(middle(|x, _| x.max(0.0)), f32::from(form::FS));
+        assert_eq!(middle(|x, y| y - 0.5 * x.abs()), f32::from(form::SP));
+        assert_eq!(middle(|x, y| y + 0.5 * x.abs()), f32::from(form::HL));
+    }
+
+    /// The form of a post by walking along each direction.
+    fn walked(
+        (heights, columns, is_first): (&[f32], i64, bool),
+        post: i64,
+        radius: i64,
+        skip: i64,
+        flatness_deg: f64,
+    ) -> f32 {
+        let rows = heights.len() as i64 / columns;
+        let (column, row) = (post % columns, post / columns);
+        let margin = skip + 1;
+        let own = f64::from(heights[post as usize]);
+        let is_border = column < margin || row < margin || column + margin >= columns || row + margin >= rows;
+        if is_border || own.is_nan() {
+            return f32::NAN;
+        }
+        let (mut lower, mut higher) = (0, 0);
+        for (east, north) in DIRECTIONS.map(|(east, north)| (east as i64, north as i64)) {
+            let far = ((east * east + north * north) as f64).sqrt();
+            let (mut zenith, mut nadir) = (-90f64, 90f64);
+            let mut step = skip + 1;
+            while far * (step as f64) < radius as f64 {
+                let (x, y) = (column + east * step, row + north * step);
+                if x < 0 || y < 0 || x >= columns || y >= rows {
+                    break;
+                }
+                let rise = f64::from(heights[(y * columns + x) as usize]) - own;
+                let angle = (rise / (step as f64)).atan2(far).to_degrees();
+                zenith = zenith.max(angle);
+                nadir = nadir.min(angle);
+                step += 1;
+            }
+            let neighbor = heights[((row + north) * columns + column + east) as usize];
+            let (up, down) = if is_first { (zenith.abs(), nadir.abs()) } else { (zenith, -nadir) };
+            if neighbor.is_nan() || zenith == -90.0 || up.max(down) <= flatness_deg {
+                continue;
+            }
+            lower += usize::from(down > up);
+            higher += usize::from(down < up);
+        }
+        f32::from(FORMS[lower][higher])
+    }
+
+    #[test]
+    fn forms_are_those_of_a_walk_along_each_direction() {
+        let mut heights: Vec<f32> = (0..31 * 23u32).map(|index| (index * 7919 % 101) as f32 * 0.1).collect();
+        (50..heights.len()).step_by(61).for_each(|index| heights[index] = f32::NAN);
+        let land = land(DVec2::ONE, 31, heights.clone());
+        for (radius, skip, flatness) in [(2, 0, 1.0), (7, 0, 5.0), (9, 2, 10.0), (60, 1, 0.0)] {
+            let numbers = [("radius", f64::from(radius)), ("skip", f64::from(skip)), ("flatness", flatness)];
+            for comparison in ["magnitude", "signed"] {
+                let forms = values(&land, "geomorphons", &[("comparison", comparison)], &numbers);
+                let ground = (&*heights, 31, comparison == "magnitude");
+                for (post, &form) in forms.iter().enumerate() {
+                    let wanted = walked(ground, post as i64, radius.into(), skip.into(), flatness);
+                    let is_same = form == wanted || form.is_nan() && wanted.is_nan();
+                    assert!(is_same, "{comparison} {numbers:?} {post}: {form} {wanted}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn parameters_that_leave_nothing_to_see_or_are_not_whole_are_errors() {
+        let land = land(DVec2::ONE, 9, vec![0.0; 81]);
+        for (key, number) in [("skip", 19.0), ("skip", 0.5), ("radius", 2.5)] {
+            let error = outcome(&land, "geomorphons", &[], &[(key, number)]);
+            assert_eq!(error.err().and_then(|error| error.key()), Some(key));
+        }
+    }
+
+    #[test]
+    fn a_sight_longer_than_a_lattice_of_few_posts_ends_at_its_border() {
+        for columns in [2, 3, 6] {
+            let land = land(DVec2::ONE, columns, vec![1.0; 12]);
+            let forms = values(&land, "geomorphons", &[], &[("radius", 500.0)]);
+            assert!(forms.iter().all(|form| form.is_nan() || *form == 1.0));
+        }
+    }
 }
