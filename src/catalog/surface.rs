@@ -17,6 +17,15 @@ const BORDER: &str = "Posts at the border, and beside a post without data, have 
 /// What all slopes of a lattice do not know.
 const COARSE: &str = "Ground between posts may be steeper: coarse elevation models flatten slopes.";
 
+/// The height between contours or bands.
+const INTERVAL: AnalysisParameter = AnalysisParameter::number(
+    "interval",
+    (0.01, 1e6),
+    "m",
+    ParameterDefault::Otherwise("1, 2 or 5 times a power of ten, for at most 20 intervals"),
+    "The height between one line and the next.",
+);
+
 /// The kinds.
 pub(crate) const KINDS: &[AnalysisKind] = &[
     AnalysisKind {
@@ -175,5 +184,41 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
             "Forms wider than the radius are not seen, and sight ends at the border.",
             "Posts at the border have no data.",
         ],
+    },
+    AnalysisKind {
+        name: "contours",
+        family: AnalysisFamily::Surface,
+        title: "Contours",
+        summary: "Lines of equal height at the multiples of an interval.",
+        parameters: &[
+            INTERVAL,
+            AnalysisParameter::number(
+                "every",
+                (1.0, 100.0),
+                "lines",
+                ParameterDefault::Value("5"),
+                "Every which line is an index line with its height; rounded.",
+            ),
+        ],
+        yields: AnalysisYield::Features,
+        reach: AnalysisReach::Whole,
+        layers: &[],
+        source: "Lorensen and Cline 1987, in the plane",
+        limits: &[
+            "Lines are straight within a cell, and end at the border and at cells with a post without data.",
+            "Lines that would cross cells more than 8 million times are an error.",
+        ],
+    },
+    AnalysisKind {
+        name: "elevation-bands",
+        family: AnalysisFamily::Surface,
+        title: "Elevation bands",
+        summary: "The band of heights that each post belongs to, by its lower bound.",
+        parameters: &[INTERVAL],
+        yields: AnalysisYield::Raster,
+        reach: AnalysisReach::Whole,
+        layers: &[],
+        source: "Hypsometric tints",
+        limits: &["Bands are those of posts: their edges follow cells, not contours.", "At most 250 bands."],
     },
 ];

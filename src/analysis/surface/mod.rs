@@ -1,6 +1,7 @@
 //! The form of the ground.
 
 pub mod aspect;
+pub mod contours;
 pub mod curvature;
 #[cfg(test)]
 mod gdaldem_tables;
@@ -20,4 +21,6 @@ pub(crate) const FUNCTIONS: &[(&str, KindFunction)] = &[
     ("curvature", curvature::curvature),
     ("ruggedness", ruggedness::ruggedness),
     ("geomorphons", geomorphons::geomorphons),
+    ("contours", contours::contours),
+    ("elevation-bands", contours::elevation_bands),
 ];
