@@ -3,10 +3,12 @@
 pub mod aspect;
 pub mod contours;
 pub mod curvature;
+mod divide_tree;
 #[cfg(test)]
 mod gdaldem_tables;
 pub mod geomorphons;
 pub mod hillshade;
+pub mod peaks;
 pub mod ruggedness;
 pub mod slope;
 mod window;
@@ -23,4 +25,6 @@ pub(crate) const FUNCTIONS: &[(&str, KindFunction)] = &[
     ("geomorphons", geomorphons::geomorphons),
     ("contours", contours::contours),
     ("elevation-bands", contours::elevation_bands),
+    ("peaks", peaks::peaks),
+    ("passes", peaks::passes),
 ];
