@@ -39,6 +39,61 @@ const METRICATION: &str = "Ways go to sixteen neighbors: they are up to 2.75 % t
 const WAY_SLOPES: &str = "Vehicles are slowed by slopes up, down and across; on roads and bridges a grade counts at most as the \
      steepest that the vehicle goes freely, since models of the ground show the slope across which a road was cut.";
 
+/// What ground counts as part of a corridor.
+const THROUGH: AnalysisParameter = AnalysisParameter::word(
+    "through",
+    &["unrestricted", "restricted"],
+    "unrestricted",
+    "The ground that counts in a width: `unrestricted` alone, or `restricted` ground too.",
+);
+
+/// What is wrong with widths.
+const WIDTHS: &str = "Ground beyond the model counts as free, so that widths near its border may be too great; widths are good to \
+     a cell, and what is narrower than one is missed.";
+
+/// Where avenues begin.
+const FROM_LINE: AnalysisParameter = AnalysisParameter::plain(
+    "from_line",
+    ParameterForm::Line,
+    ParameterDefault::Required,
+    "The line where they begin.",
+);
+
+/// Where avenues end.
+const TO_LINE: AnalysisParameter = AnalysisParameter::plain(
+    "to_line",
+    ParameterForm::Line,
+    ParameterDefault::Required,
+    "The line where they end.",
+);
+
+/// How many avenues.
+const COUNT: AnalysisParameter = AnalysisParameter::number(
+    "count",
+    (1.0, 20.0),
+    "",
+    ParameterDefault::Value("3"),
+    "The most routes; fewer where no further one differs.",
+);
+
+/// How far apart avenues are.
+const APART: AnalysisParameter = AnalysisParameter::number(
+    "apart_m",
+    (0.0, 100_000.0),
+    "m",
+    ParameterDefault::Value("750"),
+    "The distance from a route within which the next ones are slowed, and choke points count as one.",
+);
+
+/// How strongly a route keeps later ones away.
+const PENALTY: AnalysisParameter = AnalysisParameter::number(
+    "penalty",
+    (1.0, 100.0),
+    "",
+    ParameterDefault::Value("3"),
+    "How many times longer the ground near a route takes when the next one is looked for.",
+);
+
 /// The kinds.
 pub(crate) const KINDS: &[AnalysisKind] = &[
     AnalysisKind {
@@ -152,6 +207,82 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
             METRICATION,
             WAY_SLOPES,
             "The route is the quickest, not the least seen or the safest.",
+        ],
+    },
+    AnalysisKind {
+        name: "corridors",
+        family: AnalysisFamily::Movement,
+        title: "Mobility corridors",
+        summary: "The widest corridor of unrestricted ground that holds each post, by the widths of echelons.",
+        parameters: &[
+            AnalysisParameter::numbers(
+                "widths_m",
+                (1.0, 1_000_000.0),
+                "m",
+                ParameterDefault::Value("1500, 3000, 6000"),
+                "The widths: by default a battalion's, a brigade's and a division's.",
+            ),
+            VEHICLE,
+            THROUGH,
+        ],
+        yields: AnalysisYield::Raster,
+        reach: AnalysisReach::Whole,
+        layers: GOING_LAYERS,
+        source: "FM 34-130 (1994); ATP 2-01.3; distances by Felzenszwalb and Huttenlocher 2012",
+        limits: &[NO_SOIL, UNKNOWN_DEPTH, WIDTHS],
+    },
+    AnalysisKind {
+        name: "avenues",
+        family: AnalysisFamily::Movement,
+        title: "Avenues of approach",
+        summary: "The best routes that differ from one line to another, with their times and their narrowest widths.",
+        parameters: &[FROM_LINE, TO_LINE, VEHICLE, METHOD, COUNT, APART, PENALTY, THROUGH],
+        yields: AnalysisYield::Features,
+        reach: AnalysisReach::Whole,
+        layers: GOING_LAYERS,
+        source: "FM 34-130 (1994); ATP 2-01.3; routes by Dijkstra 1959 with a penalty near earlier ones",
+        limits: &[
+            NO_SOIL,
+            UNKNOWN_DEPTH,
+            METRICATION,
+            WAY_SLOPES,
+            WIDTHS,
+            "Routes are the quickest one after the other, not the set of routes that is best together.",
+        ],
+    },
+    AnalysisKind {
+        name: "chokes",
+        family: AnalysisFamily::Movement,
+        title: "Choke points",
+        summary: "The narrowest places on the best routes from one line to another.",
+        parameters: &[
+            FROM_LINE,
+            TO_LINE,
+            VEHICLE,
+            METHOD,
+            AnalysisParameter::number(
+                "most",
+                (1.0, 100.0),
+                "",
+                ParameterDefault::Value("10"),
+                "The most places, the narrowest first.",
+            ),
+            COUNT,
+            APART,
+            PENALTY,
+            THROUGH,
+        ],
+        yields: AnalysisYield::Features,
+        reach: AnalysisReach::Whole,
+        layers: GOING_LAYERS,
+        source: "FM 34-130 (1994); ATP 2-01.3; distances by Felzenszwalb and Huttenlocher 2012",
+        limits: &[
+            NO_SOIL,
+            UNKNOWN_DEPTH,
+            METRICATION,
+            WAY_SLOPES,
+            WIDTHS,
+            "A width of 0 is restricted ground on the route; on a road through such ground the width is the road's.",
         ],
     },
 ];
