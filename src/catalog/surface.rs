@@ -17,6 +17,15 @@ const BORDER: &str = "Posts at the border, and beside a post without data, have 
 /// What all slopes of a lattice do not know.
 const COARSE: &str = "Ground between posts may be steeper: coarse elevation models flatten slopes.";
 
+/// The height between contours or bands.
+const INTERVAL: AnalysisParameter = AnalysisParameter::number(
+    "interval",
+    (0.01, 1e6),
+    "m",
+    ParameterDefault::Otherwise("1, 2 or 5 times a power of ten, for at most 20 intervals"),
+    "The height between one line and the next.",
+);
+
 /// The kinds.
 pub(crate) const KINDS: &[AnalysisKind] = &[
     AnalysisKind {
@@ -174,6 +183,94 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
         limits: &[
             "Forms wider than the radius are not seen, and sight ends at the border.",
             "Posts at the border have no data.",
+        ],
+    },
+    AnalysisKind {
+        name: "contours",
+        family: AnalysisFamily::Surface,
+        title: "Contours",
+        summary: "Lines of equal height at the multiples of an interval.",
+        parameters: &[
+            INTERVAL,
+            AnalysisParameter::number(
+                "every",
+                (1.0, 100.0),
+                "lines",
+                ParameterDefault::Value("5"),
+                "Every which line is an index line with its height; rounded.",
+            ),
+        ],
+        yields: AnalysisYield::Features,
+        reach: AnalysisReach::Whole,
+        layers: &[],
+        source: "Lorensen and Cline 1987, in the plane",
+        limits: &[
+            "Lines are straight within a cell, and end at the border and at cells with a post without data.",
+            "Lines that would cross cells more than 8 million times are an error.",
+        ],
+    },
+    AnalysisKind {
+        name: "elevation-bands",
+        family: AnalysisFamily::Surface,
+        title: "Elevation bands",
+        summary: "The band of heights that each post belongs to, by its lower bound.",
+        parameters: &[INTERVAL],
+        yields: AnalysisYield::Raster,
+        reach: AnalysisReach::Whole,
+        layers: &[],
+        source: "Hypsometric tints",
+        limits: &["Bands are those of posts: their edges follow cells, not contours.", "At most 250 bands."],
+    },
+    AnalysisKind {
+        name: "peaks",
+        family: AnalysisFamily::Surface,
+        title: "Peaks",
+        summary: "Summits with their prominence and isolation, the most prominent first.",
+        parameters: &[
+            AnalysisParameter::number(
+                "prominence",
+                (0.0, 10_000.0),
+                "m",
+                ParameterDefault::Value("30"),
+                "How far a peak rises at least above the highest pass to higher ground.",
+            ),
+            AnalysisParameter::number(
+                "isolation",
+                (0.0, 1e7),
+                "m",
+                ParameterDefault::Value("0"),
+                "How far away the nearest higher ground is at least.",
+            ),
+        ],
+        yields: AnalysisYield::Features,
+        reach: AnalysisReach::Whole,
+        layers: &[],
+        source: "Carr, Snoeyink and Axen 2003; Kirmse and de Ferranti 2017",
+        limits: &[
+            "Ground beyond the border may be higher: prominence and isolation are those within the land.",
+            "The highest peak of connected ground has its height above the lowest post as prominence.",
+            "Summits at the border or beside a post without data are left out.",
+        ],
+    },
+    AnalysisKind {
+        name: "passes",
+        family: AnalysisFamily::Surface,
+        title: "Passes",
+        summary: "The highest ways between summits, the deepest pass first.",
+        parameters: &[AnalysisParameter::number(
+            "depth",
+            (0.0, 10_000.0),
+            "m",
+            ParameterDefault::Value("30"),
+            "How far the lower of the two summits rises at least above the pass.",
+        )],
+        yields: AnalysisYield::Features,
+        reach: AnalysisReach::Whole,
+        layers: &[],
+        source: "Carr, Snoeyink and Axen 2003; Kirmse and de Ferranti 2017",
+        limits: &[
+            "A pass to summits beyond the border is not known.",
+            "Passes at the border or beside a post without data are left out.",
         ],
     },
 ];

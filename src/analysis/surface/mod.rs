@@ -1,11 +1,14 @@
 //! The form of the ground.
 
 pub mod aspect;
+pub mod contours;
 pub mod curvature;
+mod divide_tree;
 #[cfg(test)]
 mod gdaldem_tables;
 pub mod geomorphons;
 pub mod hillshade;
+pub mod peaks;
 pub mod ruggedness;
 pub mod slope;
 mod window;
@@ -20,4 +23,8 @@ pub(crate) const FUNCTIONS: &[(&str, KindFunction)] = &[
     ("curvature", curvature::curvature),
     ("ruggedness", ruggedness::ruggedness),
     ("geomorphons", geomorphons::geomorphons),
+    ("contours", contours::contours),
+    ("elevation-bands", contours::elevation_bands),
+    ("peaks", peaks::peaks),
+    ("passes", peaks::passes),
 ];

@@ -1,0 +1,231 @@
+//! Mobility corridors: how wide the ground is on which movement is not restricted, by echelon (FM 34-130, ATP 2-01.3).
+//!
+//! A post belongs to a corridor of a width where a disk as wide holds it and no restricted ground: the opening of the
+//! unrestricted ground, from two exact distance transforms (Felzenszwalb and Huttenlocher 2012).
+
+use crate::arguments::AnalysisArguments;
+use crate::error::AnalysisError;
+use crate::land::Land;
+use crate::movement::going::{Going, RESTRICTED, UNRESTRICTED};
+use crate::movement::vehicle::Vehicle;
+use crate::outcome::{ClassLook, Figure, Hatching, Outcome, OutcomeRaster, PostValues, ValueClass};
+use sandtable_base::limits::memory::check_memory;
+use sandtable_geom::distance_field::{RegionGrid, distances_m};
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::stop_flag::StopFlag;
+
+/// The most widths.
+const MOST_WIDTHS: usize = 8;
+
+/// The echelons of the default widths.
+const ECHELONS: [(f64, &str); 3] = [(1500.0, "battalion"), (3000.0, "brigade"), (6000.0, "division")];
+
+/// The tints of corridors, from narrow to wide.
+const TINTS: [[u8; 4]; 4] =
+    [[255, 237, 160, 90], [161, 218, 180, 100], [65, 182, 196, 110], [34, 94, 168, 110]];
+
+/// The ground that counts as free in a corridor.
+pub(crate) struct FreeGround {
+    is_free: Vec<bool>,
+    grid: RegionGrid,
+}
+
+impl FreeGround {
+    /// Posts of these codes up to `greatest`.
+    pub fn new(ground: &Lattice, codes: &[u8], greatest: u8) -> Result<Self, AnalysisError> {
+        check_memory(codes.len() as u64 * 28, "the analysis", "name a smaller `extent`")?;
+        let is_free = codes.iter().map(|&code| code <= greatest).collect();
+        let cell = ground.cell();
+        Ok(Self {
+            is_free,
+            grid: RegionGrid { columns: ground.columns() as usize, step_m: [cell.x, cell.y] },
+        })
+    }
+
+    /// The distance from each post to the nearest that is not free, meters; infinite where there is none.
+    pub fn distances_m(&self) -> Vec<f64> {
+        distances_m(&self.is_free, self.grid)
+    }
+
+    /// Half a cell: what is not free begins half a cell before its post.
+    pub fn half_cell_m(&self) -> f64 {
+        self.grid.step_m[0].max(self.grid.step_m[1]) / 2.0
+    }
+
+    /// The width of the free ground around a post, meters: that of a free disk which holds it, found by climbing the
+    /// distances from the post on for as long as the disk holds it. 0 where the post is not free, infinite where nothing
+    /// limits it.
+    pub fn width_at_m(&self, free_m: &[f64], index: usize) -> f64 {
+        let columns = self.grid.columns;
+        let rows = free_m.len() / columns;
+        let offset_m = |one: usize, other: usize| {
+            let along = (one % columns).abs_diff(other % columns) as f64 * self.grid.step_m[0];
+            libm::hypot(along, (one / columns).abs_diff(other / columns) as f64 * self.grid.step_m[1])
+        };
+        let mut center = index;
+        loop {
+            let (column, row) = (center % columns, center / columns);
+            let mut next = center;
+            for row in row.saturating_sub(1)..=(row + 1).min(rows - 1) {
+                for column in column.saturating_sub(1)..=(column + 1).min(columns - 1) {
+                    let other = row * columns + column;
+                    if free_m[other] > free_m[next] && offset_m(other, index) < free_m[other] {
+                        next = other;
+                    }
+                }
+            }
+            if next == center || free_m[index] == 0.0 {
+                return (2.0 * (free_m[center] - self.half_cell_m())).max(0.0);
+            }
+            center = next;
+        }
+    }
+
+    /// Which posts lie in a free disk of this width.
+    fn opened(&self, free_m: &[f64], width_m: f64) -> Vec<bool> {
+        let radius_m = width_m / 2.0 + self.half_cell_m();
+        // Rounding of distances must not close ground that is exactly as wide.
+        let is_no_center: Vec<bool> = free_m.iter().map(|&free| free < radius_m * (1.0 - 1e-9)).collect();
+        let to_center = distances_m(&is_no_center, self.grid);
+        to_center.iter().map(|&distance| distance < radius_m * (1.0 - 1e-6)).collect()
+    }
+}
+
+/// The widest corridor that holds each post: 0 none, 1 for the first width and on; no data where the ground has none.
+///
+/// # Errors
+/// `vehicle`, `widths_m`, and memory.
+pub(crate) fn corridors(
+    land: &Land,
+    arguments: &AnalysisArguments,
+    stop: &StopFlag,
+) -> Result<Outcome, AnalysisError> {
+    let widths = arguments.numbers("widths_m");
+    if widths.len() > MOST_WIDTHS || !widths.windows(2).all(|pair| pair[0] < pair[1]) {
+        return Err(AnalysisError::argument(
+            "widths_m",
+            format!("must be up to {MOST_WIDTHS} rising numbers"),
+        ));
+    }
+    let vehicle = Vehicle::named(land, &arguments.word("vehicle"))?;
+    let Going { mut codes, notes, .. } = Going::new(land, &vehicle)?;
+    let greatest = if arguments.word("through") == "restricted" { RESTRICTED } else { UNRESTRICTED };
+    let free = FreeGround::new(&land.ground, &codes, greatest)?;
+    let free_m = free.distances_m();
+    codes.iter_mut().filter(|code| **code != PostValues::NO_CODE).for_each(|code| *code = 0);
+    let mut figures = Vec::new();
+    for (index, &width_m) in widths.iter().enumerate() {
+        if stop.is_stopped() {
+            return Err(AnalysisError::Stopped);
+        }
+        let mut posts = 0usize;
+        for (code, is_open) in codes.iter_mut().zip(free.opened(&free_m, width_m)) {
+            if is_open && *code != PostValues::NO_CODE {
+                *code = index as u8 + 1;
+                posts += 1;
+            }
+        }
+        figures.push(Figure {
+            name: format!("corridors of {}", width_label(width_m)),
+            value: posts as f64 * land.ground.cell_m2() / 1e6,
+            unit: "km²",
+        });
+    }
+    let raster = OutcomeRaster {
+        name: "corridors",
+        unit: "",
+        values: PostValues::Codes(codes),
+        classes: classes(&widths),
+    };
+    Ok(Outcome { raster: Some(raster), figures, notes, ..Outcome::default() })
+}
+
+/// `1500 m (battalion)`.
+fn width_label(width_m: f64) -> String {
+    match ECHELONS.iter().find(|&&(least_m, _)| least_m == width_m) {
+        Some((_, echelon)) => format!("{width_m} m ({echelon})"),
+        None => format!("{width_m} m"),
+    }
+}
+
+/// The largest echelon for which a width is enough; empty where it is for none.
+pub(crate) fn echelon(width_m: f64) -> &'static str {
+    ECHELONS.iter().rev().find(|&&(least_m, _)| width_m >= least_m).map_or("", |&(_, echelon)| echelon)
+}
+
+fn classes(widths: &[f64]) -> Vec<ValueClass> {
+    let none = ValueClass {
+        from: 0.0,
+        label: "no corridor".to_owned(),
+        look: ClassLook { tint: [0, 0, 0, 0], hatching: Hatching::None },
+    };
+    let hatchings = [Hatching::Dots, Hatching::Level, Hatching::Single, Hatching::Crossed];
+    let class = |(index, &width_m): (usize, &f64)| ValueClass {
+        from: (index + 1) as f32,
+        label: format!("{} and wider", width_label(width_m)),
+        look: ClassLook { tint: TINTS[index % TINTS.len()], hatching: hatchings[index % hatchings.len()] },
+    };
+    std::iter::once(none).chain(widths.iter().enumerate().map(class)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arguments::ArgumentValue;
+    use crate::land::Cover;
+    use crate::movement::testing::flat;
+    use crate::run::run;
+
+    fn codes(land: &Land, widths: &[f64]) -> Vec<u8> {
+        let kind = sandtable_catalog::kind("corridors").expect("a kind");
+        let arguments =
+            AnalysisArguments::new(kind).with("widths_m", ArgumentValue::Numbers(widths.to_vec()));
+        let found = run(land, &arguments, &StopFlag::default()).expect("sound");
+        match found.raster.expect("a raster").values {
+            PostValues::Codes(codes) => codes,
+            PostValues::Numbers(_) => panic!("codes"),
+        }
+    }
+
+    #[test]
+    fn a_band_of_five_posts_is_a_corridor_of_five_cells_and_no_more() {
+        let mut land = flat(9, 30, 100.0);
+        let cover =
+            (0..270).map(|index| if (2..7).contains(&(index % 9)) { Cover::Open } else { Cover::Wetland });
+        land.cover = Some(cover.collect());
+        for (width_m, code) in [(499.0, 1), (500.0, 1), (501.0, 0)] {
+            let found = codes(&land, &[width_m]);
+            let row = &found[15 * 9..16 * 9];
+            assert_eq!(row, [0, 0, code, code, code, code, code, 0, 0], "{width_m}");
+        }
+    }
+
+    #[test]
+    fn every_post_of_a_corridor_lies_in_a_free_disk_of_its_width() {
+        let mut land = flat(30, 30, 10.0);
+        let cover: Vec<Cover> = (0..900usize)
+            .map(
+                |index| {
+                    if (index * 7919 + index * index * 31) % 47 == 0 { Cover::Wetland } else { Cover::Open }
+                },
+            )
+            .collect();
+        let at = |index: usize| [(index % 30) as f64 * 10.0, (index / 30) as f64 * 10.0];
+        let distance =
+            |one: usize, other: usize| libm::hypot(at(one)[0] - at(other)[0], at(one)[1] - at(other)[1]);
+        land.cover = Some(cover.clone());
+        let found = codes(&land, &[20.0, 50.0]);
+        let is_in = |post: usize, radius: f64| {
+            (0..900).any(|center| {
+                distance(center, post) < radius - 1e-4
+                    && (0..900)
+                        .all(|other| cover[other] == Cover::Open || distance(center, other) >= radius - 1e-6)
+            })
+        };
+        for (post, &found) in found.iter().enumerate() {
+            let code = if is_in(post, 30.0) { 2 } else { u8::from(is_in(post, 15.0)) };
+            assert_eq!(found, code, "{post}");
+        }
+        assert!([0, 1, 2].iter().all(|code| found.contains(code)));
+    }
+}

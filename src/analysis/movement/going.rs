@@ -1,0 +1,301 @@
+//! What each post of the land is for a vehicle: unrestricted, restricted or severely restricted, and its speed there.
+//!
+//! The slope decides with what covers the ground; roads, bridges and fords then take its place. The speed is that on level
+//! ground of this cover: what a slope does to it depends on the direction, see [`crate::movement::travel`].
+
+use rayon::prelude::*;
+
+use crate::land::{Cover, Crossing, CrossingKind, Land, RoadSurface, Stand, WaterKind, WaterPost};
+use crate::movement::burn::along_line;
+use crate::movement::vehicle::{Drive, Vehicle};
+use crate::outcome::PostValues;
+use sandtable_base::limits::memory::{MemoryRefused, check_memory};
+
+/// Ground on which movement is unrestricted.
+pub(crate) const UNRESTRICTED: u8 = 0;
+/// Ground that slows movement.
+pub(crate) const RESTRICTED: u8 = 1;
+/// Ground that stops movement, or nearly.
+pub(crate) const SEVERELY_RESTRICTED: u8 = 2;
+
+/// What each post is for a vehicle.
+pub(crate) struct Going {
+    /// [`UNRESTRICTED`], [`RESTRICTED`], [`SEVERELY_RESTRICTED`], or [`PostValues::NO_CODE`]; by slope and all else.
+    pub codes: Vec<u8>,
+    /// The speed on level ground, km/h: 0 where what covers the ground stops the vehicle, NaN without data.
+    pub speed_kmh: Vec<f32>,
+    /// Whether a road, a track, a bridge or a ford is there that the vehicle takes.
+    pub is_way: Vec<bool>,
+    /// What was left out, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// A code and the share of the speed on open ground.
+#[derive(Clone, Copy)]
+struct GroundRule {
+    code: u8,
+    share: f64,
+}
+
+const fn rule(code: u8, share: f64) -> GroundRule {
+    GroundRule { code, share }
+}
+
+impl Going {
+    /// What each post is for the vehicle.
+    ///
+    /// # Errors
+    /// There is not enough memory.
+    pub fn new(land: &Land, vehicle: &Vehicle) -> Result<Self, MemoryRefused> {
+        let ground = &*land.ground;
+        let (columns, posts) = (ground.columns() as usize, ground.heights().len());
+        check_memory(posts as u64 * 24, "the analysis", "name a smaller `extent`")?;
+        let mut going = Self {
+            codes: vec![PostValues::NO_CODE; posts],
+            speed_kmh: vec![f32::NAN; posts],
+            is_way: vec![false; posts],
+            notes: Vec::new(),
+        };
+        let codes = going.codes.par_chunks_mut(columns).zip(going.speed_kmh.par_chunks_mut(columns));
+        codes.enumerate().for_each(|(row, (codes, speeds))| {
+            let slopes = ground.slopes_of_row(row as u32);
+            for (column, slopes) in slopes.into_iter().enumerate() {
+                let index = row * columns + column;
+                if ground.heights()[index].is_nan() {
+                    continue;
+                }
+                let rule = ground_rule(land, vehicle, index);
+                codes[column] = rule.code.max(slope_code(vehicle, f64::from(slopes.length()) * 100.0));
+                speeds[column] = (vehicle.speed_kmh * rule.share) as f32;
+            }
+        });
+        going.place_steps(land, vehicle);
+        going.place_ways(land, vehicle);
+        Ok(going)
+    }
+
+    /// Walls and banks: what the vehicle does not climb is severely restricted, what it climbs is restricted.
+    fn place_steps(&mut self, land: &Land, vehicle: &Vehicle) {
+        for step in &land.steps {
+            let is_climbed = step.height_m <= vehicle.step_m;
+            along_line(&land.ground, &step.line, 0.0, |index| {
+                if self.codes[index] != PostValues::NO_CODE {
+                    let code = if is_climbed { RESTRICTED } else { SEVERELY_RESTRICTED };
+                    self.codes[index] = self.codes[index].max(code);
+                    let share = if is_climbed { 0.3 } else { 0.0 };
+                    self.speed_kmh[index] = self.speed_kmh[index].min((vehicle.speed_kmh * share) as f32);
+                }
+            });
+        }
+    }
+
+    /// Roads, bridges and fords.
+    fn place_ways(&mut self, land: &Land, vehicle: &Vehicle) {
+        let mut surfaces = land.roads.clone().unwrap_or_else(|| vec![RoadSurface::None; self.codes.len()]);
+        surfaces.resize(self.codes.len(), RoadSurface::None);
+        for road in &land.road_lines {
+            along_line(&land.ground, &road.line, road.width_m, |index| {
+                surfaces[index] = surfaces[index].max(road.surface);
+            });
+        }
+        let is_too_weak = |crossing: &&Crossing| {
+            crossing.kind != CrossingKind::Ford && crossing.load_t.is_some_and(|load| load < vehicle.mass_t)
+        };
+        for crossing in land.crossings.iter().filter(|crossing| crossing.kind == CrossingKind::Bridge) {
+            along_line(&land.ground, &crossing.line, crossing.width_m, |index| {
+                surfaces[index] = surfaces[index].max(RoadSurface::Track);
+            });
+        }
+        let mut weak = 0;
+        for crossing in land.crossings.iter().filter(is_too_weak) {
+            weak += 1;
+            // Its road may be drawn a post wider than the bridge.
+            let width_m = crossing.width_m.max(0.0) + 2.0 * land.ground.cell().max_element();
+            along_line(&land.ground, &crossing.line, width_m, |index| surfaces[index] = RoadSurface::None);
+        }
+        if weak > 0 {
+            self.notes.push(format!(
+                "{weak} bridges or culverts bear less than the {} t of `{}`",
+                vehicle.mass_t, vehicle.name
+            ));
+        }
+        for (index, &surface) in
+            surfaces.iter().enumerate().filter(|&(_, surface)| *surface > RoadSurface::None)
+        {
+            let speed = vehicle.speed_on_kmh(surface) as f32;
+            if speed > 0.0 && self.codes[index] != PostValues::NO_CODE {
+                self.take_way(index, UNRESTRICTED, speed);
+            }
+        }
+        for ford in land.crossings.iter().filter(|crossing| crossing.kind == CrossingKind::Ford) {
+            along_line(&land.ground, &ford.line, ford.width_m, |index| {
+                let depth_m = water(land, index).map_or(0.0, |water| f64::from(water.depth_m));
+                let is_deep = depth_m > vehicle.ford_m;
+                if !is_deep && !self.is_way[index] && self.codes[index] != PostValues::NO_CODE {
+                    self.take_way(index, RESTRICTED, (vehicle.speed_kmh * 0.3) as f32);
+                }
+            });
+        }
+    }
+
+    fn take_way(&mut self, index: usize, code: u8, speed_kmh: f32) {
+        self.codes[index] = code;
+        self.speed_kmh[index] = speed_kmh;
+        self.is_way[index] = true;
+    }
+}
+
+/// The code of a slope: by the lower of the limits uphill and downhill, since an overlay has no direction.
+fn slope_code(vehicle: &Vehicle, slope_percent: f64) -> u8 {
+    let limit = |index: usize| vehicle.slope_up_percent[index].min(vehicle.slope_down_percent[index]);
+    match slope_percent {
+        slope if slope > limit(1) => SEVERELY_RESTRICTED,
+        slope if slope > limit(0) => RESTRICTED,
+        _ => UNRESTRICTED,
+    }
+}
+
+fn water(land: &Land, index: usize) -> Option<WaterPost> {
+    let water = land.water.as_ref()?.get(index)?;
+    (water.kind != WaterKind::None).then_some(*water)
+}
+
+/// The rule of what covers a post: water, else trees, else its cover.
+fn ground_rule(land: &Land, vehicle: &Vehicle, index: usize) -> GroundRule {
+    if let Some(water) = water(land, index) {
+        // Unknown depth counts as not fordable.
+        return match f64::from(water.depth_m) <= vehicle.ford_m {
+            true => rule(RESTRICTED, 0.2),
+            false => rule(SEVERELY_RESTRICTED, 0.0),
+        };
+    }
+    let cover = land.cover.as_ref().and_then(|cover| cover.get(index)).copied().unwrap_or_default();
+    let stand = land.woods.as_ref().and_then(|woods| woods.get(index)).copied().unwrap_or_default();
+    let is_clear = matches!(cover, Cover::Building | Cover::BuiltUp | Cover::Paved);
+    if stand.spacing_m > 0.0 && !is_clear {
+        return stand_rule(vehicle, stand);
+    }
+    cover_rule(vehicle.drive, cover)
+}
+
+/// Trees: a vehicle goes between them where the gap is as wide as itself and half a meter more, and over stems that it
+/// pushes over. A stem of unknown diameter counts as too thick.
+fn stand_rule(vehicle: &Vehicle, stand: Stand) -> GroundRule {
+    if vehicle.drive == Drive::Foot {
+        return rule(UNRESTRICTED, 0.7);
+    }
+    let stem_m = f64::from(stand.stem_m);
+    let gap_m = f64::from(stand.spacing_m) - if stem_m.is_nan() { 0.0 } else { stem_m };
+    if gap_m >= 3.0 * vehicle.width_m {
+        rule(RESTRICTED, 0.6)
+    } else if gap_m >= vehicle.width_m + 0.5 {
+        rule(RESTRICTED, 0.4)
+    } else if stem_m <= vehicle.stem_m {
+        rule(RESTRICTED, 0.3)
+    } else {
+        rule(SEVERELY_RESTRICTED, 0.0)
+    }
+}
+
+/// The rule of a cover: on foot, on wheels, on tracks.
+fn cover_rule(drive: Drive, cover: Cover) -> GroundRule {
+    const FREE: u8 = UNRESTRICTED;
+    const SLOW: u8 = RESTRICTED;
+    const NOT: u8 = SEVERELY_RESTRICTED;
+    let rules = match cover {
+        Cover::Unknown | Cover::Open | Cover::Paved => [(FREE, 1.0), (FREE, 1.0), (FREE, 1.0)],
+        Cover::Crops => [(FREE, 0.8), (FREE, 0.7), (FREE, 0.9)],
+        Cover::Orchard => [(FREE, 0.8), (SLOW, 0.3), (SLOW, 0.5)],
+        Cover::Scrub => [(FREE, 0.6), (SLOW, 0.4), (FREE, 0.7)],
+        Cover::Wood => [(FREE, 0.7), (SLOW, 0.25), (SLOW, 0.4)],
+        Cover::Wetland => [(SLOW, 0.3), (NOT, 0.0), (NOT, 0.0)],
+        Cover::Sand => [(FREE, 0.6), (SLOW, 0.4), (FREE, 0.7)],
+        Cover::Rock => [(SLOW, 0.5), (NOT, 0.0), (SLOW, 0.3)],
+        Cover::BuiltUp => [(FREE, 0.9), (SLOW, 0.5), (SLOW, 0.4)],
+        Cover::Building => [(NOT, 0.0), (NOT, 0.0), (NOT, 0.0)],
+    };
+    let (code, share) = match drive {
+        Drive::Foot => rules[0],
+        Drive::Wheels => rules[1],
+        Drive::Tracks => rules[2],
+    };
+    rule(code, share)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::land::{RoadLine, Step};
+    use crate::movement::testing::{flat, shaped};
+    use glam::DVec2;
+
+    fn tracked() -> Vehicle {
+        Vehicle::built_in("tracked").expect("built in")
+    }
+
+    #[test]
+    fn slopes_have_the_codes_of_the_vehicles_limits() {
+        // Tracks: freely up to 30 %, slowly up to 45 %.
+        for (slope, code) in
+            [(0.29f32, UNRESTRICTED), (0.31, RESTRICTED), (0.44, RESTRICTED), (0.46, SEVERELY_RESTRICTED)]
+        {
+            let land = shaped(4, 4, 10.0, |column, _| column as f32 * 10.0 * slope);
+            let going = Going::new(&land, &tracked()).expect("memory");
+            assert!(going.codes.iter().all(|&found| found == code), "{slope}: {:?}", going.codes);
+        }
+    }
+
+    #[test]
+    fn trees_stop_a_vehicle_where_it_neither_fits_between_them_nor_pushes_them_over() {
+        // A tank of 3.6 m needs a gap of 4.1 m, or stems up to 0.15 m.
+        let mut land = flat(4, 2, 10.0);
+        let stands = [(6.0, 0.3), (4.0, 0.3), (4.0, 0.1), (4.0, f32::NAN)];
+        let mut woods = vec![Stand::default(); 8];
+        for (post, (spacing_m, stem_m)) in woods.iter_mut().zip(stands) {
+            *post = Stand { spacing_m, stem_m };
+        }
+        land.woods = Some(woods);
+        let going = Going::new(&land, &tracked()).expect("memory");
+        assert_eq!(going.codes, [1, 2, 1, 2, 0, 0, 0, 0]);
+    }
+
+    #[test]
+    fn roads_and_bridges_make_ground_unrestricted_and_weak_bridges_do_not() {
+        let mut land = flat(5, 3, 10.0);
+        let mut water = vec![WaterPost::default(); 15];
+        for row in 0..3 {
+            water[row * 5 + 2] = WaterPost { kind: WaterKind::River, depth_m: f32::NAN };
+        }
+        land.water = Some(water);
+        land.roads = Some(vec![RoadSurface::None; 15]);
+        assert_eq!(Going::new(&land, &tracked()).expect("memory").codes[7], SEVERELY_RESTRICTED);
+        let line = vec![DVec2::new(10.0, 10.0), DVec2::new(30.0, 10.0)];
+        let surface = RoadSurface::Main;
+        land.road_lines.push(RoadLine { name: String::new(), line: line.clone(), surface, width_m: 6.0 });
+        let going = Going::new(&land, &tracked()).expect("memory");
+        assert_eq!((going.codes[7], going.speed_kmh[7], going.is_way[7]), (UNRESTRICTED, 55.0, true));
+        assert_eq!(going.codes[2], SEVERELY_RESTRICTED, "the river beside the bridge stays");
+        let bridge = Crossing {
+            name: String::new(),
+            kind: CrossingKind::Bridge,
+            line,
+            width_m: 6.0,
+            load_t: Some(40.0),
+        };
+        land.crossings.push(bridge);
+        let going = Going::new(&land, &tracked()).expect("memory");
+        assert_eq!((going.codes[7], going.notes.len()), (SEVERELY_RESTRICTED, 1));
+    }
+
+    #[test]
+    fn a_step_stops_what_does_not_climb_it_and_nothing_without_data_becomes_ground() {
+        let mut land = shaped(4, 4, 10.0, |column, row| if column + row == 0 { f32::NAN } else { 0.0 });
+        let line = vec![DVec2::new(0.0, 0.0), DVec2::new(30.0, 30.0)];
+        land.steps = vec![Step { line, height_m: 0.6 }];
+        let codes = |name: &str| {
+            Going::new(&land, &Vehicle::built_in(name).expect("built in")).expect("memory").codes
+        };
+        assert_eq!((codes("tracked")[5], codes("truck")[5]), (RESTRICTED, SEVERELY_RESTRICTED));
+        assert_eq!((codes("truck")[0], codes("truck")[1]), (PostValues::NO_CODE, UNRESTRICTED));
+    }
+}

@@ -1,0 +1,148 @@
+//! The modified combined obstacle overlay (FM 34-130, ATP 2-01.3) and the speed of a vehicle at each post.
+
+use rayon::prelude::*;
+
+use crate::arguments::AnalysisArguments;
+use crate::error::AnalysisError;
+use crate::land::Land;
+use crate::movement::going::{Going, RESTRICTED, SEVERELY_RESTRICTED, UNRESTRICTED};
+use crate::movement::grade::GradeTable;
+use crate::movement::vehicle::Vehicle;
+use crate::outcome::{ClassLook, Figure, Hatching, Outcome, OutcomeRaster, PostValues, ValueClass};
+use sandtable_terrain::stop_flag::StopFlag;
+
+/// The names and looks of the codes.
+const OVERLAY: [(u8, &str, [u8; 4], Hatching); 3] = [
+    (UNRESTRICTED, "unrestricted", [0, 0, 0, 0], Hatching::None),
+    (RESTRICTED, "restricted", [250, 180, 60, 90], Hatching::Single),
+    (SEVERELY_RESTRICTED, "severely restricted", [200, 40, 30, 110], Hatching::Crossed),
+];
+
+/// The code of each post, with the area of each code.
+///
+/// # Errors
+/// `vehicle`, and memory.
+pub(crate) fn obstacles(
+    land: &Land,
+    arguments: &AnalysisArguments,
+    _stop: &StopFlag,
+) -> Result<Outcome, AnalysisError> {
+    let vehicle = Vehicle::named(land, &arguments.word("vehicle"))?;
+    let going = Going::new(land, &vehicle)?;
+    let count = |code: u8| going.codes.par_iter().filter(|&&found| found == code).count();
+    let known = going.codes.len() - count(PostValues::NO_CODE);
+    let mut figures = Vec::new();
+    for (code, label, ..) in OVERLAY {
+        let posts = count(code) as f64;
+        let share = if known > 0 { posts / known as f64 * 100.0 } else { 0.0 };
+        figures.push(Figure {
+            name: label.to_owned(),
+            value: posts * land.ground.cell_m2() / 1e6,
+            unit: "km²",
+        });
+        figures.push(Figure { name: format!("share of {label}"), value: share, unit: "%" });
+    }
+    let class = |(code, label, tint, hatching): (u8, &str, [u8; 4], Hatching)| ValueClass {
+        from: f32::from(code),
+        label: label.to_owned(),
+        look: ClassLook { tint, hatching },
+    };
+    let raster = OutcomeRaster {
+        name: "obstacles",
+        unit: "",
+        values: PostValues::Codes(going.codes),
+        classes: OVERLAY.map(class).into(),
+    };
+    Ok(Outcome { raster: Some(raster), figures, notes: going.notes, ..Outcome::default() })
+}
+
+/// The speed at each post straight up its slope, km/h; 0 where the vehicle cannot go. Roads are not slowed by the slope
+/// across which they were cut, see [`GradeTable::on_way`].
+///
+/// # Errors
+/// `vehicle`, and memory.
+pub(crate) fn speed(
+    land: &Land,
+    arguments: &AnalysisArguments,
+    _stop: &StopFlag,
+) -> Result<Outcome, AnalysisError> {
+    let vehicle = Vehicle::named(land, &arguments.word("vehicle"))?;
+    let Going { codes, speed_kmh: mut values, is_way, notes } = Going::new(land, &vehicle)?;
+    let grades = GradeTable::new(&vehicle, arguments.word("method") == "langmuir");
+    let columns = land.ground.columns() as usize;
+    values.par_chunks_mut(columns).enumerate().for_each(|(row, values)| {
+        let slopes = land.ground.slopes_of_row(row as u32);
+        for ((column, value), slopes) in values.iter_mut().enumerate().zip(slopes) {
+            let index = row * columns + column;
+            if codes[index] != PostValues::NO_CODE && !is_way[index] {
+                *value /= grades.open(slopes.length());
+            }
+        }
+    });
+    let ground: Vec<f64> =
+        values.iter().filter(|&&speed| speed > 0.0).map(|&speed| f64::from(speed)).collect();
+    let mean = if ground.is_empty() { 0.0 } else { ground.iter().sum::<f64>() / ground.len() as f64 };
+    let figures = vec![Figure { name: "mean speed where it can go".to_owned(), value: mean, unit: "km/h" }];
+    let raster = OutcomeRaster {
+        name: "speed",
+        unit: "km/h",
+        values: PostValues::Numbers(values),
+        classes: speed_classes(),
+    };
+    Ok(Outcome { raster: Some(raster), figures, notes, ..Outcome::default() })
+}
+
+fn speed_classes() -> Vec<ValueClass> {
+    let rows = [
+        (0.0, "cannot go", [200, 40, 30, 110], Hatching::Crossed),
+        (0.01, "under 2 km/h", [253, 141, 60, 110], Hatching::Single),
+        (2.0, "2–5 km/h", [254, 204, 92, 100], Hatching::Dots),
+        (5.0, "5–15 km/h", [255, 255, 178, 90], Hatching::None),
+        (15.0, "15–30 km/h", [180, 220, 130, 90], Hatching::None),
+        (30.0, "over 30 km/h", [60, 160, 80, 100], Hatching::None),
+    ];
+    let class = |(from, label, tint, hatching): (f32, &str, [u8; 4], Hatching)| ValueClass {
+        from,
+        label: label.to_owned(),
+        look: ClassLook { tint, hatching },
+    };
+    rows.map(class).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arguments::ArgumentValue;
+    use crate::movement::testing::shaped;
+    use crate::run::run;
+
+    fn arguments(kind: &str, vehicle: &str) -> AnalysisArguments {
+        let kind = sandtable_catalog::kind(kind).expect("a kind");
+        AnalysisArguments::new(kind).with("vehicle", ArgumentValue::Word(vehicle.to_owned()))
+    }
+
+    #[test]
+    fn the_overlay_states_the_area_and_the_share_of_each_code() {
+        // Columns 0 to 3 are level, then it rises by 50 %: column 3 sees half of that.
+        let land = shaped(8, 4, 100.0, |column, _| column.saturating_sub(3) as f32 * 50.0);
+        let found = run(&land, &arguments("obstacles", "truck"), &StopFlag::default()).expect("sound");
+        let Some(PostValues::Codes(codes)) = found.raster.map(|raster| raster.values) else {
+            panic!("codes")
+        };
+        assert_eq!(codes[..8], [0, 0, 0, 1, 2, 2, 2, 2]);
+        let figure =
+            |name: &str| found.figures.iter().find(|figure| figure.name == name).map(|figure| figure.value);
+        assert_eq!(figure("severely restricted"), Some(0.16));
+        assert_eq!(figure("share of unrestricted"), Some(37.5));
+        assert!(found.notes[0].starts_with("nothing is known of"), "{:?}", found.notes);
+    }
+
+    #[test]
+    fn the_speed_on_foot_is_toblers() {
+        let land = shaped(4, 4, 10.0, |column, _| column as f32);
+        let found = run(&land, &arguments("speed", "foot"), &StopFlag::default()).expect("sound");
+        let raster = found.raster.expect("a raster");
+        let tobler = 6.0 * libm::exp(-3.5 * 0.15);
+        assert!((f64::from(raster.values.value(5)) - tobler).abs() < 1e-4, "{}", raster.values.value(5));
+    }
+}

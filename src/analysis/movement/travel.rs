@@ -1,0 +1,430 @@
+//! The time that a vehicle takes from places to every post: shortest ways over sixteen neighbors, the eight around a post
+//! and the eight knight's moves.
+//!
+//! A step takes the mean pace of the posts that it passes, times the factor of its grade, which differs between up and down.
+//! A diagonal step does not pass between two posts that stop the vehicle, nor a knight's move beside one, so that a chain
+//! of posts, such as a river or a wall, has no gaps; along a road or a bridge both may lie beside it.
+//!
+//! Times are sums of f32. Such a sum never falls as a summand rises, so the least time of each post is one number, whatever
+//! the order in which posts are reached. The way back is found from the times alone, ties by the order of neighbors.
+
+use crate::error::AnalysisError;
+use crate::land::Land;
+use crate::movement::going::{Going, SEVERELY_RESTRICTED};
+use crate::movement::grade::GradeTable;
+use crate::movement::queue::BucketQueue;
+use crate::movement::vehicle::Vehicle;
+use glam::DVec2;
+use sandtable_base::limits::memory::check_memory;
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::stop_flag::StopFlag;
+
+/// Sixteen neighbors: columns and rows.
+const NEIGHBORS: [[i32; 2]; 16] = [
+    [1, 0],
+    [0, 1],
+    [-1, 0],
+    [0, -1],
+    [1, 1],
+    [-1, 1],
+    [-1, -1],
+    [1, -1],
+    [2, 1],
+    [1, 2],
+    [-1, 2],
+    [-2, 1],
+    [-2, -1],
+    [-1, -2],
+    [1, -2],
+    [2, -1],
+];
+
+/// The posts taken from the queue between two looks at the stop flag.
+const POSTS_PER_LOOK: u32 = 1 << 16;
+
+/// The ground as a vehicle travels it.
+pub(crate) struct TravelGround<'a> {
+    ground: &'a Lattice,
+    /// Seconds per meter on the level; infinite where the vehicle cannot go.
+    paces: Vec<f32>,
+    is_way: Vec<bool>,
+    grades: GradeTable,
+    steps: [TravelStep; 16],
+    least_pace: f32,
+    greatest_pace: f32,
+}
+
+/// A step to a neighbor.
+#[derive(Clone, Copy)]
+struct TravelStep {
+    columns: i32,
+    rows: i32,
+    offset: isize,
+    /// The two posts that it passes between or beside; unused for the four straight ones.
+    flanks: [isize; 2],
+    length_m: f32,
+}
+
+/// What a journey ends at.
+#[derive(Clone, Copy)]
+pub(crate) struct TravelGoal<'a> {
+    /// No post is reached later, seconds.
+    pub most_s: f32,
+    /// It ends as soon as one of these posts is reached for certain; `None` to reach all.
+    pub any_of: Option<&'a [usize]>,
+}
+
+impl<'a> TravelGround<'a> {
+    /// The ground of a land for a vehicle.
+    ///
+    /// # Errors
+    /// There is not enough memory.
+    pub fn new(
+        land: &'a Land,
+        going: Going,
+        vehicle: &Vehicle,
+        is_langmuir: bool,
+    ) -> Result<Self, AnalysisError> {
+        let ground = &*land.ground;
+        let posts = ground.heights().len();
+        check_memory(posts as u64 * 28, "the analysis", "name a smaller `extent`")?;
+        if u32::try_from(posts).is_err() {
+            return Err(AnalysisError::argument(
+                "extent",
+                "has more posts than ways are found on; name a smaller one",
+            ));
+        }
+        let pace = |speed: f32| if speed > 0.0 { 3.6 / speed } else { f32::INFINITY };
+        let paces: Vec<f32> = going.speed_kmh.iter().map(|&speed| pace(speed)).collect();
+        let finite = || paces.iter().copied().filter(|pace| pace.is_finite());
+        let (least_pace, greatest_pace) =
+            (finite().fold(f32::INFINITY, f32::min), finite().fold(0.0, f32::max));
+        let grades = GradeTable::new(vehicle, is_langmuir);
+        let columns = ground.columns() as isize;
+        let steps = NEIGHBORS.map(|[east, north]| {
+            let offset = |east: i32, north: i32| north as isize * columns + east as isize;
+            let flanks = match (east.abs(), north.abs()) {
+                (2, 1) => [offset(east / 2, 0), offset(east / 2, north)],
+                (1, 2) => [offset(0, north / 2), offset(east, north / 2)],
+                _ => [offset(east, 0), offset(0, north)],
+            };
+            let length_m = (ground.cell() * DVec2::new(f64::from(east), f64::from(north))).length() as f32;
+            TravelStep { columns: east, rows: north, offset: offset(east, north), flanks, length_m }
+        });
+        Ok(Self { ground, paces, is_way: going.is_way, grades, steps, least_pace, greatest_pace })
+    }
+
+    /// Multiplies the pace of posts, to keep a later way off them.
+    pub fn slow_down(&mut self, posts: impl IntoIterator<Item = usize>, factor: f32) {
+        for index in posts {
+            self.paces[index] *= factor;
+            if self.paces[index].is_finite() {
+                self.greatest_pace = self.greatest_pace.max(self.paces[index]);
+            }
+        }
+    }
+
+    /// Whether the vehicle can be at a post.
+    #[inline]
+    pub fn is_open(&self, index: usize) -> bool {
+        self.paces[index].is_finite()
+    }
+
+    /// The post nearest to map coordinates.
+    ///
+    /// # Errors
+    /// It lies beyond the ground, has no data, or the vehicle cannot be there.
+    pub fn post_near(&self, key: &'static str, at: DVec2) -> Result<usize, AnalysisError> {
+        let fault = |problem| AnalysisError::Place { key, at, problem };
+        let grid = self.ground.grid_from_map(at).round();
+        let is_within = grid.cmpge(DVec2::ZERO).all() && grid.cmple(self.ground.last_grid()).all();
+        if !is_within {
+            return Err(fault("it lies beyond the ground"));
+        }
+        let index = self.ground.index(Post::at_grid(grid));
+        match self.ground.heights()[index].is_nan() {
+            true => Err(fault("the ground has no data there")),
+            false if !self.is_open(index) => {
+                Err(fault("the vehicle cannot be there: water, a building, or other ground that stops it"))
+            }
+            false => Ok(index),
+        }
+    }
+
+    /// Seconds from a post to a neighbor; infinite where the step is not passable. The neighbor must be on the lattice.
+    #[inline]
+    fn seconds(&self, from: usize, column: i32, row: i32, step: &TravelStep) -> f32 {
+        let to = from.wrapping_add_signed(step.offset);
+        let (here, there) = (self.paces[from], self.paces[to]);
+        let is_along_way = self.is_way[from] && self.is_way[to];
+        let mut pace = (here + there) * 0.5;
+        let reach = step.columns.abs() + step.rows.abs();
+        if reach > 1 {
+            let flanks = step.flanks.map(|offset| self.paces[from.wrapping_add_signed(offset)]);
+            match reach {
+                2 if !is_along_way && flanks[0].is_infinite() && flanks[1].is_infinite() => {
+                    return f32::INFINITY;
+                }
+                2 => {}
+                _ => pace = (pace * 2.0 + flanks[0] + flanks[1]) * 0.25,
+            }
+        }
+        if pace.is_infinite() {
+            return pace;
+        }
+        let heights = self.ground.heights();
+        let grade = (heights[to] - heights[from]) / step.length_m;
+        let factor = match is_along_way {
+            true => self.grades.on_way(grade),
+            false => self.grades.open(grade) * self.across_factor(from, column, row, step),
+        };
+        pace * step.length_m * factor
+    }
+
+    /// The factor of the slope across a step, between the two posts beside its beginning.
+    #[inline]
+    fn across_factor(&self, from: usize, column: i32, row: i32, step: &TravelStep) -> f32 {
+        if !self.grades.has_across() {
+            return 1.0;
+        }
+        let (columns, rows) = (self.ground.columns() as i32, self.ground.rows() as i32);
+        let heights = self.ground.heights();
+        let own = heights[from];
+        let height = |sign: i32| {
+            let (east, north) = (column - sign * step.rows, row + sign * step.columns);
+            let is_within = east >= 0 && north >= 0 && east < columns && north < rows;
+            let height = if is_within { heights[(north * columns + east) as usize] } else { f32::NAN };
+            if height.is_nan() { None } else { Some(height) }
+        };
+        let cell = self.ground.cell().as_vec2();
+        let span = glam::Vec2::new(step.rows as f32 * cell.x, step.columns as f32 * cell.y).length();
+        let slope = match (height(1), height(-1)) {
+            (Some(left), Some(right)) => (left - right) / (2.0 * span),
+            (Some(one), None) | (None, Some(one)) => (one - own) / span,
+            (None, None) => 0.0,
+        };
+        self.grades.across(slope.abs())
+    }
+
+    /// Seconds from the nearest in time of the starts to each post; infinite where none is reached.
+    pub fn times(&self, starts: &[usize], goal: TravelGoal<'_>, stop: &StopFlag) -> Vec<f32> {
+        let mut times = vec![f32::INFINITY; self.paces.len()];
+        let length =
+            |of: fn(f32, f32) -> f32, first: f32| self.steps.iter().map(|step| step.length_m).fold(first, of);
+        let shortest = length(f32::min, f32::INFINITY) * self.grades.least();
+        let longest = length(f32::max, 0.0) * self.grades.greatest();
+        if !self.least_pace.is_finite() {
+            return times;
+        }
+        // A tenth less, for rounding.
+        let shortest_s = f64::from(shortest * self.least_pace) * 0.9;
+        let mut queue =
+            BucketQueue::new(shortest_s, f64::from(longest) * f64::from(self.greatest_pace) * 1.1);
+        for &start in starts {
+            if self.is_open(start) && times[start] > 0.0 {
+                times[start] = 0.0;
+                queue.push(start as u32, 0.0);
+            }
+        }
+        let (columns, rows) = (self.ground.columns(), self.ground.rows());
+        let mut ends_s = goal.most_s;
+        let mut looks = 0u32;
+        while let Some((index, time)) = queue.pop() {
+            looks = looks.wrapping_add(1);
+            if looks.is_multiple_of(POSTS_PER_LOOK) && stop.is_stopped() {
+                break;
+            }
+            let from = index as usize;
+            if times[from] != time || time > ends_s {
+                continue;
+            }
+            if goal.any_of.is_some_and(|posts| posts.binary_search(&from).is_ok()) {
+                ends_s = ends_s.min(time);
+                continue;
+            }
+            let (column, row) = ((index % columns) as i32, (index / columns) as i32);
+            let is_inner = column >= 2 && row >= 2 && column + 2 < columns as i32 && row + 2 < rows as i32;
+            for step in &self.steps {
+                if !is_inner && !is_on(columns, rows, column + step.columns, row + step.rows) {
+                    continue;
+                }
+                let to = from.wrapping_add_signed(step.offset);
+                // No step is better than none at all.
+                if times[to] <= time {
+                    continue;
+                }
+                let arrival = time + self.seconds(from, column, row, step);
+                if arrival < times[to] && arrival <= ends_s {
+                    times[to] = arrival;
+                    queue.push(to as u32, arrival);
+                }
+            }
+        }
+        times
+    }
+
+    /// The posts of the quickest way that ends at a reached post, from the start on.
+    pub fn way_to(&self, times: &[f32], end: usize) -> Vec<usize> {
+        let (columns, rows) = (self.ground.columns(), self.ground.rows());
+        let mut way = vec![end];
+        let mut at = end;
+        while times[at] > 0.0 && times[at].is_finite() {
+            let before = self.steps.iter().find_map(|step| {
+                let (column, row) = (at as i64 % i64::from(columns), at as i64 / i64::from(columns));
+                let (column, row) = (column as i32 - step.columns, row as i32 - step.rows);
+                let before = at.wrapping_add_signed(-step.offset);
+                let leads = is_on(columns, rows, column, row)
+                    && times[before] < times[at]
+                    && times[before] + self.seconds(before, column, row, step) == times[at];
+                leads.then_some(before)
+            });
+            // Every reached post but a start has one.
+            let Some(before) = before else { break };
+            way.push(before);
+            at = before;
+        }
+        way.reverse();
+        way
+    }
+
+    /// Seconds along posts that follow each other as neighbors.
+    pub fn seconds_along(&self, way: &[usize]) -> Vec<f64> {
+        let columns = self.ground.columns() as i32;
+        let mut sums = vec![0.0];
+        let mut sum = 0.0;
+        for ends in way.windows(2) {
+            let offset = ends[1] as isize - ends[0] as isize;
+            let (column, row) = (ends[0] as i32 % columns, ends[0] as i32 / columns);
+            if let Some(step) = self.steps.iter().find(|step| {
+                step.offset == offset
+                    && is_on(columns as u32, self.ground.rows(), column + step.columns, row + step.rows)
+            }) {
+                sum += f64::from(self.seconds(ends[0], column, row, step));
+            }
+            sums.push(sum);
+        }
+        sums
+    }
+
+    /// The ground.
+    pub fn lattice(&self) -> &'a Lattice {
+        self.ground
+    }
+}
+
+fn is_on(columns: u32, rows: u32, column: i32, row: i32) -> bool {
+    column >= 0 && row >= 0 && column < columns as i32 && row < rows as i32
+}
+
+/// The ground of a land for a vehicle named by the argument, with the going's codes and notes.
+///
+/// # Errors
+/// `vehicle`, and memory.
+pub(crate) fn travel_ground<'a>(
+    land: &'a Land,
+    arguments: &crate::arguments::AnalysisArguments,
+) -> Result<(TravelGround<'a>, Vec<u8>, Vec<String>), AnalysisError> {
+    let vehicle = Vehicle::named(land, &arguments.word("vehicle"))?;
+    let mut going = Going::new(land, &vehicle)?;
+    let codes = std::mem::take(&mut going.codes);
+    let notes = std::mem::take(&mut going.notes);
+    debug_assert!(codes.iter().all(|&code| code <= SEVERELY_RESTRICTED || code == 255));
+    let ground = TravelGround::new(land, going, &vehicle, arguments.word("method") == "langmuir")?;
+    Ok((ground, codes, notes))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::land::Step;
+    use crate::movement::testing::{flat, shaped};
+
+    pub(super) const ALL: TravelGoal<'static> = TravelGoal { most_s: f32::INFINITY, any_of: None };
+
+    fn travel<'a>(land: &'a Land, name: &str) -> TravelGround<'a> {
+        let vehicle = Vehicle::named(land, name).expect("a vehicle");
+        let going = Going::new(land, &vehicle).expect("memory");
+        TravelGround::new(land, going, &vehicle, false).expect("memory")
+    }
+
+    #[test]
+    fn on_level_ground_sixteen_directions_are_exact_and_others_at_most_2_point_8_percent_too_long() {
+        let land = flat(41, 41, 10.0);
+        let ground = travel(&land, "truck");
+        let center = 20 * 41 + 20;
+        let times = ground.times(&[center], ALL, &StopFlag::default());
+        let pace = 3.6 / 15.0;
+        for post in land.ground.posts() {
+            let straight = (post.grid() - 20.0).length() * 10.0 * pace;
+            let found = f64::from(times[land.ground.index(post)]);
+            assert!(
+                found >= straight * 0.99999 && found <= straight * 1.0276,
+                "{post:?}: {found} {straight}"
+            );
+        }
+        let exact = |column: u32, row: u32| f64::from(times[land.ground.index(Post { column, row })]);
+        assert!((exact(40, 30) - 500f64.sqrt() * 10.0 * pace).abs() < 1e-3);
+        assert!((exact(40, 20) - 200.0 * pace).abs() < 1e-3);
+    }
+
+    #[test]
+    fn times_are_those_of_relaxing_every_step_until_nothing_changes() {
+        let mut land = shaped(17, 13, 10.0, |column, row| {
+            let wave = ((column * 7 + row * 13 + column * row) % 11) as f32;
+            if (column, row) == (5, 5) { f32::NAN } else { wave * 0.35 }
+        });
+        let line = vec![DVec2::new(80.0, 0.0), DVec2::new(110.0, 90.0)];
+        land.steps = vec![Step { line, height_m: 3.0 }];
+        for name in ["foot", "tracked", "truck"] {
+            let ground = travel(&land, name);
+            let times = ground.times(&[0, 20], ALL, &StopFlag::default());
+            let mut slow = vec![f32::INFINITY; times.len()];
+            (slow[0], slow[20]) = (0.0, 0.0);
+            loop {
+                let before = slow.clone();
+                for from in 0..slow.len() {
+                    let (column, row) = ((from % 17) as i32, (from / 17) as i32);
+                    for step in &ground.steps {
+                        if is_on(17, 13, column + step.columns, row + step.rows) {
+                            let to = from.wrapping_add_signed(step.offset);
+                            slow[to] = slow[to].min(slow[from] + ground.seconds(from, column, row, step));
+                        }
+                    }
+                }
+                if slow == before {
+                    break;
+                }
+            }
+            assert_eq!(times, slow, "{name}");
+            let end = 12 * 17 + 16;
+            let way = ground.way_to(&times, end);
+            assert!(times[way[0]] == 0.0 && times[end].is_finite(), "{name}");
+            let along = *ground.seconds_along(&way).last().expect("posts");
+            assert!((along - f64::from(times[end])).abs() < 1e-3 * along, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_wall_has_no_gaps_whatever_its_direction() {
+        for to in [DVec2::new(90.0, 90.0), DVec2::new(90.0, 40.0), DVec2::new(40.0, 90.0)] {
+            let mut land = flat(10, 10, 10.0);
+            let line = vec![DVec2::new(0.0, 0.0), to, to * 3.0];
+            land.steps = vec![Step { line, height_m: 5.0 }];
+            let ground = travel(&land, "foot");
+            let times = ground.times(&[9], ALL, &StopFlag::default());
+            assert!(times[9 * 10].is_infinite(), "{to}");
+            assert!(times[9 * 10 + 9].is_infinite() || to.x != to.y);
+        }
+    }
+
+    #[test]
+    fn uphill_takes_longer_than_down() {
+        let land = shaped(9, 3, 10.0, |column, _| column as f32 * 2.0);
+        let ground = travel(&land, "foot");
+        let up = ground.times(&[9], ALL, &StopFlag::default())[17];
+        let down = ground.times(&[17], ALL, &StopFlag::default())[9];
+        let tobler = |grade: f64| 80.0 * 3.6 / (6.0 * libm::exp(-3.5 * (grade + 0.05f64).abs()));
+        assert!((f64::from(up) - tobler(0.2)).abs() < 0.01, "{up}");
+        assert!((f64::from(down) - tobler(-0.2)).abs() < 0.01, "{down}");
+    }
+}
