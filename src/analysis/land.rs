@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use crate::movement::vehicle::Vehicle;
-use sandtable_catalog::kind::LandLayer;
+use sandtable_catalog::kind::LandPart;
 use sandtable_geom::crs::Crs;
 use sandtable_terrain::lattice::Lattice;
 
@@ -18,9 +18,9 @@ pub struct Land {
     /// Its coordinate system.
     pub crs: Crs,
     /// What covers the ground.
-    pub cover: Option<Vec<Cover>>,
+    pub cover: Option<Vec<LandCover>>,
     /// The class of the road over each post.
-    pub roads: Option<Vec<RoadSurface>>,
+    pub roads: Option<Vec<RoadClass>>,
     /// The water over each post.
     pub water: Option<Vec<WaterPost>>,
     /// The trees around each post.
@@ -42,7 +42,7 @@ pub struct Land {
 /// What covers the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
-pub enum Cover {
+pub enum LandCover {
     /// Nothing is known.
     #[default]
     Unknown,
@@ -73,7 +73,7 @@ pub enum Cover {
 /// The surface of a road.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
-pub enum RoadSurface {
+pub enum RoadClass {
     /// No road.
     #[default]
     None,
@@ -130,7 +130,7 @@ pub struct RoadLine {
     /// Map coordinates, two or more.
     pub line: Vec<DVec2>,
     /// Its surface.
-    pub surface: RoadSurface,
+    pub surface: RoadClass,
     /// Its width in meters.
     pub width_m: f64,
 }
@@ -190,13 +190,13 @@ impl Land {
     }
 
     /// Whether a layer is known. Crossings are where roads are.
-    pub fn knows(&self, layer: LandLayer) -> bool {
+    pub fn knows(&self, layer: LandPart) -> bool {
         match layer {
-            LandLayer::Cover => self.cover.is_some(),
-            LandLayer::Roads | LandLayer::Crossings => self.roads.is_some(),
-            LandLayer::Water => self.water.is_some(),
-            LandLayer::Woods => self.woods.is_some(),
-            LandLayer::Obstacles => self.obstacles_m.is_some(),
+            LandPart::Cover => self.cover.is_some(),
+            LandPart::Roads | LandPart::Crossings => self.roads.is_some(),
+            LandPart::Water => self.water.is_some(),
+            LandPart::Woods => self.woods.is_some(),
+            LandPart::Obstacles => self.obstacles_m.is_some(),
         }
     }
 }

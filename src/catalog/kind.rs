@@ -20,7 +20,7 @@ pub struct AnalysisKind {
     /// From how far away the land has an effect on a value.
     pub reach: AnalysisReach,
     /// The layers of the land that it uses besides the ground; it says so where the land lacks one.
-    pub layers: &'static [LandLayer],
+    pub layers: &'static [LandPart],
     /// Author and year, or the manual.
     pub source: &'static str,
     /// What it does not know, or may get wrong, a sentence each.
@@ -92,7 +92,7 @@ pub enum AnalysisReach {
 
 /// A layer of the land besides the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum LandLayer {
+pub enum LandPart {
     /// What covers the ground.
     Cover,
     /// Roads, with their classes.
@@ -107,7 +107,7 @@ pub enum LandLayer {
     Crossings,
 }
 
-impl LandLayer {
+impl LandPart {
     /// Its name in messages.
     pub const fn noun(self) -> &'static str {
         match self {

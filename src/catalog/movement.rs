@@ -1,6 +1,6 @@
 //! Kinds about movement across the land.
 
-use crate::kind::{AnalysisFamily, AnalysisKind, AnalysisReach, AnalysisYield, LandLayer};
+use crate::kind::{AnalysisFamily, AnalysisKind, AnalysisReach, AnalysisYield, LandPart};
 use crate::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
 
 /// For whom the ground is judged.
@@ -20,8 +20,8 @@ const METHOD: AnalysisParameter = AnalysisParameter::word(
 );
 
 /// The layers on which the going depends.
-const GOING_LAYERS: &[LandLayer] =
-    &[LandLayer::Cover, LandLayer::Roads, LandLayer::Water, LandLayer::Woods, LandLayer::Crossings];
+const GOING_LAYERS: &[LandPart] =
+    &[LandPart::Cover, LandPart::Roads, LandPart::Water, LandPart::Woods, LandPart::Crossings];
 
 /// What the going does not know.
 const NO_SOIL: &str = "No soil and no weather: trafficability follows from slope, cover, trees and water alone, with this \

@@ -110,8 +110,8 @@ fn corners(plan: [sandtable_ribbon::plan::PlanVertex; 3]) -> [DVec2; 3] {
 }
 
 /// The covers of areas, and the roofs of buildings; `None` where the scene has neither.
-fn covers(scene: &SceneModel, grid: &PostGrid<'_>) -> Option<Vec<land::Cover>> {
-    let mut covers = vec![land::Cover::Unknown; grid.posts()];
+fn covers(scene: &SceneModel, grid: &PostGrid<'_>) -> Option<Vec<land::LandCover>> {
+    let mut covers = vec![land::LandCover::Unknown; grid.posts()];
     let mut is_known = false;
     for ribbon in &scene.ribbons {
         let RibbonSurface::Cover(cover) = ribbon.surface else { continue };
@@ -123,23 +123,25 @@ fn covers(scene: &SceneModel, grid: &PostGrid<'_>) -> Option<Vec<land::Cover>> {
     }
     for (mesh, _) in buildings(scene) {
         is_known = true;
-        mesh_triangles(mesh, |plan, _| grid.triangle(plan, |index, _| covers[index] = land::Cover::Building));
+        mesh_triangles(mesh, |plan, _| {
+            grid.triangle(plan, |index, _| covers[index] = land::LandCover::Building)
+        });
     }
     is_known.then_some(covers)
 }
 
 /// What a cover of a scene is for movement; `None` of what says nothing about the ground.
-fn land_cover(cover: Cover) -> Option<land::Cover> {
+fn land_cover(cover: Cover) -> Option<land::LandCover> {
     Some(match cover {
-        Cover::Forest => land::Cover::Wood,
-        Cover::Scrub => land::Cover::Scrub,
-        Cover::Meadow => land::Cover::Open,
-        Cover::Field => land::Cover::Crops,
-        Cover::Orchard => land::Cover::Orchard,
-        Cover::Wetland => land::Cover::Wetland,
-        Cover::Sand => land::Cover::Sand,
-        Cover::Rock => land::Cover::Rock,
-        Cover::BuiltUp | Cover::Industry => land::Cover::BuiltUp,
+        Cover::Forest => land::LandCover::Wood,
+        Cover::Scrub => land::LandCover::Scrub,
+        Cover::Meadow => land::LandCover::Open,
+        Cover::Field => land::LandCover::Crops,
+        Cover::Orchard => land::LandCover::Orchard,
+        Cover::Wetland => land::LandCover::Wetland,
+        Cover::Sand => land::LandCover::Sand,
+        Cover::Rock => land::LandCover::Rock,
+        Cover::BuiltUp | Cover::Industry => land::LandCover::BuiltUp,
         _ => return None,
     })
 }
@@ -178,19 +180,19 @@ fn is_river(symbol: &LineSymbol) -> bool {
 }
 
 /// The surface of a road of a width in meters; `None` of what is no road.
-fn road_surface(surface: RibbonSurface, width_m: f64) -> Option<land::RoadSurface> {
+fn road_surface(surface: RibbonSurface, width_m: f64) -> Option<land::RoadClass> {
     Some(match surface {
         RibbonSurface::Asphalt
         | RibbonSurface::AsphaltSolid
         | RibbonSurface::AsphaltEdges
         | RibbonSurface::AsphaltPlain => match width_m {
-            MOTORWAY_M.. => land::RoadSurface::Motorway,
-            MAIN_M.. => land::RoadSurface::Main,
-            _ => land::RoadSurface::Road,
+            MOTORWAY_M.. => land::RoadClass::Motorway,
+            MAIN_M.. => land::RoadClass::Main,
+            _ => land::RoadClass::Road,
         },
-        RibbonSurface::Gravel => land::RoadSurface::Track,
-        RibbonSurface::Track if width_m < TRACK_M => land::RoadSurface::Path,
-        RibbonSurface::Track => land::RoadSurface::Track,
+        RibbonSurface::Gravel => land::RoadClass::Track,
+        RibbonSurface::Track if width_m < TRACK_M => land::RoadClass::Path,
+        RibbonSurface::Track => land::RoadClass::Track,
         _ => return None,
     })
 }
@@ -201,8 +203,8 @@ fn width_m(symbol: &LineSymbol) -> f64 {
 }
 
 /// The best road over each post.
-fn roads(scene: &SceneModel, grid: &PostGrid<'_>) -> Vec<land::RoadSurface> {
-    let mut roads = vec![land::RoadSurface::None; grid.posts()];
+fn roads(scene: &SceneModel, grid: &PostGrid<'_>) -> Vec<land::RoadClass> {
+    let mut roads = vec![land::RoadClass::None; grid.posts()];
     for symbol in &scene.symbols {
         let Some(surface) = road_surface(symbol.surface, width_m(symbol)) else { continue };
         grid.line(symbol.alignment.line.points(), |index| roads[index] = roads[index].max(surface));

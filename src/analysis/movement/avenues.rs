@@ -304,7 +304,7 @@ fn narrow_places(land: &Land, rank: usize, avenue: &Avenue) -> Vec<ChokePoint> {
 mod tests {
     use super::*;
     use crate::arguments::ArgumentValue;
-    use crate::land::Cover;
+    use crate::land::LandCover;
     use crate::movement::testing::flat;
     use crate::run::run;
 
@@ -315,7 +315,7 @@ mod tests {
             let (column, row) = (index % 31, index / 31);
             (14..=16).contains(&column) && !(4..=6).contains(&row) && row != 15
         };
-        let cover = (0..651).map(|index| if is_swamp(index) { Cover::Wetland } else { Cover::Open });
+        let cover = (0..651).map(|index| if is_swamp(index) { LandCover::Wetland } else { LandCover::Open });
         land.cover = Some(cover.collect());
         land
     }
@@ -368,7 +368,7 @@ mod tests {
     #[test]
     fn a_line_in_the_swamp_or_behind_it_is_an_error_that_names_it() {
         let mut land = two_gaps();
-        let cover = (0..651).map(|index| if index % 31 == 15 { Cover::Wetland } else { Cover::Open });
+        let cover = (0..651).map(|index| if index % 31 == 15 { LandCover::Wetland } else { LandCover::Open });
         land.cover = Some(cover.collect());
         for to_column in [15.0, 30.0] {
             let error = found(&land, "avenues", 1.0, to_column).expect_err("not reached");
@@ -379,7 +379,7 @@ mod tests {
     #[test]
     fn routes_that_do_not_differ_are_left_out_with_a_note() {
         let mut land = flat(21, 3, 100.0);
-        let cover = (0..63).map(|index| if index / 21 == 1 { Cover::Open } else { Cover::Wetland });
+        let cover = (0..63).map(|index| if index / 21 == 1 { LandCover::Open } else { LandCover::Wetland });
         land.cover = Some(cover.collect());
         let outcome = found(&land, "avenues", 4.0, 20.0).expect("sound");
         assert_eq!(outcome.tables[0].rows.len(), 1);

@@ -172,7 +172,7 @@ fn classes(widths: &[f64]) -> Vec<ValueClass> {
 mod tests {
     use super::*;
     use crate::arguments::ArgumentValue;
-    use crate::land::Cover;
+    use crate::land::LandCover;
     use crate::movement::testing::flat;
     use crate::run::run;
 
@@ -190,8 +190,8 @@ mod tests {
     #[test]
     fn a_band_of_five_posts_is_a_corridor_of_five_cells_and_no_more() {
         let mut land = flat(9, 30, 100.0);
-        let cover =
-            (0..270).map(|index| if (2..7).contains(&(index % 9)) { Cover::Open } else { Cover::Wetland });
+        let cover = (0..270)
+            .map(|index| if (2..7).contains(&(index % 9)) { LandCover::Open } else { LandCover::Wetland });
         land.cover = Some(cover.collect());
         for (width_m, code) in [(499.0, 1), (500.0, 1), (501.0, 0)] {
             let found = codes(&land, &[width_m]);
@@ -203,12 +203,14 @@ mod tests {
     #[test]
     fn every_post_of_a_corridor_lies_in_a_free_disk_of_its_width() {
         let mut land = flat(30, 30, 10.0);
-        let cover: Vec<Cover> = (0..900usize)
-            .map(
-                |index| {
-                    if (index * 7919 + index * index * 31) % 47 == 0 { Cover::Wetland } else { Cover::Open }
-                },
-            )
+        let cover: Vec<LandCover> = (0..900usize)
+            .map(|index| {
+                if (index * 7919 + index * index * 31) % 47 == 0 {
+                    LandCover::Wetland
+                } else {
+                    LandCover::Open
+                }
+            })
             .collect();
         let at = |index: usize| [(index % 30) as f64 * 10.0, (index / 30) as f64 * 10.0];
         let distance =
@@ -218,8 +220,9 @@ mod tests {
         let is_in = |post: usize, radius: f64| {
             (0..900).any(|center| {
                 distance(center, post) < radius - 1e-4
-                    && (0..900)
-                        .all(|other| cover[other] == Cover::Open || distance(center, other) >= radius - 1e-6)
+                    && (0..900).all(|other| {
+                        cover[other] == LandCover::Open || distance(center, other) >= radius - 1e-6
+                    })
             })
         };
         for (post, &found) in found.iter().enumerate() {

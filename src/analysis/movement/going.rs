@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 
-use crate::land::{Cover, Crossing, CrossingKind, Land, RoadSurface, Stand, WaterKind, WaterPost};
+use crate::land::{Crossing, CrossingKind, Land, LandCover, RoadClass, Stand, WaterKind, WaterPost};
 use crate::movement::burn::along_line;
 use crate::movement::vehicle::{Drive, Vehicle};
 use crate::outcome::PostValues;
@@ -91,8 +91,8 @@ impl Going {
 
     /// Roads, bridges and fords.
     fn place_ways(&mut self, land: &Land, vehicle: &Vehicle) {
-        let mut surfaces = land.roads.clone().unwrap_or_else(|| vec![RoadSurface::None; self.codes.len()]);
-        surfaces.resize(self.codes.len(), RoadSurface::None);
+        let mut surfaces = land.roads.clone().unwrap_or_else(|| vec![RoadClass::None; self.codes.len()]);
+        surfaces.resize(self.codes.len(), RoadClass::None);
         for road in &land.road_lines {
             along_line(&land.ground, &road.line, road.width_m, |index| {
                 surfaces[index] = surfaces[index].max(road.surface);
@@ -103,7 +103,7 @@ impl Going {
         };
         for crossing in land.crossings.iter().filter(|crossing| crossing.kind == CrossingKind::Bridge) {
             along_line(&land.ground, &crossing.line, crossing.width_m, |index| {
-                surfaces[index] = surfaces[index].max(RoadSurface::Track);
+                surfaces[index] = surfaces[index].max(RoadClass::Track);
             });
         }
         let mut weak = 0;
@@ -111,7 +111,7 @@ impl Going {
             weak += 1;
             // Its road may be drawn a post wider than the bridge.
             let width_m = crossing.width_m.max(0.0) + 2.0 * land.ground.cell().max_element();
-            along_line(&land.ground, &crossing.line, width_m, |index| surfaces[index] = RoadSurface::None);
+            along_line(&land.ground, &crossing.line, width_m, |index| surfaces[index] = RoadClass::None);
         }
         if weak > 0 {
             self.notes.push(format!(
@@ -120,7 +120,7 @@ impl Going {
             ));
         }
         for (index, &surface) in
-            surfaces.iter().enumerate().filter(|&(_, surface)| *surface > RoadSurface::None)
+            surfaces.iter().enumerate().filter(|&(_, surface)| *surface > RoadClass::None)
         {
             let speed = vehicle.speed_on_kmh(surface) as f32;
             if speed > 0.0 && self.codes[index] != PostValues::NO_CODE {
@@ -171,7 +171,7 @@ fn ground_rule(land: &Land, vehicle: &Vehicle, index: usize) -> GroundRule {
     }
     let cover = land.cover.as_ref().and_then(|cover| cover.get(index)).copied().unwrap_or_default();
     let stand = land.woods.as_ref().and_then(|woods| woods.get(index)).copied().unwrap_or_default();
-    let is_clear = matches!(cover, Cover::Building | Cover::BuiltUp | Cover::Paved);
+    let is_clear = matches!(cover, LandCover::Building | LandCover::BuiltUp | LandCover::Paved);
     if stand.spacing_m > 0.0 && !is_clear {
         return stand_rule(vehicle, stand);
     }
@@ -198,21 +198,21 @@ fn stand_rule(vehicle: &Vehicle, stand: Stand) -> GroundRule {
 }
 
 /// The rule of a cover: on foot, on wheels, on tracks.
-fn cover_rule(drive: Drive, cover: Cover) -> GroundRule {
+fn cover_rule(drive: Drive, cover: LandCover) -> GroundRule {
     const FREE: u8 = UNRESTRICTED;
     const SLOW: u8 = RESTRICTED;
     const NOT: u8 = SEVERELY_RESTRICTED;
     let rules = match cover {
-        Cover::Unknown | Cover::Open | Cover::Paved => [(FREE, 1.0), (FREE, 1.0), (FREE, 1.0)],
-        Cover::Crops => [(FREE, 0.8), (FREE, 0.7), (FREE, 0.9)],
-        Cover::Orchard => [(FREE, 0.8), (SLOW, 0.3), (SLOW, 0.5)],
-        Cover::Scrub => [(FREE, 0.6), (SLOW, 0.4), (FREE, 0.7)],
-        Cover::Wood => [(FREE, 0.7), (SLOW, 0.25), (SLOW, 0.4)],
-        Cover::Wetland => [(SLOW, 0.3), (NOT, 0.0), (NOT, 0.0)],
-        Cover::Sand => [(FREE, 0.6), (SLOW, 0.4), (FREE, 0.7)],
-        Cover::Rock => [(SLOW, 0.5), (NOT, 0.0), (SLOW, 0.3)],
-        Cover::BuiltUp => [(FREE, 0.9), (SLOW, 0.5), (SLOW, 0.4)],
-        Cover::Building => [(NOT, 0.0), (NOT, 0.0), (NOT, 0.0)],
+        LandCover::Unknown | LandCover::Open | LandCover::Paved => [(FREE, 1.0), (FREE, 1.0), (FREE, 1.0)],
+        LandCover::Crops => [(FREE, 0.8), (FREE, 0.7), (FREE, 0.9)],
+        LandCover::Orchard => [(FREE, 0.8), (SLOW, 0.3), (SLOW, 0.5)],
+        LandCover::Scrub => [(FREE, 0.6), (SLOW, 0.4), (FREE, 0.7)],
+        LandCover::Wood => [(FREE, 0.7), (SLOW, 0.25), (SLOW, 0.4)],
+        LandCover::Wetland => [(SLOW, 0.3), (NOT, 0.0), (NOT, 0.0)],
+        LandCover::Sand => [(FREE, 0.6), (SLOW, 0.4), (FREE, 0.7)],
+        LandCover::Rock => [(SLOW, 0.5), (NOT, 0.0), (SLOW, 0.3)],
+        LandCover::BuiltUp => [(FREE, 0.9), (SLOW, 0.5), (SLOW, 0.4)],
+        LandCover::Building => [(NOT, 0.0), (NOT, 0.0), (NOT, 0.0)],
     };
     let (code, share) = match drive {
         Drive::Foot => rules[0],
@@ -267,10 +267,10 @@ mod tests {
             water[row * 5 + 2] = WaterPost { kind: WaterKind::River, depth_m: f32::NAN };
         }
         land.water = Some(water);
-        land.roads = Some(vec![RoadSurface::None; 15]);
+        land.roads = Some(vec![RoadClass::None; 15]);
         assert_eq!(Going::new(&land, &tracked()).expect("memory").codes[7], SEVERELY_RESTRICTED);
         let line = vec![DVec2::new(10.0, 10.0), DVec2::new(30.0, 10.0)];
-        let surface = RoadSurface::Main;
+        let surface = RoadClass::Main;
         land.road_lines.push(RoadLine { name: String::new(), line: line.clone(), surface, width_m: 6.0 });
         let going = Going::new(&land, &tracked()).expect("memory");
         assert_eq!((going.codes[7], going.speed_kmh[7], going.is_way[7]), (UNRESTRICTED, 55.0, true));

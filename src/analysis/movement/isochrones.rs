@@ -107,7 +107,7 @@ fn classes(limits: &[f64]) -> Vec<ValueClass> {
 mod tests {
     use super::*;
     use crate::arguments::ArgumentValue;
-    use crate::land::{RoadLine, RoadSurface, WaterKind, WaterPost};
+    use crate::land::{RoadClass, RoadLine, WaterKind, WaterPost};
     use crate::movement::testing::flat;
     use crate::run::run;
     use glam::DVec2;
@@ -130,7 +130,7 @@ mod tests {
         assert!((found[10] - 4.0).abs() < 1e-4 && (found[12] - 4.8).abs() < 1e-4 && found[13].is_nan());
         let line = vec![DVec2::ZERO, DVec2::new(2000.0, 0.0)];
         land.road_lines =
-            vec![RoadLine { name: String::new(), line, surface: RoadSurface::Main, width_m: 7.0 }];
+            vec![RoadLine { name: String::new(), line, surface: RoadClass::Main, width_m: 7.0 }];
         let found = minutes(&land, 50.0, &[DVec2::ZERO]).expect("sound");
         assert!((found[20] - 2.0 / 70.0 * 60.0).abs() < 1e-4, "{}", found[20]);
     }

@@ -59,7 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn small_lands_without_data_and_arguments_at_the_ends_of_their_ranges_give_an_outcome_or_an_error_that_names_a_key()
+    fn small_lands_and_extreme_arguments_give_an_outcome_or_name_a_key()
      {
         let nan = |keep: u32| move |column: u32, row: u32| if column + row >= keep { 5.0 } else { f32::NAN };
         let mut lands: Vec<Land> =

@@ -1,7 +1,7 @@
 //! Vehicles, and people on foot: what ground they can cross, and how fast.
 
 use crate::error::AnalysisError;
-use crate::land::{Land, RoadSurface};
+use crate::land::{Land, RoadClass};
 use sandtable_base::message::suggest::{listed, nearest, quoted};
 
 /// The names of the built-in vehicles.
@@ -32,7 +32,7 @@ pub struct Vehicle {
     pub slope_across_percent: [f64; 2],
     /// Its speed on level open ground, km/h.
     pub speed_kmh: f64,
-    /// Its greatest speed on each surface of road, km/h, from [`RoadSurface::Path`] to [`RoadSurface::Motorway`].
+    /// Its greatest speed on each surface of road, km/h, from [`RoadClass::Path`] to [`RoadClass::Motorway`].
     pub road_speed_kmh: [f64; 5],
     /// The depth of water that it wades, meters.
     pub ford_m: f64,
@@ -61,7 +61,7 @@ pub enum Drive {
 
 impl Vehicle {
     /// Its greatest speed on a surface of road, km/h; that of open ground where there is no road.
-    pub fn speed_on_kmh(&self, surface: RoadSurface) -> f64 {
+    pub fn speed_on_kmh(&self, surface: RoadClass) -> f64 {
         match (surface as usize).checked_sub(1) {
             Some(index) => self.road_speed_kmh[index],
             None => self.speed_kmh,

@@ -340,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn the_greedy_choice_is_that_of_all_lines_of_sight_and_sees_its_share_of_the_best_pair() {
+    fn the_greedy_choice_is_that_of_all_lines_of_sight() {
         let land = land(20, ripples);
         let arguments = || {
             let areas = vec![("area", ring(0.5, 8.5)), ("watch", ring(3.5, 18.5))];

@@ -1,5 +1,7 @@
 //! Values of `gdaldem` 3.6.2 on a small hill, to which slopes, aspects, light and ruggedness are equal.
 
+#![allow(clippy::excessive_precision, reason = "the digits that gdaldem prints")]
+
 use glam::DVec2;
 
 use super::window::tests::{land, values};
