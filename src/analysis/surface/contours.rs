@@ -219,7 +219,7 @@ mod tests {
     fn intervals_that_give_too_much_are_errors_and_land_without_data_gives_nothing() {
         let steep = land(DVec2::ONE, 2, vec![0.0, 1e6, 0.0, 1e6]);
         for kind in ["contours", "elevation-bands"] {
-            let error = outcome(&steep, kind, &[], &[("interval", 0.01)]).err().expect("too many");
+            let error = outcome(&steep, kind, &[], &[("interval", 0.01)]).expect_err("too many");
             assert_eq!(error.key(), Some("interval"));
             let empty = outcome(&land(DVec2::ONE, 2, vec![f32::NAN; 4]), kind, &[], &[]).expect("nothing");
             assert!(empty.features.is_empty());

@@ -106,17 +106,14 @@ fn vector_ruggedness(ground: &Lattice, radius: usize, stop: &StopFlag) -> Result
 
 /// The value of each post from a square of samples around it, `radius` posts to each side: `grow` takes a sample in,
 /// `join` puts parts together. NaN where the square reaches beyond the lattice.
-fn over_squares<S: Copy + Sync, T: Copy + Send>(
+fn over_squares<S: Copy + Sync, T: Copy + Send + Sync>(
     ground: &Lattice,
     samples: &[S],
     radius: usize,
     stop: &StopFlag,
     (none, grow, join): (T, impl Fn(T, S) -> T + Sync, impl Fn(T, T) -> T + Sync),
     value: impl Fn(usize, T) -> f32 + Sync,
-) -> Result<Vec<f32>, AnalysisError>
-where
-    T: Sync,
-{
+) -> Result<Vec<f32>, AnalysisError> {
     let (columns, rows) = (ground.columns() as usize, ground.rows() as usize);
     let mut values = vec![f32::NAN; samples.len()];
     values.par_chunks_mut(columns).enumerate().for_each_init(
