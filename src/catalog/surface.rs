@@ -273,4 +273,29 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
             "Passes at the border or beside a post without data are left out.",
         ],
     },
+    AnalysisKind {
+        name: "form-lines",
+        family: AnalysisFamily::Surface,
+        title: "Ridge and valley lines",
+        summary: "Lines of steepest slope from passes: up along ridges to summits, and down valleys.",
+        parameters: &[
+            AnalysisParameter::word("form", &["both", "ridges", "valleys"], "both", "Which lines are drawn."),
+            AnalysisParameter::number(
+                "depth",
+                (0.0, 10_000.0),
+                "m",
+                ParameterDefault::Value("30"),
+                "How far the lower of the two summits beside a pass rises at least above it.",
+            ),
+        ],
+        yields: AnalysisYield::Features,
+        reach: AnalysisReach::Whole,
+        layers: &[],
+        source: "Maxwell 1870, On hills and dales; passes as Carr, Snoeyink and Axen 2003",
+        limits: &[
+            "Spurs and side valleys without a pass at their head have no line.",
+            "Valley lines end in the first depression: fill depressions before, where they are errors of the model.",
+            "Lines go from post to post, in eight directions.",
+        ],
+    },
 ];

@@ -13,13 +13,17 @@ use crate::observation::lookout::{Lookout, check_work, curvature, height_under, 
 use crate::outcome::{
     FeatureRole, Figure, Outcome, OutcomeFeature, OutcomeShape, OutcomeTable, PropertyValue, TableColumn,
 };
+use sandtable_base::limits::memory::check_memory;
 use sandtable_terrain::sight::Curvature;
 use sandtable_terrain::sight::ground::SightGround;
 use sandtable_terrain::sight::line::{Sight, SightEnd};
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// Lines of sight that an analysis may compute: some minutes on two cores.
-const MOST_LINES: f64 = 1e8;
+const MOST_LINES: f64 = 2e7;
+
+/// A place of the route, with what is known of it.
+const BYTES_PER_PLACE: f64 = 64.0;
 
 /// Halvings between two places that differ: to a millionth of their distance.
 const HALVINGS: u32 = 20;
@@ -128,7 +132,9 @@ pub(crate) fn exposure(
     }
     let step_m = arguments.number_if("step").unwrap_or(0.5 * ground.cell().min_element());
     let posts = arguments.points("posts").len();
-    check_work("step", posts as f64, length_m / step_m + route.len() as f64, MOST_LINES)?;
+    let expected = length_m / step_m + route.len() as f64;
+    check_work("step", posts as f64, expected, MOST_LINES)?;
+    check_memory((expected * BYTES_PER_PLACE) as u64, "the places of the route", "state a larger `step`")?;
     let lookouts = Lookout::all(land, arguments, "posts", arguments.number("observer_height"))?;
     let watch = RouteWatch {
         ground: SightGround::new(land.ground.clone()),

@@ -124,7 +124,7 @@ pub(crate) fn check_work(
         return Ok(());
     }
     let problem = format!(
-        "asks for {looks} looks over {posts_each:.0} posts of ground each, more than {most:e} in all; state fewer places, a \
+        "asks for {looks} looks over {posts_each:.0} places each, more than {most:e} in all; state fewer places, a \
          shorter range or a smaller extent"
     );
     Err(AnalysisError::argument(key, problem))

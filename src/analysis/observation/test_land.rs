@@ -14,7 +14,7 @@ use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// The south-west post.
-const ORIGIN: DVec2 = DVec2::new(500_000.0, 4_000_000.0);
+pub(crate) const ORIGIN: DVec2 = DVec2::new(500_000.0, 4_000_000.0);
 
 /// A land of `side` × `side` posts with these heights by column and row.
 pub(crate) fn land(side: u32, height: impl Fn(u32, u32) -> f32) -> Land {

@@ -295,7 +295,7 @@ mod tests {
         }
         let error = check_looks("posts", 601.0, posts_within(&land.ground, f64::INFINITY) * 41_667.0);
         let error = error.expect_err("1.0016e10 posts of ground");
-        assert!(error.to_string().contains("`posts` asks for 601 looks over 16666800 posts"), "{error}");
+        assert!(error.to_string().contains("`posts` asks for 601 looks over 16666800 places"), "{error}");
         assert_eq!(check_looks("posts", 599.0, 16_666_800.0), Ok(()));
     }
 }

@@ -4,6 +4,8 @@
 //! where two floods meet is the pass of the lower summit, whose prominence is its height above the pass (the merge tree of
 //! Carr, Snoeyink and Axen 2003; prominence as Kirmse and de Ferranti 2017).
 
+use std::collections::BTreeSet;
+
 use rayon::prelude::*;
 
 use crate::error::AnalysisError;
@@ -91,6 +93,14 @@ pub(super) fn divide_summits(
     }
     summits.sort_by(|a, b| b.prominence_m.total_cmp(&a.prominence_m).then(a.post.cmp(&b.post)));
     Ok(summits)
+}
+
+/// The passes of summits with their depth, the prominence of the lower summit; where more than two floods meet, the
+/// deepest. The deepest first.
+pub(super) fn divide_passes(summits: &[DivideSummit]) -> Vec<(usize, f32)> {
+    let mut seen = BTreeSet::new();
+    let passes = summits.iter().filter_map(|summit| summit.pass.map(|pass| (pass, summit.prominence_m)));
+    passes.filter(|&(pass, _)| seen.insert(pass)).collect()
 }
 
 /// Whether post `a` is flooded after `b`.

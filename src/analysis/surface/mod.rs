@@ -4,6 +4,7 @@ pub mod aspect;
 pub mod contours;
 pub mod curvature;
 mod divide_tree;
+pub mod form_lines;
 #[cfg(test)]
 mod gdaldem_tables;
 pub mod geomorphons;
@@ -27,4 +28,5 @@ pub(crate) const FUNCTIONS: &[(&str, KindFunction)] = &[
     ("elevation-bands", contours::elevation_bands),
     ("peaks", peaks::peaks),
     ("passes", peaks::passes),
+    ("form-lines", form_lines::form_lines),
 ];

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::divide_tree::{DivideSummit, divide_summits, neighbors};
+use super::divide_tree::{DivideSummit, divide_passes, divide_summits, neighbors};
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
@@ -49,7 +49,7 @@ pub(crate) fn passes(
 ) -> Result<Outcome, AnalysisError> {
     let ground = &*land.ground;
     let summits = divide_summits(ground, arguments.number("depth") as f32, stop)?;
-    let passes = summits.iter().filter_map(|summit| summit.pass.map(|pass| (pass, summit.prominence_m)));
+    let passes = divide_passes(&summits).into_iter();
     let (inner, outer): (Vec<_>, Vec<_>) = passes.partition(|&(pass, _)| is_inside(ground, pass));
     let feature = |(pass, depth_m): (usize, f32)| {
         let height_m = ground.heights()[pass];
@@ -84,11 +84,12 @@ fn peak(ground: &Lattice, summit: &DivideSummit, isolation_m: Option<f64>) -> Ou
 }
 
 /// Whether a post has eight neighbors with data.
-fn is_inside(ground: &Lattice, post: usize) -> bool {
+pub(super) fn is_inside(ground: &Lattice, post: usize) -> bool {
     neighbors(ground, post).filter(|&other| !ground.heights()[other].is_nan()).count() == 8
 }
 
-fn left_out(count: usize, noun: &str) -> Vec<String> {
+/// A note of how many were left out; none for none.
+pub(super) fn left_out(count: usize, noun: &str) -> Vec<String> {
     let text = |(verb, plural): (&str, &str)| {
         format!("{count} {noun}{plural} at the border or beside posts without data {verb} left out")
     };
