@@ -1,6 +1,8 @@
 //! Earth that is moved.
 
+pub mod cut_fill;
+
 use crate::run::KindFunction;
 
 /// The functions of the family's kinds.
-pub(crate) const FUNCTIONS: &[(&str, KindFunction)] = &[];
+pub(crate) const FUNCTIONS: &[(&str, KindFunction)] = &[("cut-fill", cut_fill::cut_fill)];

@@ -1,0 +1,182 @@
+//! Cut and fill between two grounds: the difference at each post, and volumes as prisms on the cells.
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::arguments::AnalysisArguments;
+use crate::error::AnalysisError;
+use crate::land::Land;
+use crate::outcome::{
+    ClassLook, FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape,
+    PostValues, ValueClass,
+};
+use sandtable_terrain::lattice::Post;
+use sandtable_terrain::stop_flag::StopFlag;
+
+/// The ground above the other one in meters at each post, no data outside the area; and the volumes in cubic meters.
+///
+/// # Errors
+/// An argument where there is no other ground, or where it has other posts; [`AnalysisError::Stopped`].
+pub(crate) fn cut_fill(
+    land: &Land,
+    arguments: &AnalysisArguments,
+    stop: &StopFlag,
+) -> Result<Outcome, AnalysisError> {
+    let Some(other) = &land.other_ground else {
+        return Err(AnalysisError::argument(
+            "against",
+            "names no ground; state an elevation file or `source`",
+        ));
+    };
+    let ground = &*land.ground;
+    let (columns, rows) = (ground.columns() as usize, ground.rows() as usize);
+    if (other.columns(), other.rows()) != (ground.columns(), ground.rows()) {
+        return Err(AnalysisError::argument(
+            "against",
+            "has other posts than the ground; sample it at the same ones",
+        ));
+    }
+    let area = arguments.points("area");
+    let mut values = vec![f32::NAN; ground.heights().len()];
+    values.par_chunks_mut(columns).enumerate().for_each(|(row, values)| {
+        if stop.is_stopped() {
+            return;
+        }
+        for (column, value) in values.iter_mut().enumerate() {
+            let post = Post { column: column as u32, row: row as u32 };
+            if area.is_empty() || holds(area, ground.map_position(post)) {
+                let index = row * columns + column;
+                *value = ground.heights()[index] - other.heights()[index];
+            }
+        }
+    });
+    if stop.is_stopped() {
+        return Err(AnalysisError::Stopped);
+    }
+    // Each row has its sums, which add up in the order of rows: the same bits for any number of threads.
+    let share = |index: usize, count: usize| if index == 0 || index + 1 == count { 0.5 } else { 1.0 };
+    let row_sums = |(row, values): (usize, &[f32])| {
+        let mut sums = [0.0_f64; 2];
+        for (column, &value) in values.iter().enumerate().filter(|(_, value)| !value.is_nan()) {
+            let volume = f64::from(value) * share(column, columns) * share(row, rows);
+            sums[usize::from(value > 0.0)] += volume.abs();
+        }
+        sums
+    };
+    let sums: Vec<[f64; 2]> = values.par_chunks(columns).enumerate().map(row_sums).collect();
+    let volume = |side: usize| sums.iter().map(|sums| sums[side]).sum::<f64>() * ground.cell_m2();
+    let (cut, fill) = (volume(0), volume(1));
+    let figure = |name: &str, value| Figure { name: name.to_owned(), value, unit: "m³" };
+    let outline = (!area.is_empty()).then(|| OutcomeFeature {
+        shape: OutcomeShape::Area(vec![counter_clockwise(area)]),
+        name: String::new(),
+        role: FeatureRole::Outline,
+        properties: Vec::new(),
+    });
+    let raster = OutcomeRaster {
+        name: "cut-fill",
+        unit: "m",
+        values: PostValues::Numbers(values),
+        classes: classes(),
+    };
+    Ok(Outcome {
+        raster: Some(raster),
+        features: outline.into_iter().collect(),
+        figures: vec![figure("cut", cut), figure("fill", fill), figure("net fill", fill - cut)],
+        ..Outcome::default()
+    })
+}
+
+/// Whether a ring holds a position, by the even-odd rule.
+fn holds(ring: &[DVec2], at: DVec2) -> bool {
+    let mut before = ring.last().copied().unwrap_or(at);
+    let mut is_inside = false;
+    for &corner in ring {
+        if (corner.y > at.y) != (before.y > at.y)
+            && at.x < before.x + (corner.x - before.x) * (at.y - before.y) / (corner.y - before.y)
+        {
+            is_inside = !is_inside;
+        }
+        before = corner;
+    }
+    is_inside
+}
+
+fn counter_clockwise(ring: &[DVec2]) -> Vec<DVec2> {
+    let mut ring = ring.to_vec();
+    let twice_area: f64 =
+        (0..ring.len()).map(|index| ring[index].perp_dot(ring[(index + 1) % ring.len()])).sum();
+    if twice_area < 0.0 {
+        ring.reverse();
+    }
+    ring
+}
+
+fn classes() -> Vec<ValueClass> {
+    let rows = [
+        (-2e7, "cut", [200, 60, 40, 120], Hatching::Single),
+        (-0.05, "unchanged", [0, 0, 0, 0], Hatching::None),
+        (0.05, "fill", [50, 90, 200, 120], Hatching::Dots),
+    ];
+    let class = |(from, label, tint, hatching): (f32, &str, [u8; 4], Hatching)| ValueClass {
+        from,
+        label: label.to_owned(),
+        look: ClassLook { tint, hatching },
+    };
+    rows.map(class).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arguments::ArgumentValue;
+    use sandtable_geom::crs::Crs;
+    use sandtable_terrain::lattice::Lattice;
+    use std::sync::Arc;
+
+    fn lattice(heights: [f32; 9]) -> Arc<Lattice> {
+        Arc::new(Lattice::new(DVec2::ZERO, DVec2::new(10.0, 5.0), 3, heights.to_vec()).unwrap())
+    }
+
+    fn arguments() -> AnalysisArguments {
+        AnalysisArguments::new(sandtable_catalog::kind("cut-fill").unwrap())
+    }
+
+    fn land() -> Land {
+        let mut land =
+            Land::bare(lattice([2., 2., 2., 2., 5., 0., 2., 2., f32::NAN]), Crs::from_epsg(32733).unwrap());
+        land.other_ground = Some(lattice([2.; 9]));
+        land
+    }
+
+    #[test]
+    fn volumes_are_those_of_prisms_by_hand() {
+        // The middle post has a whole cell of 50 m² under 3 m; the eastern one half a cell under −2 m.
+        let outcome = cut_fill(&land(), &arguments(), &StopFlag::default()).unwrap();
+        let volumes: Vec<f64> = outcome.figures.iter().map(|figure| figure.value).collect();
+        assert_eq!(volumes, [50.0, 150.0, 100.0]);
+    }
+
+    #[test]
+    fn an_area_limits_volumes_and_raster() {
+        let mut ring = Vec::new();
+        for (column, row) in [(0, 0), (2, 0), (2, 2), (0, 2)] {
+            ring.push(land().ground.map_position(Post { column, row }) * 0.98 + DVec2::new(0.1, 0.05));
+        }
+        ring[1].x -= 5.0;
+        ring[2].x -= 5.0;
+        let arguments = arguments().with("area", ArgumentValue::Points(ring));
+        let outcome = cut_fill(&land(), &arguments, &StopFlag::default()).unwrap();
+        let volumes: Vec<f64> = outcome.figures.iter().map(|figure| figure.value).collect();
+        assert_eq!(volumes, [0.0, 150.0, 150.0]);
+        assert!(outcome.raster.unwrap().values.value(5).is_nan());
+    }
+
+    #[test]
+    fn a_land_without_another_ground_names_the_key() {
+        let mut land = land();
+        land.other_ground = None;
+        let error = cut_fill(&land, &arguments(), &StopFlag::default()).unwrap_err();
+        assert_eq!(error.key(), Some("against"));
+    }
+}
