@@ -4,34 +4,99 @@ use crate::kind::{AnalysisFamily, AnalysisKind, AnalysisReach, AnalysisYield};
 use crate::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
 
 /// The kinds.
-pub(crate) const KINDS: &[AnalysisKind] = &[AnalysisKind {
-    name: "cut-fill",
-    family: AnalysisFamily::Earth,
-    title: "Cut and fill",
-    summary: "How much higher the ground is than another one, and the volumes of earth cut and filled.",
-    parameters: &[
-        AnalysisParameter::plain(
-            "against",
-            ParameterForm::Ground,
-            ParameterDefault::Required,
-            "The ground before: an elevation file, or `source`, the elevation before the scene's earthworks.",
-        ),
-        AnalysisParameter::plain(
-            "area",
-            ParameterForm::Area,
-            ParameterDefault::Otherwise("the whole land"),
-            "The area whose volumes count.",
-        ),
-    ],
-    yields: AnalysisYield::Both,
-    reach: AnalysisReach::Whole,
-    layers: &[],
-    source: "Prisms on cells, a post's difference times its share of the cells around it",
-    limits: &[
-        "A cell that holds both cut and fill counts each post's quarter by that post: its net volume is that of the \
+pub(crate) const KINDS: &[AnalysisKind] = &[
+    AnalysisKind {
+        name: "cut-fill",
+        family: AnalysisFamily::Earth,
+        title: "Cut and fill",
+        summary: "How much higher the ground is than another one, and the volumes of earth cut and filled.",
+        parameters: &[
+            AnalysisParameter::plain(
+                "against",
+                ParameterForm::Ground,
+                ParameterDefault::Required,
+                "The ground before: an elevation file, or `source`, the elevation before the scene's earthworks.",
+            ),
+            AnalysisParameter::plain(
+                "area",
+                ParameterForm::Area,
+                ParameterDefault::Otherwise("the whole land"),
+                "The area whose volumes count.",
+            ),
+        ],
+        yields: AnalysisYield::Both,
+        reach: AnalysisReach::Whole,
+        layers: &[],
+        source: "Prisms on cells, a post's difference times its share of the cells around it",
+        limits: &[
+            "A cell that holds both cut and fill counts each post's quarter by that post: its net volume is that of the \
          bilinear surface, while cut and fill are both too great, by at most the cell's area times the lesser of its \
          greatest cut and its greatest fill.",
-        "The border of an area runs along the borders of the posts' own quarters.",
-        "Earth swells when it is dug and shrinks when it is compacted, which the volumes leave out.",
-    ],
-}];
+            "The border of an area runs along the borders of the posts' own quarters.",
+            "Earth swells when it is dug and shrinks when it is compacted, which the volumes leave out.",
+        ],
+    },
+    AnalysisKind {
+        name: "berms",
+        family: AnalysisFamily::Earth,
+        title: "Berms and ditches",
+        summary: "How high a berm along a line must be for its crest to reach a level, and how deep a ditch gives its earth.",
+        parameters: &[
+            AnalysisParameter::plain(
+                "line",
+                ParameterForm::Line,
+                ParameterDefault::Required,
+                "The line of the berm.",
+            ),
+            AnalysisParameter::number(
+                "level_m",
+                (-1e5, 1e5),
+                "m",
+                ParameterDefault::Required,
+                "The level of the crest.",
+            ),
+            AnalysisParameter::number(
+                "crest_m",
+                (0.0, 100.0),
+                "m",
+                ParameterDefault::Value("1"),
+                "The width of the crest.",
+            ),
+            AnalysisParameter::number(
+                "side_run",
+                (0.0, 10.0),
+                "",
+                ParameterDefault::Value("1.5"),
+                "Meters across for each meter up, on each side of berm and ditch.",
+            ),
+            AnalysisParameter::number(
+                "ditch_m",
+                (0.1, 100.0),
+                "m",
+                ParameterDefault::Value("2"),
+                "The width of the ditch's bottom.",
+            ),
+            AnalysisParameter::number(
+                "swell",
+                (0.5, 2.0),
+                "",
+                ParameterDefault::Value("1"),
+                "The volume of the berm for each cubic meter of the ditch.",
+            ),
+            AnalysisParameter::number(
+                "step_m",
+                (0.1, 10000.0),
+                "m",
+                ParameterDefault::Value("10"),
+                "The distance between stations.",
+            ),
+        ],
+        yields: AnalysisYield::Table,
+        reach: AnalysisReach::Whole,
+        layers: &[],
+        source: "Trapezoid sections, volumes by average end areas",
+        limits: &[
+            "The ground across the line counts as level, and as straight between stations; bends add nothing.",
+        ],
+    },
+];

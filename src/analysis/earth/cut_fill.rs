@@ -135,16 +135,18 @@ mod tests {
     use std::sync::Arc;
 
     fn lattice(heights: [f32; 9]) -> Arc<Lattice> {
-        Arc::new(Lattice::new(DVec2::ZERO, DVec2::new(10.0, 5.0), 3, heights.to_vec()).unwrap())
+        Arc::new(Lattice::new(DVec2::ZERO, DVec2::new(10.0, 5.0), 3, heights.to_vec()).expect("valid input"))
     }
 
     fn arguments() -> AnalysisArguments {
-        AnalysisArguments::new(sandtable_catalog::kind("cut-fill").unwrap())
+        AnalysisArguments::new(sandtable_catalog::kind("cut-fill").expect("a kind"))
     }
 
     fn land() -> Land {
-        let mut land =
-            Land::bare(lattice([2., 2., 2., 2., 5., 0., 2., 2., f32::NAN]), Crs::from_epsg(32733).unwrap());
+        let mut land = Land::bare(
+            lattice([2., 2., 2., 2., 5., 0., 2., 2., f32::NAN]),
+            Crs::from_epsg(32733).expect("a known system"),
+        );
         land.other_ground = Some(lattice([2.; 9]));
         land
     }
@@ -152,7 +154,7 @@ mod tests {
     #[test]
     fn volumes_are_those_of_prisms_by_hand() {
         // The middle post has a whole cell of 50 m² under 3 m; the eastern one half a cell under −2 m.
-        let outcome = cut_fill(&land(), &arguments(), &StopFlag::default()).unwrap();
+        let outcome = cut_fill(&land(), &arguments(), &StopFlag::default()).expect("valid input");
         let volumes: Vec<f64> = outcome.figures.iter().map(|figure| figure.value).collect();
         assert_eq!(volumes, [50.0, 150.0, 100.0]);
     }
@@ -166,17 +168,17 @@ mod tests {
         ring[1].x -= 5.0;
         ring[2].x -= 5.0;
         let arguments = arguments().with("area", ArgumentValue::Points(ring));
-        let outcome = cut_fill(&land(), &arguments, &StopFlag::default()).unwrap();
+        let outcome = cut_fill(&land(), &arguments, &StopFlag::default()).expect("valid input");
         let volumes: Vec<f64> = outcome.figures.iter().map(|figure| figure.value).collect();
         assert_eq!(volumes, [0.0, 150.0, 150.0]);
-        assert!(outcome.raster.unwrap().values.value(5).is_nan());
+        assert!(outcome.raster.expect("a raster").values.value(5).is_nan());
     }
 
     #[test]
     fn a_land_without_another_ground_names_the_key() {
         let mut land = land();
         land.other_ground = None;
-        let error = cut_fill(&land, &arguments(), &StopFlag::default()).unwrap_err();
+        let error = cut_fill(&land, &arguments(), &StopFlag::default()).expect_err("no other ground");
         assert_eq!(error.key(), Some("against"));
     }
 }

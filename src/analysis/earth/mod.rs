@@ -1,8 +1,10 @@
 //! Earth that is moved.
 
+pub mod berms;
 pub mod cut_fill;
 
 use crate::run::KindFunction;
 
 /// The functions of the family's kinds.
-pub(crate) const FUNCTIONS: &[(&str, KindFunction)] = &[("cut-fill", cut_fill::cut_fill)];
+pub(crate) const FUNCTIONS: &[(&str, KindFunction)] =
+    &[("cut-fill", cut_fill::cut_fill), ("berms", berms::berms)];

@@ -11,7 +11,7 @@ const COLUMNS: usize = 41;
 const ROWS: usize = 37;
 
 fn arguments(size: &str) -> AnalysisArguments {
-    let kind = sandtable_catalog::kind("landing-zones").unwrap();
+    let kind = sandtable_catalog::kind("landing-zones").expect("a kind");
     AnalysisArguments::new(kind)
         .with("size", ArgumentValue::Word(size.to_owned()))
         .with("approach_m", ArgumentValue::Number(120.0))
@@ -29,9 +29,9 @@ fn land(seed: u64) -> Land {
     };
     let mut heights: Vec<f32> = (0..COLUMNS * ROWS).map(height).collect();
     heights[700] = f32::NAN;
-    let ground =
-        Lattice::new(DVec2::new(500.0, 900.0), DVec2::new(10.0, 8.0), COLUMNS as u32, heights).unwrap();
-    let mut land = Land::bare(Arc::new(ground), Crs::from_epsg(32733).unwrap());
+    let ground = Lattice::new(DVec2::new(500.0, 900.0), DVec2::new(10.0, 8.0), COLUMNS as u32, heights)
+        .expect("valid input");
+    let mut land = Land::bare(Arc::new(ground), Crs::from_epsg(32733).expect("a known system"));
     let mut obstacle = || if random() < 0.01 { random() * 12.0 } else { 0.0 };
     land.obstacles_m = Some((0..COLUMNS * ROWS).map(|_| obstacle()).collect());
     land
@@ -40,7 +40,7 @@ fn land(seed: u64) -> Land {
 /// The code of a post by the definition, post by post.
 fn brute(land: &Land, radius: f64, column: i64, row: i64) -> u8 {
     let ground = &land.ground;
-    let obstacles = land.obstacles_m.as_ref().unwrap();
+    let obstacles = land.obstacles_m.as_ref().expect("a layer");
     let height = |c: i64, r: i64| ground.heights()[r as usize * COLUMNS + c as usize];
     let inside = |c: i64, r: i64| (0..COLUMNS as i64).contains(&c) && (0..ROWS as i64).contains(&r);
     if height(column, row).is_nan() {
@@ -90,8 +90,8 @@ fn codes_are_those_of_the_definition_post_by_post_among_random_obstacles() {
     for seed in 1..=4 {
         for (size, radius) in [("1", 12.5), ("3", 25.0), ("5", 50.0)] {
             let land = land(seed);
-            let outcome = landing_zones(&land, &arguments(size), &StopFlag::default()).unwrap();
-            let PostValues::Codes(codes) = outcome.raster.unwrap().values else { panic!("codes") };
+            let outcome = landing_zones(&land, &arguments(size), &StopFlag::default()).expect("valid input");
+            let PostValues::Codes(codes) = outcome.raster.expect("a raster").values else { panic!("codes") };
             for (index, &code) in codes.iter().enumerate() {
                 let wanted = brute(&land, radius, (index % COLUMNS) as i64, (index / COLUMNS) as i64);
                 assert_eq!(code, wanted, "seed {seed} size {size} post {index}");
@@ -107,7 +107,7 @@ fn codes_are_those_of_the_definition_post_by_post_among_random_obstacles() {
 #[test]
 fn sites_lie_apart_and_a_land_of_four_posts_has_none() {
     let land = land(9);
-    let outcome = landing_zones(&land, &arguments("1"), &StopFlag::default()).unwrap();
+    let outcome = landing_zones(&land, &arguments("1"), &StopFlag::default()).expect("valid input");
     let centers: Vec<DVec2> = outcome
         .features
         .iter()
@@ -120,7 +120,10 @@ fn sites_lie_apart_and_a_land_of_four_posts_has_none() {
     for (index, center) in centers.iter().enumerate() {
         assert!(centers[..index].iter().all(|other| other.distance(*center) >= 74.999), "{centers:?}");
     }
-    let ground = Lattice::new(DVec2::ZERO, DVec2::ONE, 2, vec![0.0, f32::NAN, f32::NAN, f32::NAN]).unwrap();
-    let bare = Land::bare(Arc::new(ground), Crs::from_epsg(32733).unwrap());
-    assert!(landing_zones(&bare, &arguments("7"), &StopFlag::default()).unwrap().features.is_empty());
+    let ground = Lattice::new(DVec2::ZERO, DVec2::ONE, 2, vec![0.0, f32::NAN, f32::NAN, f32::NAN])
+        .expect("valid input");
+    let bare = Land::bare(Arc::new(ground), Crs::from_epsg(32733).expect("a known system"));
+    assert!(
+        landing_zones(&bare, &arguments("7"), &StopFlag::default()).expect("valid input").features.is_empty()
+    );
 }
