@@ -1,6 +1,6 @@
 //! Kinds about landing and sites.
 
-use crate::kind::{AnalysisFamily, AnalysisKind, AnalysisReach, AnalysisYield, LandLayer};
+use crate::kind::{AnalysisFamily, AnalysisKind, AnalysisReach, AnalysisYield, LandPart};
 use crate::parameter::{AnalysisParameter, ParameterDefault::Value};
 
 /// The kinds.
@@ -55,7 +55,7 @@ pub(crate) const KINDS: &[AnalysisKind] = &[AnalysisKind {
     ],
     yields: AnalysisYield::Both,
     reach: AnalysisReach::Whole,
-    layers: &[LandLayer::Cover, LandLayer::Water, LandLayer::Obstacles],
+    layers: &[LandPart::Cover, LandPart::Water, LandPart::Obstacles],
     source: "FM 3-21.38, chapter 4",
     limits: &[
         "Approach and departure are opposite, straight, and in the directions of the eight neighbors of a post alone.",

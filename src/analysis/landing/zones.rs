@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::disk::DiskRows;
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
-use crate::land::{Cover, Land, WaterKind};
+use crate::land::{Land, LandCover, WaterKind};
 use crate::outcome::{
     ClassLook, FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape,
     PostValues, PropertyValue, ValueClass,
@@ -139,10 +139,16 @@ fn hindrances(land: &Land, [free, _]: [f32; 2]) -> Vec<f32> {
             if slope.is_nan() || !is_low || !is_dry {
                 continue;
             }
-            *value = match land.cover.as_ref().map_or(Cover::Unknown, |cover| cover[index]) {
-                Cover::Unknown | Cover::Open | Cover::Paved => slope,
-                Cover::Crops | Cover::Scrub | Cover::Sand | Cover::Rock => slope.max(free.next_up()),
-                Cover::Orchard | Cover::Wood | Cover::Wetland | Cover::BuiltUp | Cover::Building => continue,
+            *value = match land.cover.as_ref().map_or(LandCover::Unknown, |cover| cover[index]) {
+                LandCover::Unknown | LandCover::Open | LandCover::Paved => slope,
+                LandCover::Crops | LandCover::Scrub | LandCover::Sand | LandCover::Rock => {
+                    slope.max(free.next_up())
+                }
+                LandCover::Orchard
+                | LandCover::Wood
+                | LandCover::Wetland
+                | LandCover::BuiltUp
+                | LandCover::Building => continue,
             };
         }
     });

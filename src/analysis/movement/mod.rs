@@ -59,8 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn small_lands_and_extreme_arguments_give_an_outcome_or_name_a_key()
-     {
+    fn small_lands_and_extreme_arguments_give_an_outcome_or_name_a_key() {
         let nan = |keep: u32| move |column: u32, row: u32| if column + row >= keep { 5.0 } else { f32::NAN };
         let mut lands: Vec<Land> =
             vec![shaped(2, 2, 10.0, nan(0)), shaped(2, 2, 10.0, nan(2)), shaped(2, 9, 1e-3, nan(0))];

@@ -348,7 +348,7 @@ mod tests {
     }
 
     #[test]
-    fn on_level_ground_sixteen_directions_are_exact_and_others_at_most_2_point_8_percent_too_long() {
+    fn on_level_ground_times_are_at_most_2_point_8_percent_too_long() {
         let land = flat(41, 41, 10.0);
         let ground = travel(&land, "truck");
         let center = 20 * 41 + 20;

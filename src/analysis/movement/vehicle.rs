@@ -210,7 +210,7 @@ mod tests {
     use crate::movement::testing::flat;
 
     #[test]
-    fn built_in_vehicles_are_in_order_and_a_scenes_vehicle_of_the_same_name_comes_first() {
+    fn built_in_vehicles_are_in_order_and_a_vehicle_of_the_scene_comes_first() {
         let mut land = flat(3, 3, 10.0);
         for name in BUILT_IN_NAMES {
             assert_eq!(Vehicle::named(&land, name).expect("built in").check(), Ok(()));

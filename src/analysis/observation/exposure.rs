@@ -384,7 +384,7 @@ mod tests {
     }
 
     #[test]
-    fn routes_off_the_land_without_length_or_with_too_many_places_are_errors_that_name_the_key() {
+    fn routes_off_the_land_without_length_or_too_long_are_errors_that_name_the_key() {
         let land = land(20, ripples);
         let key = |route: &[(f64, f64)], more: Vec<(&'static str, ArgumentValue)>| {
             let mut arguments = vec![points("route", route), points("posts", &[(4.0, 9.0)])];

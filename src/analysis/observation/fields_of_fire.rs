@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn a_place_is_hit_where_the_line_of_fire_passes_the_clearance_above_all_ground_between() {
+    fn a_place_is_hit_where_the_line_of_fire_clears_all_ground_between() {
         let land = land(20, ripples);
         let (muzzle_m, target_m, clearance_m) = (9.0, 4.0, 2.5);
         let arguments = arguments(&[
@@ -300,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn ranges_out_of_order_and_a_clearance_over_the_muzzle_are_errors_that_name_the_key() {
+    fn ranges_out_of_order_and_a_clearance_over_the_muzzle_are_errors() {
         let land = land(11, |_, _| 0.0);
         let key = |numbers: &[(&'static str, f64)]| {
             let mut arguments = arguments(numbers);

@@ -64,7 +64,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_at_both_ends_of_their_ranges_give_a_value_for_each_post_or_an_error_that_names_a_key() {
+    fn extreme_numbers_give_a_value_for_each_post_or_an_error_that_names_a_key() {
         for land in [
             land(2, |_, _| 3.0),
             land(2, |column, _| column as f32 * 1e7),

@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_firsts_and_dead_ground_are_those_of_one_line_of_sight_for_each_post_of_the_ground() {
+    fn counts_firsts_and_dead_ground_are_those_of_single_lines_of_sight() {
         let land = land(20, ripples);
         let show = |word: &str| {
             let mut arguments = two_posts();

@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plane_has_no_vector_ruggedness_however_steep_and_a_roof_has_that_of_its_two_normals() {
+    fn a_plane_has_no_vector_ruggedness_and_a_roof_has_that_of_its_normals() {
         let plane = (0..49u8).map(|index| f32::from(index % 7) * 3.0).collect();
         let flat = values(&land(DVec2::ONE, 7, plane), "ruggedness", &[("measure", "vrm")], &[]);
         assert!(flat[24].abs() < 1e-6 && flat[8].is_nan(), "{flat:?}");
