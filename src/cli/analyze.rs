@@ -87,12 +87,9 @@ impl FromArgMatches for AnalyzeCommand {
 
 /// The command of a kind.
 fn kind_command(kind: &'static AnalysisKind) -> Command {
-    let command = Command::new(kind.name).about(kind.summary.trim_end_matches('.')).after_help(format!(
-        "Source: {}.\nLimits: {}",
-        kind.source,
-        kind.limits.join(" ")
-    ));
-    let command = DatasetArguments::augment_args(command);
+    let command = DatasetArguments::augment_args(Command::new(kind.name))
+        .about(kind.summary.trim_end_matches('.'))
+        .after_help(format!("Source: {}.\nLimits: {}", kind.source, kind.limits.join(" ")));
     let output = Arg::new("output")
         .short('o')
         .long("output")
