@@ -1,6 +1,10 @@
 //! Water on the land.
 
+mod drainage;
+mod kinds;
+
 use crate::run::KindFunction;
 
 /// The functions of the family's kinds.
-pub(crate) const FUNCTIONS: &[(&str, KindFunction)] = &[];
+pub(crate) const FUNCTIONS: &[(&str, KindFunction)] =
+    &[("fill", kinds::fill), ("flow", kinds::flow), ("streams", kinds::streams)];

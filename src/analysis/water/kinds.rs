@@ -1,0 +1,282 @@
+//! The kinds about water: depressions, flow and streams.
+
+use crate::arguments::AnalysisArguments;
+use crate::error::AnalysisError;
+use crate::land::Land;
+use crate::outcome::{
+    ClassLook, FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape,
+    PostValues, PropertyValue, ValueClass,
+};
+use crate::water::drainage::{Drainage, NO_POST, drain, neighbors};
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::stop_flag::StopFlag;
+
+/// The depths from which depressions are classed, meters, with their tints.
+const DEPTHS: [(f32, &str, [u8; 4]); 3] = [
+    (0.0, "none", [0, 0, 0, 0]),
+    (f32::MIN_POSITIVE, "up to 1 m", [140, 190, 240, 110]),
+    (1.0, "1 m or more", [30, 90, 190, 130]),
+];
+
+/// The depressions of the ground: their depth, or the ground with them filled.
+///
+/// # Errors
+/// [`AnalysisError::Stopped`].
+pub(crate) fn fill(
+    land: &Land,
+    arguments: &AnalysisArguments,
+    stop: &StopFlag,
+) -> Result<Outcome, AnalysisError> {
+    let Drainage { filled_m, .. } = drain(&land.ground, stop)?;
+    let heights = land.ground.heights();
+    let deep = || filled_m.iter().zip(heights).map(|(filled, height)| filled - height);
+    let posts = deep().filter(|depth| *depth > 0.0).count();
+    let volume_m3 = deep().filter(|depth| *depth > 0.0).map(f64::from).sum::<f64>() * land.ground.cell_m2();
+    let figures = vec![
+        figure("area of depressions", posts as f64 * land.ground.cell_m2() / 1e6, "km²"),
+        figure("volume of depressions", volume_m3, "m³"),
+    ];
+    let raster = match arguments.word("show").as_str() {
+        "filled" => numbers("filled", "m", filled_m, Vec::new()),
+        _ => {
+            let class = |(from, label, tint): (f32, &str, [u8; 4])| ValueClass {
+                from,
+                label: label.to_owned(),
+                look: ClassLook { tint, hatching: if from > 0.0 { Hatching::Level } else { Hatching::None } },
+            };
+            numbers("depth", "m", deep().collect(), DEPTHS.map(class).into())
+        }
+    };
+    Ok(Outcome { raster: Some(raster), figures, ..Outcome::default() })
+}
+
+/// Where water flows: the area that drains through each post, or the direction in which it drains.
+///
+/// # Errors
+/// [`AnalysisError::Stopped`].
+pub(crate) fn flow(
+    land: &Land,
+    arguments: &AnalysisArguments,
+    stop: &StopFlag,
+) -> Result<Outcome, AnalysisError> {
+    let drainage = drain(&land.ground, stop)?;
+    let heights = land.ground.heights();
+    let columns = land.ground.columns() as usize;
+    let raster = if arguments.word("show") == "direction" {
+        let rows = land.ground.rows() as usize;
+        let code = |index: usize| match drainage.to[index] {
+            _ if heights[index].is_nan() => PostValues::NO_CODE,
+            NO_POST => 0,
+            to => {
+                let step = neighbors(index, columns, rows).find(|&(_, other)| other == to as usize);
+                step.map_or(0, |(step, _)| step as u8 + 1)
+            }
+        };
+        let codes = (0..heights.len()).map(code).collect();
+        OutcomeRaster { name: "direction", unit: "", values: PostValues::Codes(codes), classes: Vec::new() }
+    } else {
+        let counts = drainage.accumulation();
+        let area = |(count, height): (u32, &f32)| {
+            if height.is_nan() { f32::NAN } else { (f64::from(count) * land.ground.cell_m2()) as f32 }
+        };
+        numbers("drained area", "m²", counts.into_iter().zip(heights).map(area).collect(), Vec::new())
+    };
+    Ok(Outcome { raster: Some(raster), ..Outcome::default() })
+}
+
+/// Streams: the ways of water that drain at least an area, from each source or confluence to the next, with Strahler's order.
+///
+/// # Errors
+/// [`AnalysisError::Stopped`].
+pub(crate) fn streams(
+    land: &Land,
+    arguments: &AnalysisArguments,
+    stop: &StopFlag,
+) -> Result<Outcome, AnalysisError> {
+    let drainage = drain(&land.ground, stop)?;
+    let counts = drainage.accumulation();
+    let least = (arguments.number("area_m2") / land.ground.cell_m2()).ceil().max(1.0);
+    let is_stream = |index: u32| f64::from(counts[index as usize]) >= least;
+    // By post: the number of streams that enter it, and Strahler's order with how many of them have it.
+    let mut entering = vec![0_u8; counts.len()];
+    let mut orders = vec![(0_u8, 0_u8); counts.len()];
+    for &index in drainage.order.iter().rev().filter(|&&index| is_stream(index)) {
+        let order = own_order(orders[index as usize]);
+        let to = drainage.to[index as usize];
+        if to == NO_POST {
+            continue;
+        }
+        entering[to as usize] += 1;
+        let (highest, times) = &mut orders[to as usize];
+        match order.cmp(highest) {
+            std::cmp::Ordering::Greater => (*highest, *times) = (order, 1),
+            std::cmp::Ordering::Equal => *times += 1,
+            std::cmp::Ordering::Less => {}
+        }
+    }
+    let mut features = Vec::new();
+    let mut total_km = 0.0;
+    for &start in drainage.order.iter().rev() {
+        if !is_stream(start) || entering[start as usize] == 1 {
+            continue;
+        }
+        let line = reach(start, &drainage, &entering, &land.ground);
+        if line.len() < 2 {
+            continue;
+        }
+        let length_m: f64 = line.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+        total_km += length_m / 1000.0;
+        features.push(OutcomeFeature {
+            shape: OutcomeShape::Line(line),
+            name: String::new(),
+            role: FeatureRole::Stream,
+            properties: vec![
+                ("order", PropertyValue::Whole(i64::from(own_order(orders[start as usize])))),
+                ("length_m", PropertyValue::Number(length_m)),
+            ],
+        });
+    }
+    Ok(Outcome { features, figures: vec![figure("length of streams", total_km, "km")], ..Outcome::default() })
+}
+
+/// Strahler's order of a post that streams of a highest order enter so many times.
+fn own_order((highest, times): (u8, u8)) -> u8 {
+    match (highest, times) {
+        (0, _) => 1,
+        (_, 1) => highest,
+        _ => highest + 1,
+    }
+}
+
+/// The positions from a source or confluence down to the next confluence, or to the edge of the land.
+fn reach(start: u32, drainage: &Drainage, entering: &[u8], ground: &Lattice) -> Vec<glam::DVec2> {
+    let columns = ground.columns();
+    let place = |index: u32| ground.map_position(Post { column: index % columns, row: index / columns });
+    let mut line = vec![place(start)];
+    let mut at = drainage.to[start as usize];
+    while at != NO_POST {
+        line.push(place(at));
+        if entering[at as usize] != 1 {
+            break;
+        }
+        at = drainage.to[at as usize];
+    }
+    line
+}
+
+fn numbers(
+    name: &'static str,
+    unit: &'static str,
+    values: Vec<f32>,
+    classes: Vec<ValueClass>,
+) -> OutcomeRaster {
+    OutcomeRaster { name, unit, values: PostValues::Numbers(values), classes }
+}
+
+fn figure(name: &str, value: f64, unit: &'static str) -> Figure {
+    Figure { name: name.to_owned(), value, unit }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::arguments::ArgumentValue;
+    use glam::DVec2;
+    use sandtable_geom::crs::Crs;
+
+    fn land(columns: u32, heights: &[f32]) -> Land {
+        let lattice = Lattice::new(DVec2::ZERO, DVec2::splat(10.0), columns, heights.to_vec());
+        Land::bare(Arc::new(lattice.expect("ground")), Crs::local())
+    }
+
+    fn arguments(name: &str) -> AnalysisArguments {
+        AnalysisArguments::new(sandtable_catalog::kind(name).expect("a kind"))
+    }
+
+    fn values(outcome: Outcome) -> Vec<f32> {
+        let raster = outcome.raster.expect("a raster");
+        (0..raster.values.len()).map(|index| raster.values.value(index)).collect()
+    }
+
+    #[test]
+    fn a_pit_is_filled_to_its_lowest_rim() {
+        #[rustfmt::skip]
+        let pit = land(5, &[
+            9., 9., 9., 9., 9.,
+            9., 5., 2., 5., 9.,
+            9., 5., 5., 5., 6.,
+            9., 9., 9., 9., 9.,
+        ]);
+        let outcome = fill(&pit, &arguments("fill"), &StopFlag::default()).expect("filled");
+        assert!((outcome.figures[1].value - 900.0).abs() < 1e-9, "{:?}", outcome.figures);
+        let depth = values(outcome);
+        assert_eq!(&depth[5..10], [0., 1., 4., 1., 0.]);
+        assert_eq!(&depth[10..15], [0., 1., 1., 1., 0.]);
+    }
+
+    #[test]
+    fn all_water_of_a_valley_leaves_by_its_mouth() {
+        // A trough that falls to the west.
+        let heights: Vec<f32> = (0..25)
+            .map(|index| {
+                let (column, row) = (index % 5, index / 5_i32);
+                (column + 10 * (row - 2).abs()) as f32
+            })
+            .collect();
+        let area = values(flow(&land(5, &heights), &arguments("flow"), &StopFlag::default()).expect("flows"));
+        assert_eq!(area[10], 2500.0);
+        let area_in = |row: usize| area[row * 5];
+        assert!(area_in(0) < 1000.0 && area_in(4) < 1000.0, "{area:?}");
+    }
+
+    #[test]
+    fn two_brooks_of_the_first_order_make_one_of_the_second() {
+        // Two gutters from the north meet in one to the south.
+        #[rustfmt::skip]
+        let gutters = land(7, &[
+            90., 90., 90., 1., 90., 90., 90.,
+            90., 90., 90., 2., 90., 90., 90.,
+            90., 90., 3., 80., 3., 90., 90.,
+            90., 4., 80., 80., 80., 4., 90.,
+            90., 5., 80., 80., 80., 5., 90.,
+        ]);
+        let arguments = arguments("streams").with("area_m2", ArgumentValue::Number(200.0));
+        let outcome = streams(&gutters, &arguments, &StopFlag::default()).expect("streams");
+        let order = |feature: &OutcomeFeature| match feature.properties[0].1 {
+            PropertyValue::Whole(order) => order,
+            _ => 0,
+        };
+        let mut orders: Vec<i64> = outcome.features.iter().map(order).collect();
+        orders.sort_unstable();
+        assert_eq!(orders.last(), Some(&2), "{:?}", outcome.features);
+        assert!(orders.iter().filter(|&&order| order == 1).count() >= 2, "{orders:?}");
+    }
+
+    #[test]
+    fn each_post_drains_to_one_that_was_flooded_before_it() {
+        let mut seed = 7_u32;
+        let heights: Vec<f32> = (0..900)
+            .map(|_| {
+                seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                if seed >> 28 == 0 { f32::NAN } else { ((seed >> 24) % 16) as f32 }
+            })
+            .collect();
+        let land = land(30, &heights);
+        let drainage = drain(&land.ground, &StopFlag::default()).expect("drained");
+        let mut rank = vec![usize::MAX; 900];
+        drainage.order.iter().enumerate().for_each(|(at, &index)| rank[index as usize] = at);
+        for &index in &drainage.order {
+            let to = drainage.to[index as usize];
+            assert!(to == NO_POST || rank[to as usize] < rank[index as usize]);
+        }
+        let off: u32 = drainage
+            .order
+            .iter()
+            .filter(|&&index| drainage.to[index as usize] == NO_POST)
+            .map(|&index| drainage.accumulation()[index as usize])
+            .sum();
+        assert_eq!(off as usize, heights.iter().filter(|height| !height.is_nan()).count());
+    }
+}
