@@ -9,8 +9,8 @@ use sandtable_catalog::kind::LandPart;
 use sandtable_geom::crs::Crs;
 use sandtable_terrain::lattice::Lattice;
 
-/// The land that an analysis is about. Layers hold a value for each post, row by row from the south-west; a layer that is
-/// `None` is unknown, which a layer without anything in it is not.
+/// The land that an analysis is about. Layers hold a value for each post, row by row from the south-west, roads are lines; a
+/// layer that is `None` is unknown, which a layer without anything in it is not.
 #[derive(Clone)]
 pub struct Land {
     /// The ground after earthworks.
@@ -19,16 +19,14 @@ pub struct Land {
     pub crs: Crs,
     /// What covers the ground.
     pub cover: Option<Vec<LandCover>>,
-    /// The class of the road over each post.
-    pub roads: Option<Vec<RoadClass>>,
+    /// The roads.
+    pub roads: Option<Vec<RoadLine>>,
     /// The water over each post.
     pub water: Option<Vec<WaterPost>>,
     /// The trees around each post.
     pub woods: Option<Vec<Stand>>,
     /// The height above the ground of what stands at each post, meters; 0 where nothing does.
     pub obstacles_m: Option<Vec<f32>>,
-    /// The center lines of roads, in map coordinates.
-    pub road_lines: Vec<RoadLine>,
     /// Bridges, culverts and fords.
     pub crossings: Vec<Crossing>,
     /// Walls, fences, banks and cliffs that a vehicle must climb.
@@ -181,7 +179,6 @@ impl Land {
             water: None,
             woods: None,
             obstacles_m: None,
-            road_lines: Vec::new(),
             crossings: Vec::new(),
             steps: Vec::new(),
             vehicles: Vec::new(),

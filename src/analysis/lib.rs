@@ -12,9 +12,14 @@ pub mod earth;
 pub mod error;
 pub mod land;
 pub mod landing;
+pub mod line_posts;
+mod measures;
 pub mod movement;
 pub mod observation;
 pub mod outcome;
+mod place;
 pub mod run;
 pub mod surface;
+#[cfg(test)]
+mod test_land;
 pub mod water;

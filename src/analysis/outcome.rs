@@ -78,6 +78,18 @@ pub struct ValueClass {
     pub look: ClassLook,
 }
 
+impl ValueClass {
+    /// The class of values from `from` on.
+    pub fn new(from: f32, label: impl Into<String>, tint: [u8; 4], hatching: Hatching) -> Self {
+        Self { from, label: label.into(), look: ClassLook { tint, hatching } }
+    }
+
+    /// The classes of the rows of a table: least value, label, tint, hatching.
+    pub fn of_rows<const N: usize>(rows: [(f32, &str, [u8; 4], Hatching); N]) -> Vec<Self> {
+        rows.map(|(from, label, tint, hatching)| Self::new(from, label, tint, hatching)).into()
+    }
+}
+
 /// How a class is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClassLook {
@@ -187,6 +199,13 @@ pub struct TableColumn {
     pub decimals: usize,
 }
 
+impl TableColumn {
+    /// A column with this heading.
+    pub const fn new(name: &'static str, unit: &'static str, decimals: usize) -> Self {
+        Self { name, unit, decimals }
+    }
+}
+
 /// A number about the whole.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
@@ -196,4 +215,11 @@ pub struct Figure {
     pub value: f64,
     /// Its unit; empty where it has none.
     pub unit: &'static str,
+}
+
+impl Figure {
+    /// The figure of this name.
+    pub fn new(name: impl Into<String>, value: f64, unit: &'static str) -> Self {
+        Self { name: name.into(), value, unit }
+    }
 }

@@ -1,6 +1,7 @@
-//! The base of all other crates: zip archives, numbers in binary files, limits on input and work, words in messages.
+//! The base of all other crates: zip archives, numbers in binary files, limits on input and work, words in messages, disjoint sets.
 
 pub mod archive;
 pub mod bytes;
+pub mod disjoint_sets;
 pub mod limits;
 pub mod message;

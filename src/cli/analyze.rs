@@ -21,11 +21,9 @@ use sandtable_catalog::{kind, kinds};
 use sandtable_dem::dem_format::DemFormat;
 use sandtable_dem::formats::WRITTEN_EXTENSIONS;
 use sandtable_export::features::FeatureFormat;
-use sandtable_export::features::outcome::{OutcomeFrame, export_outcome};
+use sandtable_export::features::outcome::{OutcomeFrame, export_outcome, json_value};
 use sandtable_files::raster_file;
-use sandtable_geom::crs::Crs;
-use sandtable_query::analysis::{Analyzed, WrittenArgument, analyze, analyze_land, raster};
-use sandtable_query::dataset::Dataset;
+use sandtable_query::analysis::{Analyzed, WrittenArgument, analyze, bare_land, raster};
 use sandtable_scene::land::land_of;
 use sandtable_scene::scene_file::open_scene_true_to_scale;
 use sandtable_terrain::stop_flag::StopFlag;
@@ -134,12 +132,7 @@ pub fn run(command: &AnalyzeCommand) -> Result<(), CliError> {
     let output =
         command.output.as_deref().map(|path| Ok::<_, CliError>((path, format(path, input)?))).transpose()?;
     let steps = StepTimer::default();
-    steps.begin("reading the ground");
-    let dataset = command.dataset.open()?;
-    let crs = command.dataset.crs(&dataset);
-    command.dataset.note_ground(&dataset)?;
-    steps.begin("analyzing");
-    let analyzed = analyzed(command, &dataset, &crs, &steps)?;
+    let analyzed = analyzed(command, &steps)?;
     if let Some((path, format)) = output {
         steps.begin("writing");
         write(command, &analyzed, path, format)?;
@@ -152,21 +145,29 @@ pub fn run(command: &AnalyzeCommand) -> Result<(), CliError> {
     print_lines(&text(command, &analyzed.outcome))
 }
 
-/// The analysis; a scene is built only for a kind that uses what lies on the ground.
-fn analyzed(
-    command: &AnalyzeCommand,
-    dataset: &Dataset,
-    crs: &Crs,
-    steps: &StepTimer,
-) -> Result<Analyzed, CliError> {
-    let (kind, stop) = (command.kind, StopFlag::default());
-    if dataset.scene_files().is_none() || kind.layers.is_empty() {
-        return Ok(analyze(dataset, kind, &command.arguments, crs, &stop)?);
-    }
-    let progress = |step| steps.begin(step);
-    let scene = open_scene_true_to_scale(&command.dataset.file, &command.dataset.access.allow, &progress)?;
+/// The analysis; a scene is built only for a kind that uses what lies on its ground.
+fn analyzed(command: &AnalyzeCommand, steps: &StepTimer) -> Result<Analyzed, CliError> {
+    let AnalyzeCommand { kind, dataset: of_dataset, arguments, .. } = command;
+    steps.begin("reading the ground");
+    let scene = match kind.layers.is_empty() || !of_dataset.is_scene() {
+        true => None,
+        false => {
+            let progress = |step| steps.begin(step);
+            Some(open_scene_true_to_scale(&of_dataset.file, &of_dataset.access.allow, &progress)?)
+        }
+    };
+    let dataset = match &scene {
+        Some(scene) => of_dataset.of_scene(scene),
+        None => of_dataset.open()?,
+    };
+    let crs = of_dataset.crs(&dataset);
+    of_dataset.note_ground(&dataset)?;
     steps.begin("analyzing");
-    Ok(analyze_land(land_of(&scene), dataset, (kind, &command.arguments), crs, &stop)?)
+    let land = match &scene {
+        Some(scene) => land_of(scene, kind.layers),
+        None => bare_land(&dataset)?,
+    };
+    Ok(analyze(&dataset, land, (*kind, arguments), &crs, &StopFlag::default())?)
 }
 
 fn format(path: &Path, inputs: &[PathBuf]) -> Result<AnalysisFormat, CliError> {
@@ -206,15 +207,6 @@ fn write(
     Ok(())
 }
 
-fn value(value: &PropertyValue) -> Value {
-    match value {
-        PropertyValue::Number(number) => Value::from(*number),
-        PropertyValue::Whole(number) => Value::from(*number),
-        PropertyValue::Text(text) => Value::from(text.as_str()),
-        PropertyValue::Truth(truth) => Value::from(*truth),
-    }
-}
-
 fn json(command: &AnalyzeCommand, outcome: &Outcome) -> Value {
     let figures: Vec<Value> = outcome
         .figures
@@ -227,7 +219,7 @@ fn json(command: &AnalyzeCommand, outcome: &Outcome) -> Value {
                 .columns
                 .iter()
                 .zip(row)
-                .map(|(column, cell)| (column.name.to_owned(), value(cell)))
+                .map(|(column, cell)| (column.name.to_owned(), json_value(cell)))
                 .collect()
         };
         json!({ "title": table.title, "rows": table.rows.iter().map(object).collect::<Vec<_>>() })

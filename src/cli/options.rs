@@ -17,6 +17,8 @@ use sandtable_query::ground::QueriedGround;
 use sandtable_query::positions::shift_note;
 use sandtable_query::windowed_elevation::GroundReach;
 use sandtable_raster::height_datum::HeightDatum;
+use sandtable_scene::scene_file::is_scene_file;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_sheet::picture::PictureSize;
 
 /// The scene file of a command, and the files it may read.
@@ -118,10 +120,23 @@ impl DatasetArguments {
 
     /// Opens the dataset; prints its warning, and what reading its files left out or guessed.
     pub fn open(&self) -> Result<Dataset, CliError> {
-        let dataset = Dataset::open(&self.file, &self.options())?;
+        Ok(self.told(Dataset::open(&self.file, &self.options())?))
+    }
+
+    /// The dataset of the scene at the file, which is built; prints as [`Self::open`].
+    pub fn of_scene(&self, scene: &SceneModel) -> Dataset {
+        self.told(Dataset::from_scene(&self.file.display().to_string(), scene))
+    }
+
+    /// Whether the file is a scene.
+    pub fn is_scene(&self) -> bool {
+        is_scene_file(&self.file)
+    }
+
+    fn told(&self, dataset: Dataset) -> Dataset {
         dataset.warning().into_iter().for_each(|warning| warn(&format!("warning: {warning}")));
         dataset.reading_notes().iter().for_each(|note| warn(&format!("note: {note}")));
-        Ok(dataset)
+        dataset
     }
 
     /// The ground in meters of the dataset as far as a query reaches; prints its note.

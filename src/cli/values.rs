@@ -7,7 +7,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use sandtable_base::message::choice::Choice;
 use sandtable_geom::length_unit::length_of_name;
-use sandtable_query::positions::PositionArgument;
+use sandtable_query::positions::{PositionArgument, position_list};
 use sandtable_sheet::picture::PictureSize;
 
 /// Parses one of the words of a [`Choice`].
@@ -72,20 +72,7 @@ pub fn position(text: &str) -> Result<PositionArgument, String> {
 
 /// Parses one position, or several with semicolons or spaces between.
 pub fn positions(text: &str) -> Result<PositionList, String> {
-    let whole = match PositionArgument::parse(text) {
-        Ok(position) => return Ok(vec![position]),
-        Err(error) => error,
-    };
-    let parts: Vec<&str> = match text.contains(';') {
-        true => text.split(';').map(str::trim).filter(|part| !part.is_empty()).collect(),
-        false => text.split_whitespace().collect(),
-    };
-    let positions: Result<PositionList, _> = parts.iter().map(|part| PositionArgument::parse(part)).collect();
-    match positions {
-        Ok(positions) if !positions.is_empty() => Ok(positions),
-        Err(error) if whole.is_unlike_any() => Err(error.with_forms()),
-        _ => Err(whole.with_forms()),
-    }
+    position_list(text)
 }
 
 /// A position, and meters above the ground there.

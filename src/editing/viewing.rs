@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::editor::SceneEditor;
-use sandtable_scene::scene_file::OpenSceneError;
+use sandtable_scene::scene_file::{OpenSceneError, is_scene_file};
 
 /// The options of a window.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -18,11 +18,6 @@ pub struct ViewerOptions {
     pub frames: Option<u32>,
     /// Whether the window says what it did and how long its frames took, as JSON on standard output, when it closes.
     pub reports: bool,
-}
-
-/// Whether the file is a scene by its name; every other file is taken for elevations.
-pub fn is_scene_file(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
 }
 
 /// The editor of the scene file at `path`, or of a new scene of an elevation file there.

@@ -7,7 +7,8 @@ use glam::DVec2;
 
 use crate::dataset::{Dataset, DatasetOptions, OpenError, QueryError};
 use crate::ground::GroundError;
-use crate::positions::PositionArgument;
+use crate::positions::{PositionArgument, position_list};
+use crate::post_raster::post_header;
 use crate::windowed_elevation::GroundReach;
 use sandtable_analysis::arguments::{AnalysisArguments, ArgumentValue};
 use sandtable_analysis::error::AnalysisError;
@@ -17,8 +18,8 @@ use sandtable_analysis::run::run;
 use sandtable_base::message::suggest::{quoted, remedy};
 use sandtable_catalog::kind::AnalysisKind;
 use sandtable_catalog::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
-use sandtable_geom::crs::Crs;
-use sandtable_raster::raster::{Raster, Samples, north_up_nodes};
+use sandtable_geom::crs::{Crs, CrsError};
+use sandtable_raster::raster::{Raster, Samples};
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::query::{Interpolation, Surface};
 use sandtable_terrain::stop_flag::StopFlag;
@@ -66,29 +67,22 @@ pub struct Analyzed {
     pub outcome: Outcome,
 }
 
-/// Analyzes a dataset. Positions of `arguments` are in coordinates of `crs`.
+/// The land of a dataset without what lies on its ground.
+///
+/// # Errors
+/// [`AnalyzeError::Query`] and [`AnalyzeError::Ground`].
+pub fn bare_land(dataset: &Dataset) -> Result<Land, AnalyzeError> {
+    let ground = dataset.ground(&GroundReach { crs: &dataset.crs(), at: &[], around_m: f64::INFINITY })?;
+    Ok(Land::bare(ground.held_lattice()?, ground.crs.clone()))
+}
+
+/// Analyzes the land of a dataset. Positions of `arguments` are in coordinates of `crs`.
 ///
 /// # Errors
 /// See [`AnalyzeError`].
 pub fn analyze(
     dataset: &Dataset,
-    kind: &'static AnalysisKind,
-    arguments: &[WrittenArgument],
-    crs: &Crs,
-    stop: &StopFlag,
-) -> Result<Analyzed, AnalyzeError> {
-    let ground = dataset.ground(&GroundReach { crs, at: &[], around_m: f64::INFINITY })?;
-    let land = Land::bare(ground.held_lattice()?, ground.crs.clone());
-    analyze_land(land, dataset, (kind, arguments), crs, stop)
-}
-
-/// [`analyze`], of the land of a scene with all its layers, of which `dataset` is the ground.
-///
-/// # Errors
-/// See [`AnalyzeError`].
-pub fn analyze_land(
     mut land: Land,
-    dataset: &Dataset,
     (kind, arguments): (&'static AnalysisKind, &[WrittenArgument]),
     crs: &Crs,
     stop: &StopFlag,
@@ -221,15 +215,14 @@ fn number(text: &str, (least, greatest): (f64, f64), unit: &str) -> Result<f64, 
     }
 }
 
-/// Positions with semicolons between.
+/// Positions as [`position_list`] reads them, in the land's system.
 fn points(text: &str, least: usize, crs: &Crs, land_crs: &Crs) -> Result<ArgumentValue, String> {
-    let parts = text.split(';').map(str::trim).filter(|part| !part.is_empty());
-    let place = |part: &str| {
-        let position = PositionArgument::parse(part).map_err(|error| error.with_forms())?;
-        let written = position.written(crs).map_err(|error| error.to_string())?;
-        crs.transform(land_crs, written.at).map_err(|error| error.to_string())
+    let place = |position: PositionArgument| {
+        let written = position.written(crs)?;
+        crs.transform(land_crs, written.at)
     };
-    let points: Vec<DVec2> = parts.map(place).collect::<Result<_, _>>()?;
+    let points: Result<Vec<DVec2>, CrsError> = position_list(text)?.into_iter().map(place).collect();
+    let points = points.map_err(|error| error.to_string())?;
     match points.len() >= least {
         true => Ok(ArgumentValue::Points(points)),
         false => Err(format!(
@@ -242,25 +235,16 @@ fn points(text: &str, least: usize, crs: &Crs, land_crs: &Crs) -> Result<Argumen
 
 /// The raster of an outcome, north up, its samples at the posts of `ground`.
 pub fn raster(outcome: &OutcomeRaster, ground: &Lattice, crs: &Crs) -> Raster {
-    let (columns, rows) = (ground.columns(), ground.rows());
-    let north_west = ground.map_position(Post { column: 0, row: rows - 1 });
     let (data_type, nodata) = match outcome.values {
         PostValues::Numbers(_) => ("Float32", -9999.0),
         PostValues::Codes(_) => ("Byte", f64::from(PostValues::NO_CODE)),
     };
-    let samples = (0..rows).rev().flat_map(|row| {
-        let first = row as usize * columns as usize;
-        (first..first + columns as usize).map(|index| outcome.values.value(index))
-    });
-    let header = Raster {
-        driver: outcome.name,
-        data_type,
-        crs: (*crs != Crs::local()).then(|| crs.clone()),
-        nodata: Some(nodata),
-        samples: Samples::F32(samples.collect()),
-        ..Raster::without_place(columns, rows)
-    };
-    header.placed(north_up_nodes(north_west, ground.cell()))
+    let columns = ground.columns() as usize;
+    let samples = (0..ground.rows() as usize)
+        .rev()
+        .flat_map(|row| (row * columns..(row + 1) * columns).map(|index| outcome.values.value(index)));
+    let header = post_header(ground, crs, (outcome.name, data_type), nodata);
+    Raster { samples: Samples::F32(samples.collect()), ..header }
 }
 
 #[cfg(test)]

@@ -23,7 +23,8 @@ use sandtable_raster::warp::metric_crs::off_scale;
 use sandtable_raster::windows::MOST_KEPT_SAMPLES;
 use sandtable_remote::address::is_address_path;
 use sandtable_scene::build::SceneGround;
-use sandtable_scene::scene_file::{OpenSceneError, open_scene_ground};
+use sandtable_scene::scene_file::{OpenSceneError, is_scene_file, open_scene_ground};
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::query::batch::HeightSlices;
 use sandtable_terrain::query::service::HeightService;
 use sandtable_terrain::query::source::source_heights_apart;
@@ -128,7 +129,7 @@ impl Dataset {
     /// See [`OpenError`].
     pub fn open(path: &Path, options: &DatasetOptions) -> Result<Self, OpenError> {
         let name = path.display().to_string();
-        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
+        if is_scene_file(path) {
             let ground = open_scene_ground(path, &options.allowed)?;
             return Ok(Self { name, content: DatasetContent::Scene(ground), warning: None });
         }
@@ -147,6 +148,11 @@ impl Dataset {
             }
         };
         Ok(Self { name, content, warning })
+    }
+
+    /// The dataset of the ground of a built scene, which messages call `name`.
+    pub fn from_scene(name: &str, scene: &SceneModel) -> Self {
+        Self { name: name.to_owned(), content: DatasetContent::Scene(SceneGround::of(scene)), warning: None }
     }
 
     /// The dataset of a raster in memory, which messages call `name`.

@@ -122,6 +122,28 @@ impl fmt::Display for PositionArgument {
     }
 }
 
+/// The positions of a text: one, or several with semicolons or spaces between.
+///
+/// # Errors
+/// What is wrong with the first that is none, with the forms that positions have.
+pub fn position_list(text: &str) -> Result<Vec<PositionArgument>, String> {
+    let whole = match PositionArgument::parse(text) {
+        Ok(position) => return Ok(vec![position]),
+        Err(error) => error,
+    };
+    let parts: Vec<&str> = match text.contains(';') {
+        true => text.split(';').map(str::trim).filter(|part| !part.is_empty()).collect(),
+        false => text.split_whitespace().collect(),
+    };
+    let positions: Result<Vec<PositionArgument>, _> =
+        parts.iter().map(|part| PositionArgument::parse(part)).collect();
+    match positions {
+        Ok(positions) if !positions.is_empty() => Ok(positions),
+        Err(error) if whole.is_unlike_any() => Err(error.with_forms()),
+        _ => Err(whole.with_forms()),
+    }
+}
+
 impl<'a> WrittenPosition<'a> {
     fn numbers(x: &'a str, y: &'a str) -> Option<Self> {
         let at = DVec2::new(x.parse().ok()?, y.parse().ok()?);

@@ -29,18 +29,28 @@ impl<F: Fn(usize, &mut [u8]) + Sync> PostBytes<F> {
 
     /// The raster of the bytes, made window by window.
     pub fn windows(self, lattice: &Lattice, crs: &Crs) -> PostWindows<F> {
-        let (columns, rows) = (lattice.columns(), lattice.rows());
-        let north_west = lattice.map_position(Post { column: 0, row: rows - 1 });
-        let header = Raster {
-            driver: self.name,
-            data_type: "Byte",
-            crs: (*crs != Crs::local()).then(|| crs.clone()),
-            nodata: Some(f64::from(self.nodata)),
-            ..Raster::without_place(columns, rows)
-        };
-        let header = header.placed(north_up_nodes(north_west, lattice.cell()));
+        let header = post_header(lattice, crs, (self.name, "Byte"), f64::from(self.nodata));
         PostWindows { header, fill: self.fill, nodata: self.nodata }
     }
+}
+
+/// The raster without samples, north up, of values at the posts of a lattice; `name` is its driver.
+pub(crate) fn post_header(
+    lattice: &Lattice,
+    crs: &Crs,
+    (name, data_type): (&'static str, &'static str),
+    nodata: f64,
+) -> Raster {
+    let (columns, rows) = (lattice.columns(), lattice.rows());
+    let north_west = lattice.map_position(Post { column: 0, row: rows - 1 });
+    let header = Raster {
+        driver: name,
+        data_type,
+        crs: (*crs != Crs::local()).then(|| crs.clone()),
+        nodata: Some(nodata),
+        ..Raster::without_place(columns, rows)
+    };
+    header.placed(north_up_nodes(north_west, lattice.cell()))
 }
 
 /// A raster of [`PostBytes`] that is made window by window.

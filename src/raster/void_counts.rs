@@ -9,6 +9,7 @@
 //! ```
 
 use crate::raster::{Raster, Samples};
+use sandtable_base::disjoint_sets::root;
 
 /// The number of voids, and of the samples in all of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -117,7 +118,7 @@ impl VoidSearch {
         // Parts that this row continues are numbered anew; the others are whole voids.
         let mut numbers: Vec<Option<usize>> = vec![None; parts.len()];
         for stretch in &mut found {
-            let root = root(&links, stretch.part);
+            let root = root(&mut links, stretch.part);
             stretch.part = *numbers[root].get_or_insert_with(|| {
                 self.parts.push(parts[root]);
                 self.parts.len() - 1
@@ -143,14 +144,6 @@ impl VoidCounts {
             self.samples += part.samples;
         }
     }
-}
-
-/// The part that one has joined.
-fn root(links: &[usize], mut part: usize) -> usize {
-    while links[part] != part {
-        part = links[part];
-    }
-    part
 }
 
 /// Joins two parts: the lower number stays.

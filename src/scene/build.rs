@@ -64,6 +64,23 @@ pub struct SceneGround {
     pub files: Vec<std::path::PathBuf>,
 }
 
+impl SceneGround {
+    /// The ground of a built scene.
+    pub fn of(scene: &SceneModel) -> Self {
+        let messages = |is_wanted: fn(FindingCode) -> bool| {
+            let wanted = scene.findings.iter().filter(move |finding| is_wanted(finding.code));
+            wanted.map(|finding| finding.message.clone())
+        };
+        Self {
+            heights: scene.heights.clone(),
+            stated_crs: scene.stated_crs.clone(),
+            scale_note: messages(|code| code == FindingCode::LengthsNotTrue).next(),
+            reading_notes: messages(FindingCode::is_of_reading).collect(),
+            files: scene.files.clone(),
+        }
+    }
+}
+
 /// Builds the ground of the scene that `document` describes, with the decks over it. Of the models, only those that have
 /// the ground leveled are read.
 ///

@@ -1,7 +1,7 @@
 //! The land of a scene for terrain analysis: its covers, roads, water, woods, buildings and bridges, a value a post.
 //!
-//! What lies on the ground is laid over the posts in drawing order, so that a post has what a picture shows there. Roads and
-//! rivers narrower than the posts lie apart take each post along their centerlines: a stream does not vanish between posts.
+//! What lies on the ground is laid over the posts in drawing order, so that a post has what a picture shows there. Rivers
+//! narrower than the posts lie apart take each post along their centerlines: a stream does not vanish between posts.
 
 use glam::{DVec2, Vec2};
 
@@ -10,10 +10,13 @@ use crate::scene_model::SceneModel;
 use crate::symbols::LineSymbol;
 use crate::undergrowth::{CrownGround, crown_reach};
 use sandtable_analysis::land::{self, Crossing, CrossingKind, Land, RoadLine, Stand, WaterKind, WaterPost};
+use sandtable_analysis::line_posts::along_line;
+use sandtable_catalog::kind::LandPart;
 use sandtable_description::words::Cover;
-use sandtable_draw::list::DrawMesh;
+use sandtable_draw::list::{DrawMesh, FeatureId};
 use sandtable_ribbon::texture::RibbonSurface;
 use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::post_rect::PostRect;
 
 /// Widths in meters from which a paved road is a motorway, and a main road.
 const MOTORWAY_M: f64 = 15.0;
@@ -25,82 +28,36 @@ const TRACK_M: f64 = 2.0;
 /// Trees are counted in squares of so many posts: fewer would hold one tree or none.
 const STAND_POSTS: u32 = 5;
 
-/// The land of a scene that was built true to scale.
-pub fn land_of(scene: &SceneModel) -> Land {
-    let grid = PostGrid { lattice: &scene.lattice };
+/// The land of a scene that was built true to scale, with these of its layers; the others are unknown.
+pub fn land_of(scene: &SceneModel, layers: &[LandPart]) -> Land {
     let mut land = Land::bare(scene.lattice.clone(), scene.crs.clone());
-    land.cover = covers(scene, &grid);
-    land.water = Some(waters(scene, &grid));
-    land.roads = Some(roads(scene, &grid));
-    land.obstacles_m = Some(obstacles(scene, &grid));
-    land.woods = Some(stands(scene));
-    let (lines, crossings) = lines(scene);
-    (land.road_lines, land.crossings) = (lines, crossings);
+    for layer in layers {
+        match layer {
+            LandPart::Cover => land.cover = covers(scene),
+            LandPart::Roads => land.roads = Some(roads(scene)),
+            LandPart::Crossings => land.crossings = bridges(scene),
+            LandPart::Water => land.water = Some(waters(scene)),
+            LandPart::Woods => land.woods = Some(stands(scene)),
+            LandPart::Obstacles => land.obstacles_m = Some(obstacles(scene)),
+        }
+    }
     land
 }
 
-/// The posts of the ground, by world positions.
-struct PostGrid<'a> {
-    lattice: &'a Lattice,
-}
-
-impl PostGrid<'_> {
-    fn posts(&self) -> usize {
-        self.lattice.columns() as usize * self.lattice.rows() as usize
+/// Calls `visit` with the index of each post in a triangle of world positions, and its barycentric weights.
+fn posts_in(lattice: &Lattice, corners: [DVec2; 3], mut visit: impl FnMut(usize, [f64; 3])) {
+    let [a, b, c] = corners.map(|corner| lattice.grid_at(corner));
+    let area = (b - a).perp_dot(c - a);
+    if !area.is_finite() || area == 0.0 {
+        return;
     }
-
-    fn index(&self, column: u32, row: u32) -> usize {
-        row as usize * self.lattice.columns() as usize + column as usize
-    }
-
-    /// Calls `visit` with each post in a triangle, and its barycentric weights.
-    fn triangle(&self, corners: [DVec2; 3], mut visit: impl FnMut(usize, [f64; 3])) {
-        let [a, b, c] = corners.map(|corner| corner / self.lattice.cell());
-        let area = (b - a).perp_dot(c - a);
-        if !area.is_finite() || area == 0.0 {
-            return;
-        }
-        let low = a.min(b).min(c).ceil().max(DVec2::ZERO);
-        let last = DVec2::new(f64::from(self.lattice.columns() - 1), f64::from(self.lattice.rows() - 1));
-        let high = a.max(b).max(c).floor().min(last);
-        if low.x > high.x || low.y > high.y {
-            return;
-        }
-        for row in low.y as u32..=high.y as u32 {
-            for column in low.x as u32..=high.x as u32 {
-                let at = DVec2::new(f64::from(column), f64::from(row));
-                let weights =
-                    [(b - at).perp_dot(c - at), (c - at).perp_dot(a - at), (a - at).perp_dot(b - at)]
-                        .map(|part| part / area);
-                if weights.iter().all(|&weight| weight >= 0.0) {
-                    visit(self.index(column, row), weights);
-                }
-            }
-        }
-    }
-
-    /// Calls `visit` with the posts along a line, each next to the one before on a side, so that nothing slips through.
-    fn line(&self, line: &[DVec2], mut visit: impl FnMut(usize)) {
-        let last = DVec2::new(f64::from(self.lattice.columns() - 1), f64::from(self.lattice.rows() - 1));
-        let mut visit_at = |at: DVec2| {
-            let post = at.round();
-            if post.cmpge(DVec2::ZERO).all() && post.cmple(last).all() {
-                visit(self.index(post.x as u32, post.y as u32));
-            }
-        };
-        for pair in line.windows(2) {
-            let (from, to) = (pair[0] / self.lattice.cell(), pair[1] / self.lattice.cell());
-            let steps = ((to - from).abs().max_element() * 2.0).ceil().clamp(1.0, 1e7) as u32;
-            let mut before = from.round();
-            for step in 0..=steps {
-                let at = from + (to - from) * (f64::from(step) / f64::from(steps));
-                let post = at.round();
-                if post.x != before.x && post.y != before.y {
-                    visit_at(DVec2::new(post.x, before.y));
-                }
-                visit_at(at);
-                before = post;
-            }
+    let Some(around) = PostRect::between(lattice, a.min(b).min(c), a.max(b).max(c)) else { return };
+    for post in around.posts() {
+        let at = post.grid();
+        let weights = [(b - at).perp_dot(c - at), (c - at).perp_dot(a - at), (a - at).perp_dot(b - at)]
+            .map(|part| part / area);
+        if weights.iter().all(|&weight| weight >= 0.0) {
+            visit(lattice.index(post), weights);
         }
     }
 }
@@ -110,21 +67,21 @@ fn corners(plan: [sandtable_ribbon::plan::PlanVertex; 3]) -> [DVec2; 3] {
 }
 
 /// The covers of areas, and the roofs of buildings; `None` where the scene has neither.
-fn covers(scene: &SceneModel, grid: &PostGrid<'_>) -> Option<Vec<land::LandCover>> {
-    let mut covers = vec![land::LandCover::Unknown; grid.posts()];
+fn covers(scene: &SceneModel) -> Option<Vec<land::LandCover>> {
+    let mut covers = vec![land::LandCover::Unknown; scene.lattice.heights().len()];
     let mut is_known = false;
     for ribbon in &scene.ribbons {
         let RibbonSurface::Cover(cover) = ribbon.surface else { continue };
         let Some(cover) = land_cover(cover) else { continue };
         is_known = true;
         for triangle in ribbon.plan.corners() {
-            grid.triangle(corners(triangle), |index, _| covers[index] = cover);
+            posts_in(&scene.lattice, corners(triangle), |index, _| covers[index] = cover);
         }
     }
-    for (mesh, _) in buildings(scene) {
+    for mesh in buildings(scene) {
         is_known = true;
         mesh_triangles(mesh, |plan, _| {
-            grid.triangle(plan, |index, _| covers[index] = land::LandCover::Building)
+            posts_in(&scene.lattice, plan, |index, _| covers[index] = land::LandCover::Building)
         });
     }
     is_known.then_some(covers)
@@ -147,11 +104,11 @@ fn land_cover(cover: Cover) -> Option<land::LandCover> {
 }
 
 /// Water of features, and what the elevations themselves show.
-fn waters(scene: &SceneModel, grid: &PostGrid<'_>) -> Vec<WaterPost> {
+fn waters(scene: &SceneModel) -> Vec<WaterPost> {
     let inferred = scene.water();
     let level = if scene.has_sea() && inferred.lakes.is_empty() { WaterKind::Sea } else { WaterKind::Lake };
     let post = |kind| WaterPost { kind, depth_m: f32::NAN };
-    let mut waters = vec![WaterPost::default(); grid.posts()];
+    let mut waters = vec![WaterPost::default(); scene.lattice.heights().len()];
     for (water, _) in waters.iter_mut().zip(&inferred.is_water).filter(|(_, is_water)| **is_water) {
         *water = post(level);
     }
@@ -162,11 +119,11 @@ fn waters(scene: &SceneModel, grid: &PostGrid<'_>) -> Vec<WaterPost> {
             _ => continue,
         };
         for triangle in ribbon.plan.corners() {
-            grid.triangle(corners(triangle), |index, _| waters[index] = post(kind));
+            posts_in(&scene.lattice, corners(triangle), |index, _| waters[index] = post(kind));
         }
     }
     for symbol in scene.symbols.iter().filter(|symbol| is_river(symbol)) {
-        grid.line(symbol.alignment.line.points(), |index| {
+        along_line(&scene.lattice, &on_map(scene, symbol.alignment.line.points()), 0.0, |index| {
             if waters[index].kind == WaterKind::None {
                 waters[index] = post(WaterKind::River);
             }
@@ -197,52 +154,42 @@ fn road_surface(surface: RibbonSurface, width_m: f64) -> Option<land::RoadClass>
     })
 }
 
-/// The width of a road at its start, meters.
-fn width_m(symbol: &LineSymbol) -> f64 {
-    symbol.alignment.width.at(0.0)
+/// A line of world positions in map coordinates.
+fn on_map(scene: &SceneModel, line: &[DVec2]) -> Vec<DVec2> {
+    line.iter().map(|at| scene.lattice.origin() + *at).collect()
 }
 
-/// The best road over each post.
-fn roads(scene: &SceneModel, grid: &PostGrid<'_>) -> Vec<land::RoadClass> {
-    let mut roads = vec![land::RoadClass::None; grid.posts()];
-    for symbol in &scene.symbols {
-        let Some(surface) = road_surface(symbol.surface, width_m(symbol)) else { continue };
-        grid.line(symbol.alignment.line.points(), |index| roads[index] = roads[index].max(surface));
-    }
-    roads
-}
-
-/// Center lines of roads, and bridges, in map coordinates.
-fn lines(scene: &SceneModel) -> (Vec<RoadLine>, Vec<Crossing>) {
-    let origin = scene.lattice.origin();
-    let on_map = |line: &[DVec2]| line.iter().map(|at| origin + *at).collect::<Vec<_>>();
-    let (mut roads, mut crossings) = (Vec::new(), Vec::new());
-    for symbol in &scene.symbols {
-        let width_m = width_m(symbol);
-        let Some(surface) = road_surface(symbol.surface, width_m) else { continue };
+/// The roads, each with its symbol.
+fn ways(scene: &SceneModel) -> impl Iterator<Item = (RoadLine, &LineSymbol)> {
+    scene.symbols.iter().filter_map(|symbol| {
+        let width_m = symbol.alignment.width.at(0.0);
+        let surface = road_surface(symbol.surface, width_m)?;
         let feature = symbol.feature.index().and_then(|index| scene.features.get(index));
         let name = feature.map_or_else(String::new, |feature| feature.name.clone());
-        if let Some(deck) = &symbol.deck {
-            let line = on_map(deck.line.points());
-            crossings.push(Crossing {
-                name: name.clone(),
-                kind: CrossingKind::Bridge,
-                line,
-                width_m,
-                load_t: None,
-            });
-        }
-        roads.push(RoadLine { name, line: on_map(symbol.alignment.line.points()), surface, width_m });
-    }
-    (roads, crossings)
+        let line = on_map(scene, symbol.alignment.line.points());
+        Some((RoadLine { name, line, surface, width_m }, symbol))
+    })
+}
+
+fn roads(scene: &SceneModel) -> Vec<RoadLine> {
+    ways(scene).map(|(road, _)| road).collect()
+}
+
+fn bridges(scene: &SceneModel) -> Vec<Crossing> {
+    let bridge = |(RoadLine { name, width_m, .. }, symbol): (RoadLine, &LineSymbol)| {
+        let line = on_map(scene, symbol.deck.as_ref()?.line.points());
+        Some(Crossing { name, kind: CrossingKind::Bridge, line, width_m, load_t: None })
+    };
+    ways(scene).filter_map(bridge).collect()
 }
 
 /// The meshes of buildings.
-fn buildings(scene: &SceneModel) -> impl Iterator<Item = (&DrawMesh, FeatureKind)> {
-    scene.solids.iter().filter_map(|solid| {
-        let kind = scene.features.get(solid.feature.index()?)?.kind;
-        (kind == FeatureKind::Building).then_some((&solid.mesh, kind))
-    })
+fn buildings(scene: &SceneModel) -> impl Iterator<Item = &DrawMesh> {
+    let is_building = |feature: FeatureId| {
+        let feature = feature.index().and_then(|index| scene.features.get(index));
+        feature.is_some_and(|feature| feature.kind == FeatureKind::Building)
+    };
+    scene.solids.iter().filter(move |solid| is_building(solid.feature)).map(|solid| &solid.mesh)
 }
 
 /// Calls `visit` with each triangle of a mesh in plan, and the heights of its corners.
@@ -257,12 +204,12 @@ fn mesh_triangles(mesh: &DrawMesh, mut visit: impl FnMut([DVec2; 3], [f64; 3])) 
 }
 
 /// The heights above the ground of buildings and of trees.
-fn obstacles(scene: &SceneModel, grid: &PostGrid<'_>) -> Vec<f32> {
-    let mut heights = vec![0.0_f32; grid.posts()];
+fn obstacles(scene: &SceneModel) -> Vec<f32> {
+    let mut heights = vec![0.0_f32; scene.lattice.heights().len()];
     let ground = scene.lattice.heights();
-    for (mesh, _) in buildings(scene) {
+    for mesh in buildings(scene) {
         mesh_triangles(mesh, |plan, levels| {
-            grid.triangle(plan, |index, weights| {
+            posts_in(&scene.lattice, plan, |index, weights| {
                 let top = weights.iter().zip(levels).map(|(weight, level)| weight * level).sum::<f64>();
                 let above = top as f32 - ground[index];
                 heights[index] = heights[index].max(if above.is_nan() { 0.0 } else { above });

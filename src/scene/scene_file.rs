@@ -91,6 +91,11 @@ fn none_named(noun: &str, name: &str, names: &[String]) -> String {
     format!("the scene has no {noun} '{}'; {remedy}", quoted(name))
 }
 
+/// Whether the file is a scene by its name; every other file is taken for elevations.
+pub fn is_scene_file(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
+}
+
 /// Reads, parses and builds the scene file at `path`. The scene reads files under the parent of its own folder and
 /// under the folders `allowed`. `progress` is called with the name of each step as it begins.
 ///

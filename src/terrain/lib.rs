@@ -7,6 +7,7 @@ mod height_scan;
 pub mod hillshade;
 pub mod lattice;
 pub mod light;
+pub mod neighbors;
 pub mod post_rect;
 pub mod profile;
 pub mod prominence;

@@ -6,6 +6,8 @@
 use glam::Vec2;
 
 use crate::lattice::Lattice;
+use crate::neighbors::neighbors;
+use sandtable_base::disjoint_sets::root;
 
 /// Lattices with more posts on a side are read as blocks, each by its highest post: prominence of hills is that of the
 /// blocks, and hills inside of one block are one.
@@ -41,22 +43,23 @@ pub fn summits(lattice: &Lattice) -> Vec<ProminentSummit> {
         .collect();
     order.sort_by(|&a, &b| blocks.heights[b as usize].total_cmp(&blocks.heights[a as usize]).then(a.cmp(&b)));
     let Some(lowest) = order.last().map(|&block| blocks.heights[block as usize]) else { return Vec::new() };
-    let mut floods = Floods { parents: vec![u32::MAX; blocks.heights.len()] };
+    // The root of a flood is its summit; `u32::MAX` before a block is flooded.
+    let mut floods = vec![u32::MAX; blocks.heights.len()];
     let mut summits = Vec::new();
     for &block in &order {
-        floods.parents[block as usize] = block;
+        floods[block as usize] = block;
         for neighbor in blocks.neighbors(block) {
-            if floods.parents[neighbor as usize] == u32::MAX {
+            if floods[neighbor as usize] == u32::MAX {
                 continue;
             }
             // The root of a flood is its summit, its first and highest block.
-            let (one, other) = (floods.root(block), floods.root(neighbor));
+            let (one, other) = (root(&mut floods, block), root(&mut floods, neighbor));
             if one == other {
                 continue;
             }
             let order = |root: u32| (blocks.heights[root as usize], std::cmp::Reverse(root));
             let (higher, lower) = if order(one) > order(other) { (one, other) } else { (other, one) };
-            floods.parents[lower as usize] = higher;
+            floods[lower as usize] = higher;
             if lower != block {
                 let saddle =
                     SaddlePoint { at: blocks.position(block), height_m: blocks.heights[block as usize] };
@@ -64,7 +67,7 @@ pub fn summits(lattice: &Lattice) -> Vec<ProminentSummit> {
             }
         }
     }
-    let highest = order.iter().filter(|&&block| floods.parents[block as usize] == block);
+    let highest = order.iter().filter(|&&block| floods[block as usize] == block);
     summits.extend(highest.map(|&block| blocks.summit(block, lowest, None)));
     summits.retain(|summit| summit.prominence_m > 0.0 && blocks.is_inside(summit.at));
     summits.sort_by(|a, b| b.prominence_m.total_cmp(&a.prominence_m).then(a.at.x.total_cmp(&b.at.x)));
@@ -102,13 +105,8 @@ impl<'a> PostBlocks<'a> {
     }
 
     fn neighbors(&self, block: u32) -> impl Iterator<Item = u32> + use<> {
-        let (columns, rows) = (i64::from(self.columns), i64::from(self.rows));
-        let (x, y) = (i64::from(block % self.columns), i64::from(block / self.columns));
-        let around = (-1..=1).flat_map(|down| (-1..=1).map(move |right| (right, down)));
-        let inside = move |&(right, down): &(i64, i64)| {
-            (right, down) != (0, 0) && (0..columns).contains(&(x + right)) && (0..rows).contains(&(y + down))
-        };
-        around.filter(inside).map(move |(right, down)| ((y + down) * columns + x + right) as u32)
+        let around = neighbors(block as usize, self.columns as usize, self.rows as usize);
+        around.map(|(_, other)| other as u32)
     }
 
     fn position(&self, block: u32) -> Vec2 {
@@ -126,24 +124,6 @@ impl<'a> PostBlocks<'a> {
         let margin = self.lattice.cell() * 1.5;
         let at = at.as_dvec2();
         (at - extent.min).cmpgt(margin).all() && (extent.max - at).cmpgt(margin).all()
-    }
-}
-
-/// Sets of flooded blocks.
-struct Floods {
-    /// `u32::MAX` before a block is flooded.
-    parents: Vec<u32>,
-}
-
-impl Floods {
-    fn root(&mut self, block: u32) -> u32 {
-        let mut root = block;
-        while self.parents[root as usize] != root {
-            let parent = self.parents[root as usize];
-            self.parents[root as usize] = self.parents[parent as usize];
-            root = self.parents[root as usize];
-        }
-        root
     }
 }
 

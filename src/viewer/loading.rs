@@ -15,8 +15,9 @@ use sandtable_base::limits::VIEWED_SAMPLES;
 use sandtable_base::message::chain::error_text;
 use sandtable_description::diagnostic::{Diagnostic, Diagnostics};
 use sandtable_editing::editor::{SceneEditor, SceneSource};
-use sandtable_editing::viewing::{is_scene_file, open_to_view};
+use sandtable_editing::viewing::open_to_view;
 use sandtable_files::fingerprint::fingerprint;
+use sandtable_scene::scene_file::is_scene_file;
 use sandtable_walk::paged_elevation::PagedElevation;
 
 /// A file that is being opened.

@@ -6,7 +6,7 @@ use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::outcome::{Figure, Outcome, OutcomeTable, PropertyValue, TableColumn};
-use sandtable_terrain::lattice::Lattice;
+use crate::place::height_under;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// The greatest number of stations.
@@ -35,8 +35,7 @@ pub(crate) fn berms(
     let mut rows = Vec::new();
     let (mut volume, mut before) = (0.0, None);
     for (distance, at) in stations(line, step) {
-        let problem = "has no ground";
-        let ground = height(&land.ground, at).ok_or(AnalysisError::Place { key: "line", at, problem })?;
+        let ground = height_under(&land.ground, "line", at)?;
         let berm = (level - ground).max(0.0);
         let section = berm * (crest + run * berm);
         let dug = section / swell;
@@ -48,15 +47,15 @@ pub(crate) fn berms(
         before = Some((distance, section));
         rows.push([distance, ground, berm, depth, volume].map(PropertyValue::Number).into());
     }
-    let column = |name, decimals| TableColumn { name, unit: "m", decimals };
+    let column = |name, decimals| TableColumn::new(name, "m", decimals);
     let columns = vec![
         column("station", 0),
         column("ground", 2),
         column("berm height", 2),
         column("ditch depth", 2),
-        TableColumn { name: "berm so far", unit: "m³", decimals: 1 },
+        TableColumn::new("berm so far", "m³", 1),
     ];
-    let figure = |name: &str, value| Figure { name: name.to_owned(), value, unit: "m³" };
+    let figure = |name, value| Figure::new(name, value, "m³");
     Ok(Outcome {
         tables: vec![OutcomeTable { title: "Berm and ditch".to_owned(), columns, rows }],
         figures: vec![figure("berm", volume), figure("ditch", volume / swell)],
@@ -79,27 +78,12 @@ fn stations(line: &[DVec2], step: f64) -> Vec<(f64, DVec2)> {
     stations
 }
 
-/// The height of the ground by the four posts around a position; `None` off the land and beside posts without data.
-fn height(ground: &Lattice, at: DVec2) -> Option<f64> {
-    let grid = (at - ground.origin()) / ground.cell();
-    let last = DVec2::new(f64::from(ground.columns() - 1), f64::from(ground.rows() - 1));
-    if !(grid.cmpge(DVec2::ZERO).all() && grid.cmple(last).all()) {
-        return None;
-    }
-    let first = grid.floor().min(last - 1.0);
-    let part = grid - first;
-    let index = first.y as usize * ground.columns() as usize + first.x as usize;
-    let value = |index: usize| f64::from(ground.heights()[index]);
-    let row = |index: usize| value(index) * (1.0 - part.x) + value(index + 1) * part.x;
-    let height = row(index) * (1.0 - part.y) + row(index + ground.columns() as usize) * part.y;
-    (!height.is_nan()).then_some(height)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::arguments::ArgumentValue;
     use sandtable_geom::crs::Crs;
+    use sandtable_terrain::lattice::Lattice;
     use std::sync::Arc;
 
     #[test]

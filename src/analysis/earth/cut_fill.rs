@@ -7,8 +7,8 @@ use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::outcome::{
-    ClassLook, FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape,
-    PostValues, ValueClass,
+    FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, PostValues,
+    ValueClass,
 };
 use sandtable_terrain::lattice::Post;
 use sandtable_terrain::stop_flag::StopFlag;
@@ -66,7 +66,7 @@ pub(crate) fn cut_fill(
     let sums: Vec<[f64; 2]> = values.par_chunks(columns).enumerate().map(row_sums).collect();
     let volume = |side: usize| sums.iter().map(|sums| sums[side]).sum::<f64>() * ground.cell_m2();
     let (cut, fill) = (volume(0), volume(1));
-    let figure = |name: &str, value| Figure { name: name.to_owned(), value, unit: "m³" };
+    let figure = |name, value| Figure::new(name, value, "m³");
     let outline = (!area.is_empty()).then(|| OutcomeFeature {
         shape: OutcomeShape::Area(vec![counter_clockwise(area)]),
         name: String::new(),
@@ -118,12 +118,7 @@ fn classes() -> Vec<ValueClass> {
         (-0.05, "unchanged", [0, 0, 0, 0], Hatching::None),
         (0.05, "fill", [50, 90, 200, 120], Hatching::Dots),
     ];
-    let class = |(from, label, tint, hatching): (f32, &str, [u8; 4], Hatching)| ValueClass {
-        from,
-        label: label.to_owned(),
-        look: ClassLook { tint, hatching },
-    };
-    rows.map(class).into()
+    ValueClass::of_rows(rows)
 }
 
 #[cfg(test)]

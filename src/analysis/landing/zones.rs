@@ -10,10 +10,9 @@ use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::{Land, LandCover, WaterKind};
 use crate::outcome::{
-    ClassLook, FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape,
-    PostValues, PropertyValue, ValueClass,
+    FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, PostValues,
+    PropertyValue, ValueClass,
 };
-use sandtable_terrain::lattice::Post;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// The greatest height in meters of what may stand in a touchdown disk: 18 inches.
@@ -96,7 +95,7 @@ pub(crate) fn landing_zones(
         }
     }
     let features = sites.iter().enumerate().map(|(rank, &index)| {
-        let post = Post { column: index % columns as u32, row: index / columns as u32 };
+        let center = ground.map_position(ground.post_at(index as usize));
         let mut properties = vec![
             ("code", PropertyValue::Whole(i64::from(codes[index as usize]))),
             ("diameter_m", PropertyValue::Number(diameter)),
@@ -107,18 +106,14 @@ pub(crate) fn landing_zones(
             properties.push(("approach_from_deg", PropertyValue::Number((azimuth + 360.0) % 360.0)));
         }
         OutcomeFeature {
-            shape: OutcomeShape::Area(vec![circle(ground.map_position(post), diameter / 2.0)]),
+            shape: OutcomeShape::Area(vec![circle(center, diameter / 2.0)]),
             name: format!("LZ {}", rank + 1),
             role: FeatureRole::Site,
             properties,
         }
     });
     let features = features.collect();
-    let figure = Figure {
-        name: "suited ground".to_owned(),
-        value: suited as f64 * ground.cell_m2() / 1e4,
-        unit: "ha",
-    };
+    let figure = Figure::new("suited ground", suited as f64 * ground.cell_m2() / 1e4, "ha");
     let raster =
         OutcomeRaster { name: "landing", unit: "", values: PostValues::Codes(codes), classes: classes() };
     Ok(Outcome { raster: Some(raster), features, figures: vec![figure], ..Outcome::default() })
@@ -231,12 +226,7 @@ fn classes() -> Vec<ValueClass> {
         (1.0, "with caution", [254, 217, 118, 110], Hatching::Dots),
         (2.0, "suited", [90, 180, 90, 120], Hatching::Single),
     ];
-    let class = |(from, label, tint, hatching): (f32, &str, [u8; 4], Hatching)| ValueClass {
-        from,
-        label: label.to_owned(),
-        look: ClassLook { tint, hatching },
-    };
-    rows.map(class).into()
+    ValueClass::of_rows(rows)
 }
 
 #[cfg(test)]

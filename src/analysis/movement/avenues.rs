@@ -8,7 +8,7 @@ use glam::DVec2;
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
-use crate::movement::burn::along_line;
+use crate::line_posts::along_line;
 use crate::movement::corridors::{FreeGround, echelon};
 use crate::movement::going::{RESTRICTED, UNRESTRICTED};
 use crate::movement::route::{RouteMeasures, way_line};
@@ -121,17 +121,11 @@ fn find_avenues(
         avenues.push(Avenue { way, line, measures: RouteMeasures::default(), widths_m, shared });
         ground.slow_down(slowed, penalty);
     }
-    drop(ground);
-    // The ground as it is, without the slowed posts.
-    let (ground, ..) = travel_ground(land, arguments)?;
+    ground.undo_slowing();
     for avenue in &mut avenues {
         avenue.measures = RouteMeasures::of(&ground, &avenue.way);
     }
     Ok(AvenueSet { avenues, notes })
-}
-
-fn column(name: &'static str, unit: &'static str, decimals: usize) -> TableColumn {
-    TableColumn { name, unit, decimals }
 }
 
 /// A width for tables: as far as is known, `open` where no restricted ground limits it.
@@ -179,6 +173,7 @@ pub(crate) fn avenues(
             PropertyValue::Number(avenue.shared * 100.0),
         ]
     };
+    let column = TableColumn::new;
     let columns = vec![
         column("avenue", "", 0),
         column("distance", "km", 2),
@@ -192,7 +187,7 @@ pub(crate) fn avenues(
     Ok(Outcome {
         features: set.avenues.iter().enumerate().map(|(rank, avenue)| avenue_feature(rank, avenue)).collect(),
         tables: vec![OutcomeTable { title: "Avenues of approach".to_owned(), columns, rows }],
-        figures: vec![Figure { name: "avenues".to_owned(), value: set.avenues.len() as f64, unit: "" }],
+        figures: vec![Figure::new("avenues", set.avenues.len() as f64, "")],
         notes: set.notes,
         ..Outcome::default()
     })
@@ -248,6 +243,7 @@ pub(crate) fn chokes(
             PropertyValue::Number(place.station_m / 1000.0),
         ]
     };
+    let column = TableColumn::new;
     let columns = vec![
         column("choke point", "", 0),
         column("width", "m", 0),
@@ -261,7 +257,7 @@ pub(crate) fn chokes(
     Ok(Outcome {
         features,
         tables: vec![OutcomeTable { title: "Choke points".to_owned(), columns, rows }],
-        figures: vec![Figure { name: "choke points".to_owned(), value: kept.len() as f64, unit: "" }],
+        figures: vec![Figure::new("choke points", kept.len() as f64, "")],
         notes: set.notes,
         ..Outcome::default()
     })
@@ -305,8 +301,8 @@ mod tests {
     use super::*;
     use crate::arguments::ArgumentValue;
     use crate::land::LandCover;
-    use crate::movement::testing::flat;
     use crate::run::run;
+    use crate::test_land::flat;
 
     /// 31 × 21 posts, 100 m apart, with a swamp across: gaps of three posts at rows 4 to 6 and of one at row 15.
     fn two_gaps() -> Land {

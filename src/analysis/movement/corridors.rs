@@ -6,9 +6,10 @@
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
+use crate::measures::area_km2;
 use crate::movement::going::{Going, RESTRICTED, UNRESTRICTED};
 use crate::movement::vehicle::Vehicle;
-use crate::outcome::{ClassLook, Figure, Hatching, Outcome, OutcomeRaster, PostValues, ValueClass};
+use crate::outcome::{Figure, Hatching, Outcome, OutcomeRaster, PostValues, ValueClass};
 use sandtable_base::limits::memory::check_memory;
 use sandtable_geom::distance_field::{RegionGrid, distances_m};
 use sandtable_terrain::lattice::Lattice;
@@ -125,11 +126,11 @@ pub(crate) fn corridors(
                 posts += 1;
             }
         }
-        figures.push(Figure {
-            name: format!("corridors of {}", width_label(width_m)),
-            value: posts as f64 * land.ground.cell_m2() / 1e6,
-            unit: "km²",
-        });
+        figures.push(Figure::new(
+            format!("corridors of {}", width_label(width_m)),
+            area_km2(&land.ground, posts),
+            "km²",
+        ));
     }
     let raster = OutcomeRaster {
         name: "corridors",
@@ -154,16 +155,12 @@ pub(crate) fn echelon(width_m: f64) -> &'static str {
 }
 
 fn classes(widths: &[f64]) -> Vec<ValueClass> {
-    let none = ValueClass {
-        from: 0.0,
-        label: "no corridor".to_owned(),
-        look: ClassLook { tint: [0, 0, 0, 0], hatching: Hatching::None },
-    };
+    let none = ValueClass::new(0.0, "no corridor", [0; 4], Hatching::None);
     let hatchings = [Hatching::Dots, Hatching::Level, Hatching::Single, Hatching::Crossed];
-    let class = |(index, &width_m): (usize, &f64)| ValueClass {
-        from: (index + 1) as f32,
-        label: format!("{} and wider", width_label(width_m)),
-        look: ClassLook { tint: TINTS[index % TINTS.len()], hatching: hatchings[index % hatchings.len()] },
+    let class = |(index, &width_m): (usize, &f64)| {
+        let label = format!("{} and wider", width_label(width_m));
+        let (tint, hatching) = (TINTS[index % TINTS.len()], hatchings[index % hatchings.len()]);
+        ValueClass::new((index + 1) as f32, label, tint, hatching)
     };
     std::iter::once(none).chain(widths.iter().enumerate().map(class)).collect()
 }
@@ -173,8 +170,8 @@ mod tests {
     use super::*;
     use crate::arguments::ArgumentValue;
     use crate::land::LandCover;
-    use crate::movement::testing::flat;
     use crate::run::run;
+    use crate::test_land::flat;
 
     fn codes(land: &Land, widths: &[f64]) -> Vec<u8> {
         let kind = sandtable_catalog::kind("corridors").expect("a kind");

@@ -6,7 +6,7 @@
 use rayon::prelude::*;
 
 use crate::land::{Crossing, CrossingKind, Land, LandCover, RoadClass, Stand, WaterKind, WaterPost};
-use crate::movement::burn::along_line;
+use crate::line_posts::along_line;
 use crate::movement::vehicle::{Drive, Vehicle};
 use crate::outcome::PostValues;
 use sandtable_base::limits::memory::{MemoryRefused, check_memory};
@@ -91,9 +91,8 @@ impl Going {
 
     /// Roads, bridges and fords.
     fn place_ways(&mut self, land: &Land, vehicle: &Vehicle) {
-        let mut surfaces = land.roads.clone().unwrap_or_else(|| vec![RoadClass::None; self.codes.len()]);
-        surfaces.resize(self.codes.len(), RoadClass::None);
-        for road in &land.road_lines {
+        let mut surfaces = vec![RoadClass::None; self.codes.len()];
+        for road in land.roads.iter().flatten() {
             along_line(&land.ground, &road.line, road.width_m, |index| {
                 surfaces[index] = surfaces[index].max(road.surface);
             });
@@ -226,7 +225,7 @@ fn cover_rule(drive: Drive, cover: LandCover) -> GroundRule {
 mod tests {
     use super::*;
     use crate::land::{RoadLine, Step};
-    use crate::movement::testing::{flat, shaped};
+    use crate::test_land::{flat, shaped};
     use glam::DVec2;
 
     fn tracked() -> Vehicle {
@@ -267,11 +266,12 @@ mod tests {
             water[row * 5 + 2] = WaterPost { kind: WaterKind::River, depth_m: f32::NAN };
         }
         land.water = Some(water);
-        land.roads = Some(vec![RoadClass::None; 15]);
+        land.roads = Some(Vec::new());
         assert_eq!(Going::new(&land, &tracked()).expect("memory").codes[7], SEVERELY_RESTRICTED);
         let line = vec![DVec2::new(10.0, 10.0), DVec2::new(30.0, 10.0)];
         let surface = RoadClass::Main;
-        land.road_lines.push(RoadLine { name: String::new(), line: line.clone(), surface, width_m: 6.0 });
+        let road = RoadLine { name: String::new(), line: line.clone(), surface, width_m: 6.0 };
+        land.roads = Some(vec![road]);
         let going = Going::new(&land, &tracked()).expect("memory");
         assert_eq!((going.codes[7], going.speed_kmh[7], going.is_way[7]), (UNRESTRICTED, 55.0, true));
         assert_eq!(going.codes[2], SEVERELY_RESTRICTED, "the river beside the bridge stays");

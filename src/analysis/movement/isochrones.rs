@@ -3,10 +3,11 @@
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
+use crate::measures::area_km2;
 use crate::movement::travel::{TravelGoal, travel_ground};
 use crate::outcome::{
-    ClassLook, FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape,
-    PostValues, ValueClass,
+    FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, PostValues,
+    ValueClass,
 };
 use sandtable_terrain::stop_flag::StopFlag;
 
@@ -64,7 +65,6 @@ pub(crate) fn time(
         role: FeatureRole::Place,
         properties: Vec::new(),
     };
-    let area_km2 = reached as f64 * land.ground.cell_m2() / 1e6;
     Ok(Outcome {
         features: places.iter().enumerate().map(place).collect(),
         raster: Some(OutcomeRaster {
@@ -74,8 +74,8 @@ pub(crate) fn time(
             classes: classes(&limits),
         }),
         figures: vec![
-            Figure { name: "reached".to_owned(), value: area_km2, unit: "km²" },
-            Figure { name: "latest arrival".to_owned(), value: f64::from(latest), unit: "min" },
+            Figure::new("reached", area_km2(&land.ground, reached), "km²"),
+            Figure::new("latest arrival", f64::from(latest), "min"),
         ],
         notes,
         ..Outcome::default()
@@ -87,18 +87,15 @@ fn classes(limits: &[f64]) -> Vec<ValueClass> {
     let limits: Vec<f64> = limits.iter().copied().filter(|&limit| limit > 0.0).collect();
     let hatchings = [Hatching::None, Hatching::Dots, Hatching::Single, Hatching::Crossed];
     (0..=limits.len())
-        .map(|index| ValueClass {
-            from: if index == 0 { 0.0 } else { limits[index - 1] as f32 },
-            label: match (index, limits.get(index)) {
+        .map(|index| {
+            let from = if index == 0 { 0.0 } else { limits[index - 1] as f32 };
+            let label = match (index, limits.get(index)) {
                 (0, Some(to)) => format!("up to {to} min"),
                 (0, None) => "reached".to_owned(),
                 (_, Some(to)) => format!("{}–{to} min", limits[index - 1]),
                 (_, None) => format!("over {} min", limits[index - 1]),
-            },
-            look: ClassLook {
-                tint: TINTS[index % TINTS.len()],
-                hatching: hatchings[index % hatchings.len()],
-            },
+            };
+            ValueClass::new(from, label, TINTS[index % TINTS.len()], hatchings[index % hatchings.len()])
         })
         .collect()
 }
@@ -108,8 +105,8 @@ mod tests {
     use super::*;
     use crate::arguments::ArgumentValue;
     use crate::land::{RoadClass, RoadLine, WaterKind, WaterPost};
-    use crate::movement::testing::flat;
     use crate::run::run;
+    use crate::test_land::flat;
     use glam::DVec2;
 
     fn minutes(land: &Land, max_min: f64, from: &[DVec2]) -> Result<Vec<f32>, AnalysisError> {
@@ -129,8 +126,8 @@ mod tests {
         let found = minutes(&land, 5.0, &[DVec2::ZERO]).expect("sound");
         assert!((found[10] - 4.0).abs() < 1e-4 && (found[12] - 4.8).abs() < 1e-4 && found[13].is_nan());
         let line = vec![DVec2::ZERO, DVec2::new(2000.0, 0.0)];
-        land.road_lines =
-            vec![RoadLine { name: String::new(), line, surface: RoadClass::Main, width_m: 7.0 }];
+        land.roads =
+            Some(vec![RoadLine { name: String::new(), line, surface: RoadClass::Main, width_m: 7.0 }]);
         let found = minutes(&land, 50.0, &[DVec2::ZERO]).expect("sound");
         assert!((found[20] - 2.0 / 70.0 * 60.0).abs() < 1e-4, "{}", found[20]);
     }

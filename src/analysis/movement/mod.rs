@@ -1,7 +1,6 @@
 //! Movement across the land: what ground a vehicle can cross, how fast, and on which ways.
 
 mod avenues;
-mod burn;
 mod corridors;
 mod going;
 mod grade;
@@ -9,8 +8,6 @@ mod isochrones;
 mod obstacles;
 mod queue;
 mod route;
-#[cfg(test)]
-mod testing;
 mod travel;
 pub mod vehicle;
 
@@ -29,10 +26,10 @@ pub(crate) const FUNCTIONS: &[(&str, KindFunction)] = &[
 
 #[cfg(test)]
 mod tests {
-    use super::testing::shaped;
     use crate::arguments::{AnalysisArguments, ArgumentValue};
     use crate::land::{Land, WaterKind, WaterPost};
     use crate::run::run;
+    use crate::test_land::{on_pool, shaped};
     use glam::DVec2;
     use sandtable_catalog::kind::AnalysisFamily;
     use sandtable_catalog::parameter::ParameterForm;
@@ -96,8 +93,8 @@ mod tests {
         for name in ["obstacles", "speed", "time", "route", "corridors", "avenues", "chokes"] {
             let arguments = at_end(name, true, [from, to]);
             let text = |threads: usize| {
-                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-                pool.install(|| format!("{:?}", run(&land, &arguments, &StopFlag::default()).expect("sound")))
+                let outcome = || run(&land, &arguments, &StopFlag::default()).expect("sound");
+                on_pool(threads, || format!("{:?}", outcome()))
             };
             assert_eq!(text(1), text(3), "{name}");
         }

@@ -5,10 +5,11 @@ use rayon::prelude::*;
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
+use crate::measures::{area_km2, percent};
 use crate::movement::going::{Going, RESTRICTED, SEVERELY_RESTRICTED, UNRESTRICTED};
 use crate::movement::grade::GradeTable;
 use crate::movement::vehicle::Vehicle;
-use crate::outcome::{ClassLook, Figure, Hatching, Outcome, OutcomeRaster, PostValues, ValueClass};
+use crate::outcome::{Figure, Hatching, Outcome, OutcomeRaster, PostValues, ValueClass};
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// The names and looks of the codes.
@@ -33,25 +34,17 @@ pub(crate) fn obstacles(
     let known = going.codes.len() - count(PostValues::NO_CODE);
     let mut figures = Vec::new();
     for (code, label, ..) in OVERLAY {
-        let posts = count(code) as f64;
-        let share = if known > 0 { posts / known as f64 * 100.0 } else { 0.0 };
-        figures.push(Figure {
-            name: label.to_owned(),
-            value: posts * land.ground.cell_m2() / 1e6,
-            unit: "km²",
-        });
-        figures.push(Figure { name: format!("share of {label}"), value: share, unit: "%" });
+        let posts = count(code);
+        figures.push(Figure::new(label, area_km2(&land.ground, posts), "km²"));
+        figures.push(Figure::new(format!("share of {label}"), percent(posts, known), "%"));
     }
-    let class = |(code, label, tint, hatching): (u8, &str, [u8; 4], Hatching)| ValueClass {
-        from: f32::from(code),
-        label: label.to_owned(),
-        look: ClassLook { tint, hatching },
-    };
     let raster = OutcomeRaster {
         name: "obstacles",
         unit: "",
         values: PostValues::Codes(going.codes),
-        classes: OVERLAY.map(class).into(),
+        classes: ValueClass::of_rows(
+            OVERLAY.map(|(code, label, tint, hatching)| (f32::from(code), label, tint, hatching)),
+        ),
     };
     Ok(Outcome { raster: Some(raster), figures, notes: going.notes, ..Outcome::default() })
 }
@@ -82,7 +75,7 @@ pub(crate) fn speed(
     let ground: Vec<f64> =
         values.iter().filter(|&&speed| speed > 0.0).map(|&speed| f64::from(speed)).collect();
     let mean = if ground.is_empty() { 0.0 } else { ground.iter().sum::<f64>() / ground.len() as f64 };
-    let figures = vec![Figure { name: "mean speed where it can go".to_owned(), value: mean, unit: "km/h" }];
+    let figures = vec![Figure::new("mean speed where it can go", mean, "km/h")];
     let raster = OutcomeRaster {
         name: "speed",
         unit: "km/h",
@@ -101,20 +94,15 @@ fn speed_classes() -> Vec<ValueClass> {
         (15.0, "15–30 km/h", [180, 220, 130, 90], Hatching::None),
         (30.0, "over 30 km/h", [60, 160, 80, 100], Hatching::None),
     ];
-    let class = |(from, label, tint, hatching): (f32, &str, [u8; 4], Hatching)| ValueClass {
-        from,
-        label: label.to_owned(),
-        look: ClassLook { tint, hatching },
-    };
-    rows.map(class).into()
+    ValueClass::of_rows(rows)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::arguments::ArgumentValue;
-    use crate::movement::testing::shaped;
     use crate::run::run;
+    use crate::test_land::shaped;
 
     fn arguments(kind: &str, vehicle: &str) -> AnalysisArguments {
         let kind = sandtable_catalog::kind(kind).expect("a kind");

@@ -122,8 +122,8 @@ pub(crate) fn route(
         features,
         tables: vec![OutcomeTable { title: "March table".to_owned(), columns: leg_columns(), rows }],
         figures: vec![
-            Figure { name: "length".to_owned(), value: total.length_m / 1000.0, unit: "km" },
-            Figure { name: "time".to_owned(), value: total.seconds / 60.0, unit: "min" },
+            Figure::new("length", total.length_m / 1000.0, "km"),
+            Figure::new("time", total.seconds / 60.0, "min"),
         ],
         notes,
         ..Outcome::default()
@@ -131,7 +131,7 @@ pub(crate) fn route(
 }
 
 fn leg_columns() -> Vec<TableColumn> {
-    let column = |name, unit, decimals| TableColumn { name, unit, decimals };
+    let column = TableColumn::new;
     vec![
         column("leg", "", 0),
         column("distance", "km", 2),
@@ -164,8 +164,8 @@ mod tests {
     use super::*;
     use crate::arguments::ArgumentValue;
     use crate::land::{Crossing, CrossingKind, Step, WaterKind, WaterPost};
-    use crate::movement::testing::{flat, shaped};
     use crate::run::run;
+    use crate::test_land::{flat, shaped};
 
     fn found(land: &Land, places: [&[DVec2]; 3]) -> Result<Outcome, AnalysisError> {
         let kind = sandtable_catalog::kind("route").expect("a kind");

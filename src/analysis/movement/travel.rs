@@ -52,6 +52,8 @@ pub(crate) struct TravelGround<'a> {
     steps: [TravelStep; 16],
     least_pace: f32,
     greatest_pace: f32,
+    /// Posts that are slowed, each with its pace before, in the order in which they were slowed.
+    slowed: Vec<(u32, f32)>,
 }
 
 /// A step to a neighbor.
@@ -111,16 +113,33 @@ impl<'a> TravelGround<'a> {
             let length_m = (ground.cell() * DVec2::new(f64::from(east), f64::from(north))).length() as f32;
             TravelStep { columns: east, rows: north, offset: offset(east, north), flanks, length_m }
         });
-        Ok(Self { ground, paces, is_way: going.is_way, grades, steps, least_pace, greatest_pace })
+        Ok(Self {
+            ground,
+            paces,
+            is_way: going.is_way,
+            grades,
+            steps,
+            least_pace,
+            greatest_pace,
+            slowed: Vec::new(),
+        })
     }
 
     /// Multiplies the pace of posts, to keep a later way off them.
     pub fn slow_down(&mut self, posts: impl IntoIterator<Item = usize>, factor: f32) {
         for index in posts {
+            self.slowed.push((index as u32, self.paces[index]));
             self.paces[index] *= factor;
             if self.paces[index].is_finite() {
                 self.greatest_pace = self.greatest_pace.max(self.paces[index]);
             }
+        }
+    }
+
+    /// Gives all posts their paces from before [`TravelGround::slow_down`].
+    pub fn undo_slowing(&mut self) {
+        while let Some((index, pace)) = self.slowed.pop() {
+            self.paces[index as usize] = pace;
         }
     }
 
@@ -337,7 +356,7 @@ pub(crate) fn travel_ground<'a>(
 mod tests {
     use super::*;
     use crate::land::Step;
-    use crate::movement::testing::{flat, shaped};
+    use crate::test_land::{flat, shaped};
 
     pub(super) const ALL: TravelGoal<'static> = TravelGoal { most_s: f32::INFINITY, any_of: None };
 

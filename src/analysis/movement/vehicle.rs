@@ -207,7 +207,7 @@ pub(crate) const LEVEL_FOOT_KMH: f64 = 5.0;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::movement::testing::flat;
+    use crate::test_land::flat;
 
     #[test]
     fn built_in_vehicles_are_in_order_and_a_vehicle_of_the_scene_comes_first() {

@@ -9,11 +9,12 @@ use rayon::prelude::*;
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
+use crate::measures::{area_km2, percent};
 use crate::observation::lookout::{
-    Lookout, LookoutView, area_km2, check_looks, count_classes, curvature, height_under, look, percent,
-    posts_within, range_m,
+    Lookout, LookoutView, check_looks, count_classes, curvature, look, posts_within, range_m,
 };
 use crate::outcome::{Figure, Outcome, OutcomeRaster, OutcomeTable, PostValues, PropertyValue, TableColumn};
+use crate::place::height_under;
 use sandtable_base::limits::memory::check_memory;
 use sandtable_geom::polygon::contains;
 use sandtable_terrain::lattice::{Lattice, Post};
@@ -95,7 +96,7 @@ pub(crate) fn best_posts(
         values: PostValues::Numbers(watched.counts(ground, chosen.iter().map(|post| &*views[post.view]))),
         classes: count_classes(chosen.len(), "dead ground"),
     });
-    outcome.figures.push(Figure { name: "places tried".into(), value: places.len() as f64, unit: "" });
+    outcome.figures.push(Figure::new("places tried", places.len() as f64, ""));
     if chosen.len() < count {
         let all = chosen.len();
         outcome
@@ -286,13 +287,13 @@ fn outcome(ground: &Lattice, chosen: &[ChosenPost], watched: usize) -> Outcome {
     let table = OutcomeTable {
         title: "Best posts".into(),
         columns: vec![
-            TableColumn { name: "post", unit: "", decimals: 0 },
-            TableColumn { name: "east", unit: "m", decimals: 0 },
-            TableColumn { name: "north", unit: "m", decimals: 0 },
-            TableColumn { name: "ground", unit: "m", decimals: 0 },
-            TableColumn { name: "sees", unit: "%", decimals: 1 },
-            TableColumn { name: "adds", unit: "%", decimals: 1 },
-            TableColumn { name: "together", unit: "%", decimals: 1 },
+            TableColumn::new("post", "", 0),
+            TableColumn::new("east", "m", 0),
+            TableColumn::new("north", "m", 0),
+            TableColumn::new("ground", "m", 0),
+            TableColumn::new("sees", "%", 1),
+            TableColumn::new("adds", "%", 1),
+            TableColumn::new("together", "%", 1),
         ],
         rows: chosen.iter().zip(&together).map(row).collect(),
     };
@@ -301,8 +302,8 @@ fn outcome(ground: &Lattice, chosen: &[ChosenPost], watched: usize) -> Outcome {
         features: chosen.iter().zip(&together).map(feature).collect(),
         tables: vec![table],
         figures: vec![
-            Figure { name: "seen together".into(), value: percent(last, watched), unit: "%" },
-            Figure { name: "watched".into(), value: area_km2(ground, watched), unit: "km²" },
+            Figure::new("seen together", percent(last, watched), "%"),
+            Figure::new("watched", area_km2(ground, watched), "km²"),
         ],
         ..Outcome::default()
     }
@@ -312,7 +313,8 @@ fn outcome(ground: &Lattice, chosen: &[ChosenPost], watched: usize) -> Outcome {
 mod tests {
     use super::*;
     use crate::arguments::ArgumentValue;
-    use crate::observation::test_land::{at, land, on_pool, ripples, run_kind};
+    use crate::observation::test_hills::{at, land, ripples};
+    use crate::test_land::{on_pool, run_kind};
     use sandtable_terrain::sight::Curvature;
     use sandtable_terrain::sight::line::{Sight, line_of_sight};
 
@@ -412,7 +414,7 @@ mod tests {
             ArgumentValue::Points(vec![at(9.5, 16.5), at(10.5, 16.5), at(10.5, 17.5), at(9.5, 17.5)]);
         assert_eq!(key(vec![("watch", in_hole.clone())]), Some("watch"));
         assert_eq!(key(vec![("area", in_hole)]), Some("spacing"));
-        let wide = crate::observation::test_land::land(400, |_, _| 0.0);
+        let wide = crate::observation::test_hills::land(400, |_, _| 0.0);
         let error = run_kind("best-posts", &wide, vec![number("spacing", 1.0)]).expect_err("160 000 places");
         assert_eq!(error.key(), Some("spacing"), "{error}");
     }

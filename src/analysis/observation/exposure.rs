@@ -9,10 +9,11 @@ use rayon::prelude::*;
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
-use crate::observation::lookout::{Lookout, check_work, curvature, height_under, range_m};
+use crate::observation::lookout::{Lookout, check_work, curvature, range_m};
 use crate::outcome::{
     FeatureRole, Figure, Outcome, OutcomeFeature, OutcomeShape, OutcomeTable, PropertyValue, TableColumn,
 };
+use crate::place::height_under;
 use sandtable_base::limits::memory::check_memory;
 use sandtable_terrain::sight::Curvature;
 use sandtable_terrain::sight::ground::SightGround;
@@ -268,17 +269,16 @@ fn outcome(
     let table = OutcomeTable {
         title: "Stretches".into(),
         columns: vec![
-            TableColumn { name: "from", unit: "km", decimals: 2 },
-            TableColumn { name: "length", unit: "km", decimals: 2 },
-            TableColumn { name: "after", unit: "min", decimals: 1 },
-            TableColumn { name: "for", unit: "min", decimals: 1 },
-            TableColumn { name: "sight", unit: "", decimals: 0 },
-            TableColumn { name: "posts", unit: "", decimals: 0 },
+            TableColumn::new("from", "km", 2),
+            TableColumn::new("length", "km", 2),
+            TableColumn::new("after", "min", 1),
+            TableColumn::new("for", "min", 1),
+            TableColumn::new("sight", "", 0),
+            TableColumn::new("posts", "", 0),
         ],
         rows: stretches.iter().map(row).collect(),
     };
     let seen_m = sum_m(RouteSight::Seen);
-    let figure = |name: &str, value: f64, unit| Figure { name: name.into(), value, unit };
     let mut notes = Vec::new();
     let unknown_m = sum_m(RouteSight::Unknown);
     if unknown_m > 0.0 {
@@ -290,10 +290,10 @@ fn outcome(
         features: stretches.iter().map(line).chain(lookouts.iter().enumerate().map(post)).collect(),
         tables: vec![table],
         figures: vec![
-            figure("in sight, share", seen_m / length_m * 100.0, "%"),
-            figure("in sight", seen_m / 1000.0, "km"),
-            figure("in sight, time", minutes(seen_m), "min"),
-            figure("length", length_m / 1000.0, "km"),
+            Figure::new("in sight, share", seen_m / length_m * 100.0, "%"),
+            Figure::new("in sight", seen_m / 1000.0, "km"),
+            Figure::new("in sight, time", minutes(seen_m), "min"),
+            Figure::new("length", length_m / 1000.0, "km"),
         ],
         notes,
         ..Outcome::default()
@@ -310,7 +310,8 @@ fn post_names(posts: &[bool]) -> String {
 mod tests {
     use super::*;
     use crate::arguments::ArgumentValue;
-    use crate::observation::test_land::{at, land, on_pool, ripples, run_kind};
+    use crate::observation::test_hills::{at, land, ripples};
+    use crate::test_land::{on_pool, run_kind};
 
     fn points(name: &'static str, places: &[(f64, f64)]) -> (&'static str, ArgumentValue) {
         (name, ArgumentValue::Points(places.iter().map(|&(column, row)| at(column, row)).collect()))

@@ -11,8 +11,9 @@ use rayon::prelude::*;
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
+use crate::measures::{area_km2, percent};
 use crate::observation::lookout::{
-    Lookout, LookoutView, area_km2, check_looks, count_classes, curvature, look, percent, posts_within,
+    Lookout, LookoutView, check_looks, count_classes, curvature, look, posts_within,
 };
 use crate::outcome::{
     FeatureRole, Figure, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, OutcomeTable, PostValues,
@@ -92,21 +93,19 @@ pub(crate) fn fields_of_fire(
     let table = OutcomeTable {
         title: "Weapons".into(),
         columns: vec![
-            TableColumn { name: "weapon", unit: "", decimals: 0 },
-            TableColumn { name: "ground", unit: "m", decimals: 0 },
-            TableColumn { name: "hit", unit: "km²", decimals: 2 },
-            TableColumn { name: "share", unit: "%", decimals: 1 },
+            TableColumn::new("weapon", "", 0),
+            TableColumn::new("ground", "m", 0),
+            TableColumn::new("hit", "km²", 2),
+            TableColumn::new("share", "%", 1),
         ],
         rows: weapons.iter().zip(&shares).map(row).collect(),
     };
-    let share = |(weapon, &(hit, of)): (&Lookout, &(usize, usize))| Figure {
-        name: format!("hit by weapon {}", weapon.number),
-        value: percent(hit, of),
-        unit: "%",
+    let share = |(weapon, &(hit, of)): (&Lookout, &(usize, usize))| {
+        Figure::new(format!("hit by weapon {}", weapon.number), percent(hit, of), "%")
     };
     let of_all = [
-        Figure { name: "hit by any weapon".into(), value: percent(hit, all), unit: "%" },
-        Figure { name: "hit by any weapon, area".into(), value: area_km2(ground, hit), unit: "km²" },
+        Figure::new("hit by any weapon", percent(hit, all), "%"),
+        Figure::new("hit by any weapon, area", area_km2(ground, hit), "km²"),
     ];
     let outlines = weapons.iter().map(|weapon| outline(weapon, fan));
     Ok(Outcome {
@@ -211,7 +210,8 @@ fn outline(weapon: &Lookout, fan: FireFan) -> OutcomeFeature {
 mod tests {
     use super::*;
     use crate::arguments::ArgumentValue;
-    use crate::observation::test_land::{at, land, on_pool, ripples, run_kind};
+    use crate::observation::test_hills::{at, land, ripples};
+    use crate::test_land::{on_pool, run_kind};
     use sandtable_geom::polygon::doubled_area;
     use sandtable_terrain::profile::profile;
     use sandtable_terrain::sight::Curvature;
@@ -279,7 +279,7 @@ mod tests {
     }
 
     fn height_of(land: &Land, at: DVec2) -> f64 {
-        crate::observation::lookout::height_under(&land.ground, "weapons", at).expect("ground")
+        crate::place::height_under(&land.ground, "weapons", at).expect("ground")
     }
 
     #[test]

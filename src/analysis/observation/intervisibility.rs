@@ -9,6 +9,7 @@ use crate::observation::lookout::{Lookout, curvature, range_m};
 use crate::outcome::{
     FeatureRole, Figure, Outcome, OutcomeFeature, OutcomeShape, OutcomeTable, PropertyValue, TableColumn,
 };
+use sandtable_base::disjoint_sets::root;
 use sandtable_terrain::sight::Curvature;
 use sandtable_terrain::sight::ground::SightGround;
 use sandtable_terrain::sight::rise::Raised;
@@ -61,7 +62,7 @@ pub(crate) fn intervisibility(
         lookout.feature(vec![links, ("group", PropertyValue::Whole(groups[index] as i64))])
     };
     let lines = pairs.iter().map(|pair| link(&lookouts, pair));
-    let figure = |name: &str, value: usize| Figure { name: name.into(), value: value as f64, unit: "" };
+    let figure = |name: &str, value: usize| Figure::new(name, value as f64, "");
     Ok(Outcome {
         features: lines.chain(lookouts.iter().enumerate().map(post)).collect(),
         tables: vec![table(&lookouts, &pairs)],
@@ -102,13 +103,6 @@ fn pairs(
 
 /// The group of each post, from 1 in the order of their first posts.
 fn groups<'a>(posts: usize, links: impl Iterator<Item = &'a PostPair>) -> Vec<usize> {
-    fn root(parents: &mut [usize], mut post: usize) -> usize {
-        while parents[post] != post {
-            parents[post] = parents[parents[post]];
-            post = parents[post];
-        }
-        post
-    }
     let mut parents: Vec<usize> = (0..posts).collect();
     for link in links {
         let roots = [link.from, link.to].map(|post| root(&mut parents, post));
@@ -170,12 +164,12 @@ fn table(lookouts: &[Lookout], pairs: &[PostPair]) -> OutcomeTable {
     OutcomeTable {
         title: "Links".into(),
         columns: vec![
-            TableColumn { name: "from", unit: "", decimals: 0 },
-            TableColumn { name: "to", unit: "", decimals: 0 },
-            TableColumn { name: "distance", unit: "km", decimals: 2 },
-            TableColumn { name: "direction", unit: "°", decimals: 0 },
-            TableColumn { name: "in sight", unit: "", decimals: 0 },
-            TableColumn { name: "clearance", unit: "m", decimals: 1 },
+            TableColumn::new("from", "", 0),
+            TableColumn::new("to", "", 0),
+            TableColumn::new("distance", "km", 2),
+            TableColumn::new("direction", "°", 0),
+            TableColumn::new("in sight", "", 0),
+            TableColumn::new("clearance", "m", 1),
         ],
         rows: pairs.iter().map(row).collect(),
     }
@@ -185,7 +179,8 @@ fn table(lookouts: &[Lookout], pairs: &[PostPair]) -> OutcomeTable {
 mod tests {
     use super::*;
     use crate::arguments::ArgumentValue;
-    use crate::observation::test_land::{at, land, on_pool, ripples, run_kind};
+    use crate::observation::test_hills::{at, land, ripples};
+    use crate::test_land::{on_pool, run_kind};
     use sandtable_terrain::sight::line::{Sight, line_of_sight};
 
     fn property<'a>(feature: &'a OutcomeFeature, name: &str) -> &'a PropertyValue {

@@ -9,16 +9,17 @@ use rayon::prelude::*;
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
-use crate::outcome::{
-    ClassLook, FeatureRole, Hatching, OutcomeFeature, OutcomeShape, PropertyValue, ValueClass,
-};
+use crate::outcome::{FeatureRole, Hatching, OutcomeFeature, OutcomeShape, PropertyValue, ValueClass};
+use crate::place::{height_under, missing_ground};
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::post_rect::PostRect;
-use sandtable_terrain::query::{Interpolation, ground_height};
 use sandtable_terrain::sight::Curvature;
 use sandtable_terrain::sight::line::SightEnd;
 use sandtable_terrain::sight::viewshed::{PostVisibility, Viewshed, ViewshedOptions, viewshed_until};
 use sandtable_terrain::stop_flag::StopFlag;
+
+/// The tint of ground that nothing sees.
+pub(crate) const DEAD_TINT: [u8; 4] = [90, 90, 90, 110];
 
 /// Posts of ground that the viewsheds of an analysis may look at in all: some ten minutes on two cores.
 const MOST_LOOKS: f64 = 1e10;
@@ -70,19 +71,6 @@ impl Lookout {
             properties: std::iter::once(ground).chain(properties).collect(),
         }
     }
-}
-
-/// The height of the ground at a position of a parameter, meters.
-///
-/// # Errors
-/// [`AnalysisError::Place`] where there is none.
-pub(crate) fn height_under(ground: &Lattice, key: &'static str, at: DVec2) -> Result<f64, AnalysisError> {
-    let height_m = ground_height(ground, Interpolation::Planar, at).height_m();
-    height_m.ok_or_else(|| AnalysisError::Place { key, at, problem: missing_ground(ground, at) })
-}
-
-fn missing_ground(ground: &Lattice, at: DVec2) -> &'static str {
-    if ground.map_extent().contains(at) { "there is no elevation there" } else { "lies off the land" }
 }
 
 /// The Earth's shape, with the refraction of the parameter of that name.
@@ -184,30 +172,20 @@ impl LookoutView {
     }
 }
 
-/// A part of a whole in percent; 0 of nothing.
-pub(crate) fn percent(part: usize, whole: usize) -> f64 {
-    if whole == 0 { 0.0 } else { part as f64 / whole as f64 * 100.0 }
-}
-
-/// So many posts as an area in km².
-pub(crate) fn area_km2(ground: &Lattice, posts: usize) -> f64 {
-    posts as f64 * ground.cell_m2() / 1e6
-}
-
 /// Classes for the number of lookouts that see or hit a place: none, one, two, three, and more; as many as can occur.
 pub(crate) fn count_classes(lookouts: usize, none: &str) -> Vec<ValueClass> {
-    const LOOKS: [ClassLook; 5] = [
-        ClassLook { tint: [90, 90, 90, 110], hatching: Hatching::Single },
-        ClassLook { tint: [255, 237, 160, 110], hatching: Hatching::None },
-        ClassLook { tint: [173, 221, 142, 110], hatching: Hatching::None },
-        ClassLook { tint: [65, 171, 93, 110], hatching: Hatching::None },
-        ClassLook { tint: [0, 90, 50, 120], hatching: Hatching::None },
+    const LOOKS: [([u8; 4], Hatching); 5] = [
+        (DEAD_TINT, Hatching::Single),
+        ([255, 237, 160, 110], Hatching::None),
+        ([173, 221, 142, 110], Hatching::None),
+        ([65, 171, 93, 110], Hatching::None),
+        ([0, 90, 50, 120], Hatching::None),
     ];
     let label = |count: usize| match count {
         0 => none.to_owned(),
         4 if lookouts > 4 => "4 or more".to_owned(),
         count => count.to_string(),
     };
-    let class = |(count, look)| ValueClass { from: count as f32, label: label(count), look };
+    let class = |(count, (tint, hatching))| ValueClass::new(count as f32, label(count), tint, hatching);
     LOOKS.into_iter().enumerate().take(lookouts.saturating_add(1)).map(class).collect()
 }

@@ -9,13 +9,13 @@ use rayon::prelude::*;
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
-use crate::observation::lookout::{
-    Lookout, check_work, curvature, height_under, look, percent, posts_within, range_m,
-};
+use crate::measures::percent;
+use crate::observation::lookout::{Lookout, check_work, curvature, look, posts_within, range_m};
 use crate::outcome::{
-    ClassLook, Figure, Hatching, Outcome, OutcomeRaster, OutcomeTable, PostValues, PropertyValue,
-    TableColumn, ValueClass,
+    Figure, Hatching, Outcome, OutcomeRaster, OutcomeTable, PostValues, PropertyValue, TableColumn,
+    ValueClass,
 };
+use crate::place::height_under;
 use sandtable_base::limits::memory::check_memory;
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::sight::Curvature;
@@ -74,10 +74,12 @@ pub(crate) fn masking(
         shares.push(watch.merge(index, &mut values, stop)?);
     }
     let known = values.par_iter().filter(|value| !value.is_nan()).count();
-    let hidden = LEVELS_M.map(|level_m| Figure {
-        name: format!("hidden at {level_m} m above the ground"),
-        value: percent(values.par_iter().filter(|&&value| value > level_m).count(), known),
-        unit: "%",
+    let hidden = LEVELS_M.map(|level_m| {
+        Figure::new(
+            format!("hidden at {level_m} m above the ground"),
+            percent(values.par_iter().filter(|&&value| value > level_m).count(), known),
+            "%",
+        )
     });
     let share = |share: f64| PropertyValue::Number(share);
     let row = |(radar, &seen): (&Lookout, &f64)| {
@@ -91,10 +93,10 @@ pub(crate) fn masking(
     let table = OutcomeTable {
         title: "Radars".into(),
         columns: vec![
-            TableColumn { name: "radar", unit: "", decimals: 0 },
-            TableColumn { name: "ground", unit: "m", decimals: 0 },
-            TableColumn { name: "antenna", unit: "m", decimals: 0 },
-            TableColumn { name: "ground in sight", unit: "%", decimals: 1 },
+            TableColumn::new("radar", "", 0),
+            TableColumn::new("ground", "m", 0),
+            TableColumn::new("antenna", "m", 0),
+            TableColumn::new("ground in sight", "%", 1),
         ],
         rows: radars.iter().zip(&shares).map(row).collect(),
     };
@@ -195,19 +197,15 @@ fn classes() -> Vec<ValueClass> {
         (100.0, "100–300 m", [253, 141, 60, 120], Hatching::Single),
         (300.0, "over 300 m", [189, 0, 38, 130], Hatching::Crossed),
     ];
-    let class = |(from, label, tint, hatching): (f32, &str, [u8; 4], Hatching)| ValueClass {
-        from,
-        label: label.to_owned(),
-        look: ClassLook { tint, hatching },
-    };
-    rows.map(class).into()
+    ValueClass::of_rows(rows)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::arguments::ArgumentValue;
-    use crate::observation::test_land::{at, land, on_pool, ripples, run_kind};
+    use crate::observation::test_hills::{at, land, ripples};
+    use crate::test_land::{on_pool, run_kind};
     use sandtable_terrain::sight::line::{Sight, line_of_sight};
 
     const CURVATURE: Curvature = Curvature { radius_m: 6_371_008.8, refraction: 0.25 };

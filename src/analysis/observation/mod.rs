@@ -10,7 +10,7 @@ mod intervisibility;
 mod lookout;
 mod masking;
 #[cfg(test)]
-mod test_land;
+mod test_hills;
 mod viewsheds;
 
 use crate::run::KindFunction;
@@ -31,7 +31,7 @@ mod tests {
 
     use glam::DVec2;
 
-    use super::test_land::{ORIGIN, at, land};
+    use super::test_hills::{ORIGIN, at, land};
     use crate::arguments::{AnalysisArguments, ArgumentValue};
     use crate::error::AnalysisError;
     use crate::land::Land;

@@ -3,12 +3,13 @@
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
+use crate::measures::{area_km2, percent};
 use crate::observation::lookout::{
-    Lookout, area_km2, check_looks, count_classes, curvature, look, percent, posts_within, range_m,
+    DEAD_TINT, Lookout, check_looks, count_classes, curvature, look, posts_within, range_m,
 };
 use crate::outcome::{
-    ClassLook, Figure, Hatching, Outcome, OutcomeRaster, OutcomeTable, PostValues, PropertyValue,
-    TableColumn, ValueClass,
+    Figure, Hatching, Outcome, OutcomeRaster, OutcomeTable, PostValues, PropertyValue, TableColumn,
+    ValueClass,
 };
 use rayon::prelude::*;
 use sandtable_base::limits::memory::check_memory;
@@ -82,18 +83,16 @@ pub(crate) fn viewsheds(
         figures: shares
             .iter()
             .zip(&lookouts)
-            .map(|(&(seen, of), lookout)| Figure {
-                name: format!("seen from post {}", lookout.number),
-                value: percent(seen, of),
-                unit: "%",
+            .map(|(&(seen, of), lookout)| {
+                Figure::new(format!("seen from post {}", lookout.number), percent(seen, of), "%")
             })
             .collect(),
         ..Outcome::default()
     };
     outcome.figures.extend([
-        Figure { name: "seen from any post".into(), value: percent(seen, all), unit: "%" },
-        Figure { name: "dead ground".into(), value: percent(all - seen, all), unit: "%" },
-        Figure { name: "dead ground, area".into(), value: area_km2(ground, all - seen), unit: "km²" },
+        Figure::new("seen from any post", percent(seen, all), "%"),
+        Figure::new("dead ground", percent(all - seen, all), "%"),
+        Figure::new("dead ground, area", area_km2(ground, all - seen), "km²"),
     ]);
     outcome.raster = Some(raster(show, values, lookouts.len()));
     Ok(outcome)
@@ -136,15 +135,10 @@ fn raster(show: ViewshedShow, values: Vec<f32>, lookouts: usize) -> OutcomeRaste
         },
         ViewshedShow::Dead => {
             let code = |value: &f32| if value.is_nan() { PostValues::NO_CODE } else { *value as u8 };
-            let look = ClassLook { tint: [90, 90, 90, 110], hatching: Hatching::Single };
-            let classes = vec![
-                ValueClass {
-                    from: 0.0,
-                    label: "in sight".into(),
-                    look: ClassLook { tint: [0; 4], hatching: Hatching::None },
-                },
-                ValueClass { from: 1.0, label: "dead ground".into(), look },
-            ];
+            let classes = ValueClass::of_rows([
+                (0.0, "in sight", [0; 4], Hatching::None),
+                (1.0, "dead ground", DEAD_TINT, Hatching::Single),
+            ]);
             let values = PostValues::Codes(values.par_iter().map(code).collect());
             OutcomeRaster { name: "dead ground", unit: "", values, classes }
         }
@@ -166,12 +160,9 @@ fn first_classes(lookouts: usize) -> Vec<ValueClass> {
     if lookouts > TINTS.len() {
         return Vec::new();
     }
-    let dead = ClassLook { tint: [90, 90, 90, 110], hatching: Hatching::Single };
-    let none = ValueClass { from: 0.0, label: "dead ground".into(), look: dead };
-    let first = TINTS.into_iter().take(lookouts).enumerate().map(|(index, tint)| ValueClass {
-        from: (index + 1) as f32,
-        label: format!("post {}", index + 1),
-        look: ClassLook { tint, hatching: Hatching::None },
+    let none = ValueClass::new(0.0, "dead ground", DEAD_TINT, Hatching::Single);
+    let first = TINTS.into_iter().take(lookouts).enumerate().map(|(index, tint)| {
+        ValueClass::new((index + 1) as f32, format!("post {}", index + 1), tint, Hatching::None)
     });
     std::iter::once(none).chain(first).collect()
 }
@@ -188,10 +179,10 @@ fn table(land: &Land, lookouts: &[Lookout], shares: &[(usize, usize)]) -> Outcom
     OutcomeTable {
         title: "Posts".into(),
         columns: vec![
-            TableColumn { name: "post", unit: "", decimals: 0 },
-            TableColumn { name: "ground", unit: "m", decimals: 0 },
-            TableColumn { name: "in sight", unit: "km²", decimals: 2 },
-            TableColumn { name: "share", unit: "%", decimals: 1 },
+            TableColumn::new("post", "", 0),
+            TableColumn::new("ground", "m", 0),
+            TableColumn::new("in sight", "km²", 2),
+            TableColumn::new("share", "%", 1),
         ],
         rows: lookouts.iter().zip(shares).map(row).collect(),
     }
@@ -203,7 +194,8 @@ mod tests {
 
     use super::*;
     use crate::arguments::ArgumentValue;
-    use crate::observation::test_land::{at, land, on_pool, ripples, run_kind};
+    use crate::observation::test_hills::{at, land, ripples};
+    use crate::test_land::{on_pool, run_kind};
     use sandtable_terrain::sight::Curvature;
     use sandtable_terrain::sight::line::{Sight, SightEnd, line_of_sight};
 

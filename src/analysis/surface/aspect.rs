@@ -4,7 +4,7 @@ use super::window::{GradientMethod, WindowGradient, by_window};
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
-use crate::outcome::{ClassLook, Hatching, Outcome, OutcomeRaster, PostValues, ValueClass};
+use crate::outcome::{Hatching, Outcome, OutcomeRaster, PostValues, ValueClass};
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// The aspect at each post, degrees clockwise from the grid's north, 0 to below 360; no data on level ground, at the
@@ -48,12 +48,7 @@ fn classes() -> Vec<ValueClass> {
         (292.5, "north-west", [110, 90, 175, 110]),
         (337.5, "north", [70, 110, 190, 110]),
     ];
-    let class = |(from, label, tint): (f32, &str, [u8; 4])| ValueClass {
-        from,
-        label: label.to_owned(),
-        look: ClassLook { tint, hatching: Hatching::None },
-    };
-    rows.map(class).into()
+    ValueClass::of_rows(rows.map(|(from, label, tint)| (from, label, tint, Hatching::None)))
 }
 
 #[cfg(test)]

@@ -65,7 +65,7 @@ pub(crate) fn contours(
             })
         })
         .collect();
-    let figures = vec![Figure { name: "interval".to_owned(), value: interval, unit: "m" }];
+    let figures = vec![Figure::new("interval", interval, "m")];
     Ok(Outcome { features, figures, ..Outcome::default() })
 }
 
@@ -95,7 +95,7 @@ pub(crate) fn elevation_bands(
     let classes = (0..bands).map(|index| band_class(first + index as f64, interval, index, bands)).collect();
     let raster =
         OutcomeRaster { name: "elevation band", unit: "m", values: PostValues::Numbers(values), classes };
-    let figures = vec![Figure { name: "interval".to_owned(), value: interval, unit: "m" }];
+    let figures = vec![Figure::new("interval", interval, "m")];
     Ok(Outcome { raster: Some(raster), figures, ..Outcome::default() })
 }
 

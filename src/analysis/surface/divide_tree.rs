@@ -9,8 +9,10 @@ use std::collections::BTreeSet;
 use rayon::prelude::*;
 
 use crate::error::AnalysisError;
+use sandtable_base::disjoint_sets::root;
 use sandtable_base::limits::memory::check_memory;
 use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::neighbors::neighbors;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// A summit and its pass, by indices of posts.
@@ -52,26 +54,26 @@ pub(super) fn divide_summits(
     let mut order: Vec<u32> =
         (0..heights.len() as u32).filter(|&post| !heights[post as usize].is_nan()).collect();
     order.par_sort_unstable_by(|&a, &b| heights[b as usize].total_cmp(&heights[a as usize]).then(a.cmp(&b)));
-    let mut floods = DivideFloods { parents: vec![DRY; heights.len()] };
+    let mut floods = vec![DRY; heights.len()];
     let mut summits = Vec::new();
     for posts in order.chunks(POSTS_PER_LOOK) {
         if stop.is_stopped() {
             return Err(AnalysisError::Stopped);
         }
         for &post in posts {
-            floods.parents[post as usize] = post;
-            for neighbor in neighbors(ground, post as usize) {
-                if floods.parents[neighbor] == DRY {
+            floods[post as usize] = post;
+            for neighbor in posts_around(ground, post as usize) {
+                if floods[neighbor] == DRY {
                     continue;
                 }
-                let (own, other) = (floods.root(post), floods.root(neighbor as u32));
+                let (own, other) = (root(&mut floods, post), root(&mut floods, neighbor as u32));
                 if own == other {
                     continue;
                 }
                 // The root of a flood is its summit; the later one in the order is lower.
                 let is_own_lower = is_after(heights, own, other);
                 let (lower, higher) = if is_own_lower { (own, other) } else { (other, own) };
-                floods.parents[lower as usize] = higher;
+                floods[lower as usize] = higher;
                 let prominence_m = heights[lower as usize] - heights[post as usize];
                 if lower != post && prominence_m > 0.0 && prominence_m >= least_m {
                     let (post, pass) = (lower as usize, Some(post as usize));
@@ -83,7 +85,7 @@ pub(super) fn divide_summits(
     // The last post of a flood is its lowest.
     let mut is_measured = vec![false; heights.len()];
     for &lowest in order.iter().rev() {
-        let root = floods.root(lowest) as usize;
+        let root = root(&mut floods, lowest) as usize;
         if !std::mem::replace(&mut is_measured[root], true) {
             let prominence_m = heights[root] - heights[lowest as usize];
             if prominence_m > 0.0 && prominence_m >= least_m {
@@ -109,30 +111,6 @@ fn is_after(heights: &[f32], a: u32, b: u32) -> bool {
 }
 
 /// The posts around a post, eight inside of the lattice.
-pub(super) fn neighbors(ground: &Lattice, post: usize) -> impl Iterator<Item = usize> + use<> {
-    let (columns, rows) = (ground.columns() as usize, ground.rows() as usize);
-    let (column, row) = (post % columns, post / columns);
-    (row.saturating_sub(1)..=(row + 1).min(rows - 1))
-        .flat_map(move |row| {
-            (column.saturating_sub(1)..=(column + 1).min(columns - 1))
-                .map(move |column| row * columns + column)
-        })
-        .filter(move |&other| other != post)
-}
-
-/// Sets of flooded posts, each with its summit as root.
-struct DivideFloods {
-    parents: Vec<u32>,
-}
-
-impl DivideFloods {
-    fn root(&mut self, post: u32) -> u32 {
-        let mut root = post;
-        while self.parents[root as usize] != root {
-            let parent = self.parents[root as usize];
-            self.parents[root as usize] = self.parents[parent as usize];
-            root = self.parents[root as usize];
-        }
-        root
-    }
+pub(super) fn posts_around(ground: &Lattice, post: usize) -> impl Iterator<Item = usize> + use<> {
+    neighbors(post, ground.columns() as usize, ground.rows() as usize).map(|(_, other)| other)
 }

@@ -9,7 +9,7 @@
 //!
 //! Of posts of equal height the one with the smaller index counts as higher, so that every line ends.
 
-use super::divide_tree::{divide_passes, divide_summits, neighbors};
+use super::divide_tree::{divide_passes, divide_summits, posts_around};
 use super::peaks::{is_inside, left_out};
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
@@ -17,6 +17,7 @@ use crate::land::Land;
 use crate::outcome::{FeatureRole, Outcome, OutcomeFeature, OutcomeShape, PropertyValue};
 use glam::DVec2;
 use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::neighbors::STEPS;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// Ridge and valley lines from passes that are at least so deep, with `form` and `length_m`. Ridges begin at the pass and
@@ -72,14 +73,11 @@ struct FormTracer<'a> {
 /// A post without a line.
 const NO_LINE: u32 = u32::MAX;
 
-/// The neighbors of a post in a ring: columns east, rows north.
-const RING: [(isize, isize); 8] = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
-
 impl FormTracer<'_> {
     /// The steepest post of each arc of the ring around a pass on the line's side of it; a ring has four arcs at most.
     fn starts(&self, pass: usize) -> [Option<usize>; 4] {
-        let columns = self.ground.columns() as isize;
-        let ring = RING.map(|(east, north)| pass.wrapping_add_signed(north * columns + east));
+        let columns = i64::from(self.ground.columns());
+        let ring = STEPS.map(|(east, north)| pass.wrapping_add_signed((north * columns + east) as isize));
         let is_ahead = ring.map(|post| self.is_ahead(post, pass));
         let mut starts = [None; 4];
         // Around from a post that is not ahead, so that no arc is cut.
@@ -111,8 +109,12 @@ impl FormTracer<'_> {
         let mut line = vec![pass, start];
         let mut at = start;
         while self.next[at] == NO_LINE {
-            let ahead = neighbors(self.ground, at).filter(|&post| self.is_ahead(post, at));
-            let next = ahead.reduce(|best, post| if self.is_steeper(at, post, best) { post } else { best });
+            let ahead = posts_around(self.ground, at).filter(|&post| self.is_ahead(post, at));
+            // Of equally steep ones the first.
+            let is_better = |post: usize, best: usize| {
+                self.is_steeper(at, post, best) || post < best && !self.is_steeper(at, best, post)
+            };
+            let next = ahead.reduce(|best, post| if is_better(post, best) { post } else { best });
             self.next[at] = next.unwrap_or(at) as u32;
             line.extend(next);
             at = next.unwrap_or(at);

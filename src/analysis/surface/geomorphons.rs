@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
-use crate::outcome::{ClassLook, Hatching, Outcome, OutcomeRaster, PostValues, ValueClass};
+use crate::outcome::{Hatching, Outcome, OutcomeRaster, PostValues, ValueClass};
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::stop_flag::StopFlag;
 
@@ -255,10 +255,8 @@ fn classes() -> Vec<ValueClass> {
         ("valley", [0, 0, 255, 110], Hatching::Level),
         ("pit", [0, 0, 56, 150], Hatching::Dots),
     ];
-    let class = |(from, (label, tint, hatching)): (u8, (&str, [u8; 4], Hatching))| ValueClass {
-        from: f32::from(from),
-        label: label.to_owned(),
-        look: ClassLook { tint, hatching },
+    let class = |(from, (label, tint, hatching)): (u8, (&str, [u8; 4], Hatching))| {
+        ValueClass::new(f32::from(from), label, tint, hatching)
     };
     (1..).zip(rows).map(class).collect()
 }

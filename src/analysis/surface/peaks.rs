@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::divide_tree::{DivideSummit, divide_passes, divide_summits, neighbors};
+use super::divide_tree::{DivideSummit, divide_passes, divide_summits, posts_around};
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
@@ -85,7 +85,7 @@ fn peak(ground: &Lattice, summit: &DivideSummit, isolation_m: Option<f64>) -> Ou
 
 /// Whether a post has eight neighbors with data.
 pub(super) fn is_inside(ground: &Lattice, post: usize) -> bool {
-    neighbors(ground, post).filter(|&other| !ground.heights()[other].is_nan()).count() == 8
+    posts_around(ground, post).filter(|&other| !ground.heights()[other].is_nan()).count() == 8
 }
 
 /// A note of how many were left out; none for none.
@@ -202,8 +202,8 @@ mod tests {
         let land = land(DVec2::new(3.0, 2.0), 23, heights.clone());
         let ground = &*land.ground;
         let summits = divide_summits(ground, 0.0, &StopFlag::default()).expect("not stopped");
-        let tops =
-            (0..heights.len()).filter(|&at| neighbors(ground, at).all(|other| heights[other] < heights[at]));
+        let tops = (0..heights.len())
+            .filter(|&at| posts_around(ground, at).all(|other| heights[other] < heights[at]));
         assert_eq!(tops.clone().count(), summits.len());
         for top in tops {
             let summit = summits.iter().find(|summit| summit.post == top).expect("it is a summit");
@@ -216,7 +216,7 @@ mod tests {
                         return true;
                     }
                     if !std::mem::replace(&mut is_seen[at], true) {
-                        stack.extend(neighbors(ground, at).filter(|&other| heights[other] >= level));
+                        stack.extend(posts_around(ground, at).filter(|&other| heights[other] >= level));
                     }
                 }
                 false

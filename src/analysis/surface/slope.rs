@@ -5,7 +5,7 @@ use super::window::{GradientMethod, WindowGradient, by_window};
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
-use crate::outcome::{ClassLook, Hatching, Outcome, OutcomeRaster, PostValues, ValueClass};
+use crate::outcome::{Hatching, Outcome, OutcomeRaster, PostValues, ValueClass};
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// The slope at each post; no data at the border and beside posts without data.
@@ -50,10 +50,5 @@ fn classes(is_percent: bool) -> Vec<ValueClass> {
         (45.0, "over 45 %", [150, 0, 38, 140], Hatching::Crossed),
     ];
     let from = |percent: f32| if is_percent { percent } else { libm::atanf(percent / 100.0).to_degrees() };
-    let class = |(percent, label, tint, hatching): (f32, &str, [u8; 4], Hatching)| ValueClass {
-        from: from(percent),
-        label: label.to_owned(),
-        look: ClassLook { tint, hatching },
-    };
-    rows.map(class).into()
+    ValueClass::of_rows(rows.map(|(percent, label, tint, hatching)| (from(percent), label, tint, hatching)))
 }

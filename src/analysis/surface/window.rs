@@ -97,17 +97,14 @@ pub(super) mod tests {
     use glam::DVec2;
 
     use super::*;
-    use crate::arguments::{AnalysisArguments, ArgumentValue};
+    use crate::arguments::ArgumentValue;
     use crate::land::Land;
     use crate::outcome::Outcome;
-    use sandtable_geom::crs::Crs;
-    use sandtable_terrain::lattice::Post;
+    use crate::test_land::{bare, run_kind, values_of};
 
     /// Bare land with posts `cell` meters apart.
     pub(in crate::surface) fn land(cell: DVec2, columns: u32, heights: Vec<f32>) -> Land {
-        let lattice =
-            Lattice::part((DVec2::new(1000.0, 2000.0), cell), Post { column: 0, row: 0 }, columns, heights);
-        Land::bare(lattice.expect("a lattice").into(), Crs::local())
+        bare((DVec2::new(1000.0, 2000.0), cell), columns, heights)
     }
 
     /// The outcome of a kind with words and numbers stated.
@@ -117,15 +114,9 @@ pub(super) mod tests {
         words: &[(&str, &str)],
         numbers: &[(&str, f64)],
     ) -> Result<Outcome, AnalysisError> {
-        let kind = sandtable_catalog::kind(kind).expect("a kind");
-        let mut arguments = AnalysisArguments::new(kind);
-        for &(name, word) in words {
-            arguments = arguments.with(name, ArgumentValue::Word(word.to_owned()));
-        }
-        for &(name, number) in numbers {
-            arguments = arguments.with(name, ArgumentValue::Number(number));
-        }
-        crate::run::run(land, &arguments, &StopFlag::default())
+        let words = words.iter().map(|&(name, word)| (name, ArgumentValue::Word(word.to_owned())));
+        let numbers = numbers.iter().map(|&(name, number)| (name, ArgumentValue::Number(number)));
+        run_kind(kind, land, words.chain(numbers))
     }
 
     /// The values of a kind's raster.
@@ -136,7 +127,7 @@ pub(super) mod tests {
         numbers: &[(&str, f64)],
     ) -> Vec<f32> {
         let raster = outcome(land, kind, words, numbers).expect("an outcome").raster.expect("a raster");
-        (0..raster.values.len()).map(|index| raster.values.value(index)).collect()
+        values_of(&raster)
     }
 
     #[test]

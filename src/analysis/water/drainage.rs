@@ -10,14 +10,11 @@ use std::collections::BinaryHeap;
 
 use crate::error::AnalysisError;
 use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::neighbors::{STEPS, neighbors};
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// A post that drains off the land, or has no data.
 pub(crate) const NO_POST: u32 = u32::MAX;
-
-/// The steps to the eight neighbors, columns and rows, from the east counter-clockwise.
-pub(crate) const STEPS: [(i64, i64); 8] =
-    [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
 
 /// The flood checks whether it may end early once in so many posts.
 const STOP_STRIDE: usize = 1 << 16;
@@ -30,16 +27,6 @@ pub(crate) struct Drainage {
     pub to: Vec<u32>,
     /// The posts with data in the order of the flood: each drains to one before it.
     pub order: Vec<u32>,
-}
-
-/// The neighbors of a post that lie on the lattice, with the number of the step.
-pub(crate) fn neighbors(index: usize, columns: usize, rows: usize) -> impl Iterator<Item = (usize, usize)> {
-    let (column, row) = ((index % columns) as i64, (index / columns) as i64);
-    STEPS.into_iter().enumerate().filter_map(move |(step, (east, north))| {
-        let (column, row) = (column + east, row + north);
-        let is_there = (0..columns as i64).contains(&column) && (0..rows as i64).contains(&row);
-        is_there.then(|| (step, row as usize * columns + column as usize))
-    })
 }
 
 /// A height as a number that sorts alike.

@@ -3,19 +3,21 @@
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
+use crate::measures::area_km2;
 use crate::outcome::{
-    ClassLook, FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape,
-    PostValues, PropertyValue, ValueClass,
+    FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, PostValues,
+    PropertyValue, ValueClass,
 };
-use crate::water::drainage::{Drainage, NO_POST, drain, neighbors};
-use sandtable_terrain::lattice::{Lattice, Post};
+use crate::water::drainage::{Drainage, NO_POST, drain};
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::neighbors::neighbors;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// The depths from which depressions are classed, meters, with their tints.
-const DEPTHS: [(f32, &str, [u8; 4]); 3] = [
-    (0.0, "none", [0, 0, 0, 0]),
-    (f32::MIN_POSITIVE, "up to 1 m", [140, 190, 240, 110]),
-    (1.0, "1 m or more", [30, 90, 190, 130]),
+const DEPTHS: [(f32, &str, [u8; 4], Hatching); 3] = [
+    (0.0, "none", [0, 0, 0, 0], Hatching::None),
+    (f32::MIN_POSITIVE, "up to 1 m", [140, 190, 240, 110], Hatching::Level),
+    (1.0, "1 m or more", [30, 90, 190, 130], Hatching::Level),
 ];
 
 /// The depressions of the ground: their depth, or the ground with them filled.
@@ -33,19 +35,12 @@ pub(crate) fn fill(
     let posts = deep().filter(|depth| *depth > 0.0).count();
     let volume_m3 = deep().filter(|depth| *depth > 0.0).map(f64::from).sum::<f64>() * land.ground.cell_m2();
     let figures = vec![
-        figure("area of depressions", posts as f64 * land.ground.cell_m2() / 1e6, "km²"),
-        figure("volume of depressions", volume_m3, "m³"),
+        Figure::new("area of depressions", area_km2(&land.ground, posts), "km²"),
+        Figure::new("volume of depressions", volume_m3, "m³"),
     ];
     let raster = match arguments.word("show").as_str() {
         "filled" => numbers("filled", "m", filled_m, Vec::new()),
-        _ => {
-            let class = |(from, label, tint): (f32, &str, [u8; 4])| ValueClass {
-                from,
-                label: label.to_owned(),
-                look: ClassLook { tint, hatching: if from > 0.0 { Hatching::Level } else { Hatching::None } },
-            };
-            numbers("depth", "m", deep().collect(), DEPTHS.map(class).into())
-        }
+        _ => numbers("depth", "m", deep().collect(), ValueClass::of_rows(DEPTHS)),
     };
     Ok(Outcome { raster: Some(raster), figures, ..Outcome::default() })
 }
@@ -136,7 +131,11 @@ pub(crate) fn streams(
             ],
         });
     }
-    Ok(Outcome { features, figures: vec![figure("length of streams", total_km, "km")], ..Outcome::default() })
+    Ok(Outcome {
+        features,
+        figures: vec![Figure::new("length of streams", total_km, "km")],
+        ..Outcome::default()
+    })
 }
 
 /// Strahler's order of a post that streams of a highest order enter so many times.
@@ -150,8 +149,7 @@ fn own_order((highest, times): (u8, u8)) -> u8 {
 
 /// The positions from a source or confluence down to the next confluence, or to the edge of the land.
 fn reach(start: u32, drainage: &Drainage, entering: &[u8], ground: &Lattice) -> Vec<glam::DVec2> {
-    let columns = ground.columns();
-    let place = |index: u32| ground.map_position(Post { column: index % columns, row: index / columns });
+    let place = |index: u32| ground.map_position(ground.post_at(index as usize));
     let mut line = vec![place(start)];
     let mut at = drainage.to[start as usize];
     while at != NO_POST {
@@ -173,22 +171,15 @@ fn numbers(
     OutcomeRaster { name, unit, values: PostValues::Numbers(values), classes }
 }
 
-fn figure(name: &str, value: f64, unit: &'static str) -> Figure {
-    Figure { name: name.to_owned(), value, unit }
-}
-
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use super::*;
     use crate::arguments::ArgumentValue;
+    use crate::test_land::{bare, values_of};
     use glam::DVec2;
-    use sandtable_geom::crs::Crs;
 
     fn land(columns: u32, heights: &[f32]) -> Land {
-        let lattice = Lattice::new(DVec2::ZERO, DVec2::splat(10.0), columns, heights.to_vec());
-        Land::bare(Arc::new(lattice.expect("ground")), Crs::local())
+        bare((DVec2::ZERO, DVec2::splat(10.0)), columns, heights.to_vec())
     }
 
     fn arguments(name: &str) -> AnalysisArguments {
@@ -196,8 +187,7 @@ mod tests {
     }
 
     fn values(outcome: Outcome) -> Vec<f32> {
-        let raster = outcome.raster.expect("a raster");
-        (0..raster.values.len()).map(|index| raster.values.value(index)).collect()
+        values_of(&outcome.raster.expect("a raster"))
     }
 
     #[test]

@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
+use sandtable_base::disjoint_sets::root;
 use sandtable_geom::polyline::{Polyline, VertexKey, vertex_key};
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::query::{Interpolation, ground_height};
@@ -90,15 +91,6 @@ fn networks(lines: &[&Polyline]) -> Vec<usize> {
         }
     }
     (0..lines.len()).map(|index| root(&mut parents, index)).collect()
-}
-
-/// The first of the lines that are connected with this one; halves the path to it.
-fn root(parents: &mut [usize], mut index: usize) -> usize {
-    while parents[index] != index {
-        parents[index] = parents[parents[index]];
-        index = parents[index];
-    }
-    index
 }
 
 #[cfg(test)]

@@ -128,7 +128,8 @@ fn shape(shape: &OutcomeShape) -> (ExportShape, ExportKind) {
     }
 }
 
-fn json_value(value: &PropertyValue) -> Value {
+/// The value of a property as JSON.
+pub fn json_value(value: &PropertyValue) -> Value {
     match value {
         PropertyValue::Number(number) => Value::from(*number),
         PropertyValue::Whole(number) => Value::from(*number),

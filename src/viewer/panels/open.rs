@@ -8,7 +8,7 @@ use egui::{Key, RichText, ScrollArea, TextEdit, Ui};
 
 use crate::recent::RecentFiles;
 use sandtable_dem::formats::FORMATS;
-use sandtable_editing::viewing::is_scene_file;
+use sandtable_scene::scene_file::is_scene_file;
 
 /// The most names of a folder that are listed: a longer list is not read to its end.
 const MOST_NAMES: usize = 2_000;

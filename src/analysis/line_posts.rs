@@ -10,7 +10,7 @@ use sandtable_geom::segment::distance_squared;
 use sandtable_terrain::lattice::Lattice;
 
 /// Calls `mark` with the index of each post that a line of this width passes; some more than once.
-pub(crate) fn along_line(ground: &Lattice, line: &[DVec2], width_m: f64, mut mark: impl FnMut(usize)) {
+pub fn along_line(ground: &Lattice, line: &[DVec2], width_m: f64, mut mark: impl FnMut(usize)) {
     let cell = ground.cell();
     let first = ground.first().grid();
     let grid = |at: DVec2| (at - ground.origin()) / cell;
@@ -87,7 +87,7 @@ fn band(ground: &Lattice, [from, to]: [DVec2; 2], width_m: f64, post: &mut impl 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::movement::testing::flat;
+    use crate::test_land::flat;
     use std::collections::BTreeSet;
 
     fn passed(line: &[DVec2], width_m: f64) -> BTreeSet<usize> {

@@ -1,0 +1,13 @@
+//! Areas and shares of posts.
+
+use sandtable_terrain::lattice::Lattice;
+
+/// A part of a whole in percent; 0 of nothing.
+pub(crate) fn percent(part: usize, whole: usize) -> f64 {
+    if whole == 0 { 0.0 } else { part as f64 / whole as f64 * 100.0 }
+}
+
+/// So many posts as an area in km².
+pub(crate) fn area_km2(ground: &Lattice, posts: usize) -> f64 {
+    posts as f64 * ground.cell_m2() / 1e6
+}
