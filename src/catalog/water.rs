@@ -6,6 +6,7 @@ use crate::parameter::{AnalysisParameter, ParameterDefault};
 /// What no kind of water knows.
 const LIMITS: &[&str] = &[
     "Water flows over the ground alone: soil, pipes, culverts and bridges are unknown to it, so that an embankment dams a valley.",
+    "Posts beside a hole in the data are outlets, as those at the border are: a hole swallows the water that reaches it.",
     "Flow has eight directions; on level ground and in depressions it takes the way by which the flood came.",
 ];
 
