@@ -21,8 +21,6 @@ pub enum ArgumentValue {
     Numbers(Vec<f64>),
     /// Of a word, or the name of a vehicle.
     Word(String),
-    /// Of a switch.
-    Switch(bool),
     /// Of points, a line or an area: map coordinates of the land.
     Points(Vec<DVec2>),
 }
@@ -83,11 +81,6 @@ impl AnalysisArguments {
         }
     }
 
-    /// A switch: as stated, or the default; false where there is none.
-    pub fn switch(&self, name: &str) -> bool {
-        self.get(name) == Some(ArgumentValue::Switch(true))
-    }
-
     /// Points, a line or a ring; empty where none is stated.
     pub fn points(&self, name: &str) -> &[DVec2] {
         match self.stated.iter().find(|&&(stated, _)| stated == name) {
@@ -114,7 +107,6 @@ fn default(parameter: &AnalysisParameter) -> Option<ArgumentValue> {
         ParameterForm::Numbers { .. } => ArgumentValue::Numbers(
             text.split(',').map(|number| number.trim().parse().ok()).collect::<Option<_>>()?,
         ),
-        ParameterForm::Switch => ArgumentValue::Switch(text == "true"),
         ParameterForm::Word(_) | ParameterForm::Vehicle | ParameterForm::Ground => {
             ArgumentValue::Word(text.to_owned())
         }

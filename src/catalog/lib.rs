@@ -79,7 +79,6 @@ mod tests {
                         text.split(',').all(within)
                     }
                     ParameterForm::Word(words) => words.contains(&text),
-                    ParameterForm::Switch => matches!(text, "true" | "false"),
                     _ => !text.is_empty(),
                 };
                 assert!(is_one, "{} of {}", text, parameter.name);

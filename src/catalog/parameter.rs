@@ -34,8 +34,6 @@ pub enum ParameterForm {
     },
     /// One of these words.
     Word(&'static [&'static str]),
-    /// True or false.
-    Switch,
     /// At least so many positions.
     Points {
         /// The fewest that are allowed.

@@ -15,7 +15,7 @@ use crate::output::{print, print_lines, row, warn};
 use crate::output_format::output_format;
 use crate::progress::StepTimer;
 use sandtable_analysis::outcome::{Figure, Outcome, OutcomeTable, PropertyValue};
-use sandtable_catalog::kind::AnalysisKind;
+use sandtable_catalog::kind::{AnalysisKind, AnalysisYield};
 use sandtable_catalog::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
 use sandtable_catalog::{kind, kinds};
 use sandtable_dem::dem_format::DemFormat;
@@ -99,9 +99,9 @@ fn kind_command(kind: &'static AnalysisKind) -> Command {
 
 /// The option of a parameter.
 fn option(parameter: &'static AnalysisParameter) -> Arg {
-    let default = match parameter.default {
-        ParameterDefault::Required => String::new(),
-        ParameterDefault::Value(text) | ParameterDefault::Otherwise(text) => format!(" [default: {text}]"),
+    let default = match parameter.default_text() {
+        "" => String::new(),
+        text => format!(" [default: {text}]"),
     };
     let long: &'static str = parameter.name;
     Arg::new(long)
@@ -119,7 +119,6 @@ fn value_name(parameter: &AnalysisParameter) -> String {
         ParameterForm::Number { .. } => parameter.unit.to_uppercase(),
         ParameterForm::Numbers { .. } => "N,N,…".into(),
         ParameterForm::Word(words) => words.join("|"),
-        ParameterForm::Switch => "true|false".into(),
         ParameterForm::Points { least: 1 } => "X,Y[;X,Y…]".into(),
         ParameterForm::Points { .. } | ParameterForm::Line | ParameterForm::Area => "X,Y;X,Y…".into(),
         ParameterForm::Vehicle => "VEHICLE".into(),
@@ -129,8 +128,11 @@ fn value_name(parameter: &AnalysisParameter) -> String {
 
 pub fn run(command: &AnalyzeCommand) -> Result<(), CliError> {
     let input = from_ref(&command.dataset.file);
-    let output =
-        command.output.as_deref().map(|path| Ok::<_, CliError>((path, format(path, input)?))).transpose()?;
+    let output = command
+        .output
+        .as_deref()
+        .map(|path| Ok::<_, CliError>((path, format(command.kind, path, input)?)))
+        .transpose()?;
     let steps = StepTimer::default();
     let analyzed = analyzed(command, &steps)?;
     if let Some((path, format)) = output {
@@ -170,7 +172,8 @@ fn analyzed(command: &AnalyzeCommand, steps: &StepTimer) -> Result<Analyzed, Cli
     Ok(analyze(&dataset, land, (*kind, arguments), &crs, &StopFlag::default())?)
 }
 
-fn format(path: &Path, inputs: &[PathBuf]) -> Result<AnalysisFormat, CliError> {
+/// The format of a file; refuses a raster of a kind that gives none before anything is computed.
+fn format(kind: &AnalysisKind, path: &Path, inputs: &[PathBuf]) -> Result<AnalysisFormat, CliError> {
     let features = |extension: &str| {
         let format = FeatureFormat::from_extension(extension)?;
         matches!(format, FeatureFormat::GeoPackage | FeatureFormat::GeoJson)
@@ -180,7 +183,14 @@ fn format(path: &Path, inputs: &[PathBuf]) -> Result<AnalysisFormat, CliError> {
         DemFormat::to_write(extension).map(AnalysisFormat::Raster).or_else(|| features(extension))
     };
     let written = format!("analyses are written as .gpkg or .geojson, and rasters as {WRITTEN_EXTENSIONS}");
-    output_format(path, inputs, either, &written)
+    let format = output_format(path, inputs, either, &written)?;
+    let gives_raster = matches!(kind.yields, AnalysisYield::Raster | AnalysisYield::Both);
+    match format {
+        AnalysisFormat::Raster(_) if !gives_raster => {
+            Err(CliError::usage(format!("{} gives no raster; write it as .gpkg or .geojson", kind.name)))
+        }
+        format => Ok(format),
+    }
 }
 
 fn write(
@@ -191,15 +201,13 @@ fn write(
 ) -> Result<(), CliError> {
     let inputs = from_ref(&command.dataset.file);
     let Analyzed { ground, crs, outcome } = analyzed;
-    match (format, &outcome.raster) {
-        (AnalysisFormat::Raster(format), Some(values)) => {
+    match format {
+        AnalysisFormat::Raster(format) => {
+            let values = outcome.raster.as_ref();
+            let values = values.unwrap_or_else(|| panic!("{} gives a raster", command.kind.name));
             raster_file::write(&raster(values, ground, crs), format, path, inputs)?;
         }
-        (AnalysisFormat::Raster(_), None) => {
-            let name = command.kind.name;
-            return Err(CliError::usage(format!("{name} gives no raster; write it as .gpkg or .geojson")));
-        }
-        (AnalysisFormat::Features(format), _) => {
+        AnalysisFormat::Features(format) => {
             let frame = OutcomeFrame { ground, crs };
             export_outcome(outcome, frame, path, format, command.kind.title, inputs)?;
         }

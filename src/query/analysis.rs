@@ -193,11 +193,6 @@ fn value(
             true => Ok(ArgumentValue::Word(text.to_owned())),
             false => Err(format!("{} is none of its words; {}", quoted(text), remedy(text, words, ""))),
         },
-        ParameterForm::Switch => match text {
-            "true" => Ok(ArgumentValue::Switch(true)),
-            "false" => Ok(ArgumentValue::Switch(false)),
-            _ => Err(format!("{} is neither true nor false", quoted(text))),
-        },
         ParameterForm::Points { least } => points(text, least, crs, land_crs),
         ParameterForm::Line => points(text, 2, crs, land_crs),
         ParameterForm::Area => points(text, 3, crs, land_crs),
