@@ -177,6 +177,18 @@ pub enum PropertyValue {
     Truth(bool),
 }
 
+impl PropertyValue {
+    /// It as text, a number with so many decimals.
+    pub fn written(&self, decimals: usize) -> String {
+        match self {
+            Self::Number(number) => format!("{number:.decimals$}"),
+            Self::Whole(number) => number.to_string(),
+            Self::Text(text) => text.clone(),
+            Self::Truth(truth) => if *truth { "yes" } else { "no" }.to_owned(),
+        }
+    }
+}
+
 /// A table.
 #[derive(Clone, Debug)]
 pub struct OutcomeTable {

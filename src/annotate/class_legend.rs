@@ -22,7 +22,7 @@ const WIDEST_EM: f32 = 15.0;
 const SYMBOL_PX: f32 = 21.0;
 const BLACK: Srgba = Srgba::opaque(0, 0, 0);
 /// More classes are not listed: a legend that is longer than what it explains is not read.
-const MOST: usize = 16;
+const MOST: usize = 24;
 
 /// A class of what a picture shows.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,6 +51,15 @@ pub enum LegendSwatch {
         fill: Srgba,
         /// The color of the line around it.
         edge: Srgba,
+    },
+    /// A tint of the ground with a pattern over it.
+    Tint {
+        /// The mean color of the ground under it.
+        fill: Srgba,
+        /// The color of the pattern and of the line around it.
+        ink: Srgba,
+        /// The pattern.
+        pattern: Option<PrintPattern>,
     },
     /// A black pattern in a black outline.
     Pattern(PrintPattern),
@@ -112,15 +121,15 @@ fn draw_swatch(swatch: &LegendSwatch, area: PixelBox, composer: &mut Composer, d
             drawing.rect(area, *fill);
             drawing.frame(area, sheet.hairline().round(), *edge);
         }
-        LegendSwatch::Pattern(pattern) => {
-            let (corner, size) = (area.min.as_uvec2(), area.size().as_uvec2());
-            let unit = PrintPattern::unit_px(sheet.size.y as u32);
-            for (x, y) in (0..size.y).flat_map(|y| (0..size.x).map(move |x| (x, y))) {
-                if pattern.is_black(x, y, unit) {
-                    let at = (corner + UVec2::new(x, y)).as_vec2();
-                    drawing.rect(PixelBox::at(at, Vec2::ONE), BLACK);
-                }
+        LegendSwatch::Tint { fill, ink, pattern } => {
+            drawing.rect(area, *fill);
+            if let Some(pattern) = pattern {
+                draw_pattern(*pattern, area, *ink, composer, drawing);
             }
+            drawing.frame(area, sheet.hairline().round(), *ink);
+        }
+        LegendSwatch::Pattern(pattern) => {
+            draw_pattern(*pattern, area, BLACK, composer, drawing);
             drawing.frame(area, sheet.hairline().round(), BLACK);
         }
         LegendSwatch::Block(fill) => {
@@ -134,6 +143,23 @@ fn draw_swatch(swatch: &LegendSwatch, area: PixelBox, composer: &mut Composer, d
             let unit_px = (area.size().x / size.x).min(most / size.y);
             let middle = ((bounds.min + bounds.max) * 0.5 - Vec2::splat(100.0)) * unit_px;
             drawing.append(symbol_marks(symbol, unit_px, None, composer).moved(area.center() - middle));
+        }
+    }
+}
+
+fn draw_pattern(
+    pattern: PrintPattern,
+    area: PixelBox,
+    ink: Srgba,
+    composer: &Composer,
+    drawing: &mut Drawing,
+) {
+    let (corner, size) = (area.min.as_uvec2(), area.size().as_uvec2());
+    let unit = PrintPattern::unit_px(composer.sheet.size.y as u32);
+    for (x, y) in (0..size.y).flat_map(|y| (0..size.x).map(move |x| (x, y))) {
+        if pattern.is_black(x, y, unit) {
+            let at = (corner + UVec2::new(x, y)).as_vec2();
+            drawing.rect(PixelBox::at(at, Vec2::ONE), ink);
         }
     }
 }

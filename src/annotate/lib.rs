@@ -39,6 +39,7 @@ mod line_label;
 pub mod locator;
 pub mod map;
 pub mod margin;
+pub mod margin_table;
 pub mod nice;
 pub mod north;
 pub mod norths;

@@ -9,6 +9,7 @@ use crate::class_legend;
 use crate::composer::Composer;
 use crate::drawing::Drawing;
 use crate::locator::{self, LocatorMap};
+use crate::margin_table::{self, MarginTable};
 use crate::north::CaptionPlace;
 use crate::norths::{self, ThreeNorths};
 use crate::paragraph::written_lines;
@@ -40,6 +41,8 @@ pub struct MarginNotes {
     pub sources: Vec<String>,
     /// The three norths.
     pub norths: Option<ThreeNorths>,
+    /// Tables, such as the legs of a route.
+    pub tables: Vec<MarginTable>,
     /// The whole model in plan.
     pub locator: Option<LocatorMap>,
 }
@@ -162,13 +165,20 @@ fn fill_columns(
     let classes = Some(&annotations.classes).filter(|classes| !classes.is_empty());
     let classes = classes.map(|classes| class_legend::compose(classes, composer));
     let locator = notes.locator.as_ref().map(|locator| Some(locator::compose(locator, composer)));
-    for (kind, piece) in [
+    let width = free.size().x;
+    let tables = notes
+        .tables
+        .iter()
+        .map(|table| (FurnitureKind::Table, Some(margin_table::compose(table, width, composer))));
+    let tables: Vec<(FurnitureKind, Option<Option<Drawing>>)> = tables.collect();
+    let first = [
         (FurnitureKind::NorthArrow, arrow),
         (FurnitureKind::Legend, ramp),
         (FurnitureKind::Classes, classes),
         (FurnitureKind::Norths, norths),
-        (FurnitureKind::Locator, locator),
-    ] {
+    ];
+    let all = first.into_iter().chain(tables).chain([(FurnitureKind::Locator, locator)]);
+    for (kind, piece) in all {
         let Some(piece) = piece else { continue };
         let Some(piece) = piece else {
             margin.left_out.push(kind);

@@ -249,7 +249,7 @@ impl Furniture {
             FurnitureKind::ScaleBar => Vec2::new(to_min.x, to_max.y),
             FurnitureKind::Legend | FurnitureKind::Credit | FurnitureKind::Classes => to_max,
             // They stand in the margins of a sheet only.
-            FurnitureKind::Norths | FurnitureKind::Locator => to_max,
+            FurnitureKind::Norths | FurnitureKind::Table | FurnitureKind::Locator => to_max,
         };
         drawing.moved(by.round())
     }

@@ -24,6 +24,8 @@ pub enum FurnitureKind {
     Classes,
     /// The diagram of the three norths.
     Norths,
+    /// A table.
+    Table,
     /// The whole model in plan.
     Locator,
 }

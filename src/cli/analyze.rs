@@ -25,7 +25,7 @@ use sandtable_export::features::outcome::{OutcomeFrame, export_outcome, json_val
 use sandtable_files::raster_file;
 use sandtable_query::analysis::{Analyzed, WrittenArgument, analyze, bare_land, raster};
 use sandtable_scene::land::land_of;
-use sandtable_scene::scene_file::open_scene_true_to_scale;
+use sandtable_scene::scene_file::open_scene_land;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// An analysis and its options.
@@ -155,7 +155,7 @@ fn analyzed(command: &AnalyzeCommand, steps: &StepTimer) -> Result<Analyzed, Cli
         true => None,
         false => {
             let progress = |step| steps.begin(step);
-            Some(open_scene_true_to_scale(&of_dataset.file, &of_dataset.access.allow, &progress)?)
+            Some(open_scene_land(&of_dataset.file, &of_dataset.access.allow, &progress)?)
         }
     };
     let dataset = match &scene {
@@ -269,14 +269,8 @@ fn table_lines(table: &OutcomeTable) -> Vec<String> {
     let heading =
         |name: &str, unit: &str| if unit.is_empty() { name.to_owned() } else { format!("{name} ({unit})") };
     let head: Vec<String> = table.columns.iter().map(|column| heading(column.name, column.unit)).collect();
-    let cell = |cell: &PropertyValue, decimals: usize| match cell {
-        PropertyValue::Number(number) => format!("{number:.decimals$}"),
-        PropertyValue::Whole(number) => number.to_string(),
-        PropertyValue::Text(text) => text.clone(),
-        PropertyValue::Truth(truth) => if *truth { "yes" } else { "no" }.into(),
-    };
     let cells = |row: &Vec<PropertyValue>| -> Vec<String> {
-        row.iter().zip(&table.columns).map(|(value, column)| cell(value, column.decimals)).collect()
+        row.iter().zip(&table.columns).map(|(value, column)| value.written(column.decimals)).collect()
     };
     let rows: Vec<Vec<String>> = std::iter::once(head).chain(table.rows.iter().map(cells)).collect();
     let width = |column: usize| {

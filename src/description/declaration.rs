@@ -5,8 +5,10 @@
 
 use std::iter;
 
+use crate::analyses::argument_keys;
 use crate::bounds::Bounds;
 use crate::words::WordDeclaration;
+use sandtable_catalog::parameter::ParameterForm;
 
 /// One key of a table.
 #[derive(Clone, Copy, Debug)]
@@ -89,6 +91,12 @@ pub enum KeyKind {
     Styles,
     /// Several keys in the same table.
     Group(&'static [KeyDeclaration]),
+    /// Tables of these keys under names that the user chooses.
+    NamedTables(&'static [KeyDeclaration]),
+    /// The parameters of all kinds of analysis, several keys in the same table.
+    AnalysisArguments,
+    /// An argument of an analysis, in one of these forms by the analysis' kind.
+    Argument(&'static [ParameterForm]),
 }
 
 impl KeyDeclaration {
@@ -98,7 +106,9 @@ impl KeyDeclaration {
             KeyKind::Table(keys)
             | KeyKind::Tables(keys)
             | KeyKind::StyledTables(keys)
+            | KeyKind::NamedTables(keys)
             | KeyKind::Group(keys) => keys,
+            KeyKind::AnalysisArguments => argument_keys(),
             _ => &[],
         }
     }
@@ -107,6 +117,7 @@ impl KeyDeclaration {
     pub fn flattened(keys: &'static [Self]) -> Box<dyn Iterator<Item = &'static Self>> {
         Box::new(keys.iter().flat_map(|key| match key.kind {
             KeyKind::Group(inner) => Self::flattened(inner),
+            KeyKind::AnalysisArguments => Self::flattened(argument_keys()),
             _ => Box::new(iter::once(key)),
         }))
     }

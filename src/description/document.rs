@@ -35,6 +35,7 @@ use std::error::Error;
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::analyses::{AnalysisTable, VehicleTable};
 use crate::bounds::Bounds::{self, Above, Within};
 use crate::color::{Color, RampChoice};
 use crate::declaration::{KeyDeclaration, Presence};
@@ -120,6 +121,10 @@ table! {
         sights as "sight": Vec<SightTable> = table_key::styled_tables::<SightTable>(), default [];
         /// Rings and fans of range.
         ranges as "range": Vec<RangeTable> = table_key::styled_tables::<RangeTable>(), default [];
+        /// Vehicles, by the names that analyses state.
+        vehicles as "vehicle": Vec<(Stated<String>, VehicleTable)> = table_key::named_tables::<VehicleTable>(), default {};
+        /// What the ground allows: slopes, obstacles, times, routes, what is seen, landing zones, water.
+        analyses as "analysis": Vec<AnalysisTable> = table_key::styled_tables::<AnalysisTable>(), default [];
         /// Names and heights on the picture.
         labels as "label": Vec<LabelTable> = table_key::styled_tables::<LabelTable>(), default [];
         /// What the scene shows one after the other: one picture each.

@@ -155,6 +155,9 @@ finding_codes! {
     RangeMissing = "range-missing", Note,
         "A viewshed without a `range` looks as far as the ground reaches, so that all samples of the elevation model were read for \
          it, eight bytes of memory each, though its pictures need fewer. State `range`, in meters.";
+    AnalysisLimited = "analysis-limited", Note,
+        "What an analysis left out or does not know: layers that the scene lacks, posts without data, soil. Its values are right \
+         for what is known. Add what is missing, or say so beside the picture.";
     HeightsUnshaped = "heights-unshaped", Note,
         "Heights in numbers are those of the elevation model where lakes, rivers, roads, pads and earthworks may have changed the \
          ground: a scene of a large model builds a few parts of it with all samples, for the first places that show a height. \

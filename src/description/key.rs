@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 use std::marker::PhantomData;
 
+use crate::analyses::kind_words;
 use crate::bounds::Bounds;
 use crate::color::{Color, RampChoice};
 use crate::declaration::KeyKind;
@@ -16,6 +17,7 @@ use crate::stated::Stated;
 use crate::value::KeyValue;
 use crate::words::declarations;
 use sandtable_base::message::choice::Choice;
+use sandtable_catalog::kind::AnalysisKind;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::position::Position;
 
@@ -102,6 +104,8 @@ keys! {
     ramp() -> RampChoice = KeyKind::Ramp;
     /// Which features of a file are meant: a table of properties and their values, or an expression.
     selection() -> Selection = KeyKind::Selection;
+    /// A kind of analysis of the catalog.
+    analysis_kind() -> &'static AnalysisKind = KeyKind::Word(kind_words);
     /// Tables of keys under names that the user chooses; gives the names.
     styles() -> Vec<String> = KeyKind::Styles;
 }

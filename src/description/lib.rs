@@ -3,6 +3,7 @@
 #[macro_use]
 mod table;
 
+pub mod analyses;
 pub mod bounds;
 pub mod color;
 pub mod declaration;

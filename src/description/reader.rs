@@ -157,6 +157,27 @@ impl<'r, 't> TableReader<'r, 't> {
         }
     }
 
+    /// The text of a key; `None` where it is absent or no text.
+    pub fn word(&self, key: &str) -> Option<&'r str> {
+        self.entry(key)?.1.get_ref().as_str()
+    }
+
+    /// Reads a key with `read`: `None` where it is absent, and `Some(None)` where its value is wrong.
+    pub fn read_with<V>(
+        &mut self,
+        key: &str,
+        read: impl FnOnce(KeyValue<'_, '_>) -> Option<V>,
+    ) -> Option<Option<Stated<V>>> {
+        let (name, value) = self.entry(key)?;
+        let stated = KeyValue { context: self.context, table: &self.name, key, key_span: name.span(), value };
+        Some(read(stated).map(|read| Stated::new(read, value.span())))
+    }
+
+    /// Notes that a key is missing.
+    pub fn lacks(&mut self, key: &'static str) {
+        self.missing.push(key);
+    }
+
     /// Reads a required key; `None` where it is missing or its value is wrong.
     pub fn required<V, A: Copy, F: Field<V>>(
         &mut self,
@@ -332,6 +353,28 @@ impl KeyValue<'_, '_> {
             }
             _ => self.wrong_type("a list of tables", format!("start each with {title}")),
         }
+    }
+
+    /// Tables under names that the user chooses, without the wrong ones.
+    pub fn named_tables<T: Table>(mut self) -> Option<Vec<(Stated<String>, T)>> {
+        let name = self.table.inner(self.key, false);
+        let DeValue::Table(tables) = self.value.get_ref() else {
+            return self.wrong_type("tables with names", format!("start each with [{}.NAME]", name.dotted()));
+        };
+        if tables.len() > SCENE_TABLES.count() {
+            let message = format!(
+                "{} [{}] tables are more than the {SCENE_TABLES} allowed",
+                tables.len(),
+                name.dotted()
+            );
+            return self.wrong(message, format!("leave some out, or {SCENE_TABLES:#}"));
+        }
+        let read = |(key, value): (&Spanned<DeString<'_>>, _)| {
+            let title = name.inner(&quoted(key.get_ref()), false);
+            let table = self.element(value).table_named(title, Styling::Plain)?;
+            Some((Stated::new(key.get_ref().to_string(), key.span()), table))
+        };
+        Some(tables.iter().filter_map(read).collect())
     }
 
     fn table_named<T: Table<N>, const N: usize>(&mut self, name: TableName, styling: Styling) -> Option<T> {

@@ -2,9 +2,11 @@
 
 use std::marker::PhantomData;
 
+use crate::analyses::DescribedArguments;
 use crate::declaration::KeyKind;
 use crate::feature_source::FeatureSource;
 use crate::key::{Group, Key, Styling};
+use crate::stated::Stated;
 use crate::table::Table;
 use crate::value::KeyValue;
 
@@ -27,6 +29,17 @@ pub(super) const fn tables<T: Table>() -> Key<Vec<T>> {
 pub(super) const fn styled_tables<T: Table>() -> Key<Vec<T>> {
     let read = |value: KeyValue<'_, '_>, ()| value.tables(Styling::Styled);
     Key { kind: KeyKind::StyledTables(T::KEYS), unit: "", arguments: (), read }
+}
+
+/// Tables of keys under names that the user chooses.
+pub(super) const fn named_tables<T: Table>() -> Key<Vec<(Stated<String>, T)>> {
+    let read = |value: KeyValue<'_, '_>, ()| value.named_tables();
+    Key { kind: KeyKind::NamedTables(T::KEYS), unit: "", arguments: (), read }
+}
+
+/// The parameters of the kind of analysis that the table names.
+pub(super) const fn analysis_arguments() -> Group<DescribedArguments, 0> {
+    Group { kind: KeyKind::AnalysisArguments, unit: "", of: PhantomData }
 }
 
 /// The keys of a source of at least `LEAST` points.

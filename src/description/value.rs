@@ -375,10 +375,13 @@ impl<'t> KeyValue<'_, 't> {
         let DeValue::String(text) = self.value.get_ref() else {
             return self.wrong_type("a word in quotes", remedy("", &words::<W>(), "it may be"));
         };
-        W::from_word(text).or_else(|| {
-            let message = format!("`{}` cannot be \"{}\"", self.key, quoted(text));
-            self.wrong(message, remedy(text, &words::<W>(), "it may be"))
-        })
+        W::from_word(text).or_else(|| self.none_of(text, &words::<W>()))
+    }
+
+    /// Reports a text that is none of `words`; always `None`.
+    pub fn none_of<T>(&mut self, text: &str, words: &[&str]) -> Option<T> {
+        let message = format!("`{}` cannot be \"{}\"", self.key, quoted(text));
+        self.wrong(message, remedy(text, words, "it may be"))
     }
 
     pub fn color(mut self) -> Option<Color> {
@@ -482,6 +485,20 @@ impl<'t> KeyValue<'_, 't> {
             return self.wrong(format!("`{}` has {count} of the {least} points it needs", self.key), help);
         }
         Some(points)
+    }
+
+    /// As [`Self::places`]; where one is enough, also a point alone.
+    pub fn place_or_places(mut self, least: usize) -> Option<Vec<Stated<Position>>> {
+        let is_list =
+            |list: &DeArray<'_>| list.first().is_none_or(|first| number_of(first.get_ref()).is_none());
+        match self.value.get_ref() {
+            DeValue::Array(list) if least > 1 || is_list(list) => self.places(least),
+            _ => {
+                let span = self.value.span();
+                let place = self.element(self.value).point()?;
+                Some(vec![Stated::new(place, span)])
+            }
+        }
     }
 
     /// The names of the styles; [`Styles::read`](crate::styles::Styles::read) checks them.

@@ -68,6 +68,14 @@ words! {
         Absolute = "absolute": "its origin is at elevation `height`",
     }
 
+    /// A vehicle whose numbers are built in, or people on foot.
+    enum BuiltInVehicle {
+        Wheeled = "wheeled": "an armored personnel carrier on wheels",
+        Foot = "foot": "people on foot",
+        Tracked = "tracked": "a battle tank",
+        Truck = "truck": "an off-road truck",
+    }
+
     /// What a label names; decides its type and its symbol.
     enum LabelKind {
         Summit = "summit": "a summit",

@@ -98,6 +98,8 @@ pub fn all_round(
     progress("draping features");
     let mut shown = vec![ItemShown::Always; list.items.len()];
     let bands_m = add_laid(&mut list, &mut shown, scene, displayed)?;
+    let tints = overlay::add_ground_tints(&mut list, scene, displayed);
+    shown.splice(tints.start..tints.start, tints.map(|_| ItemShown::Always));
     let graphic_texts = overlay::add(&mut list, scene, &overview, displayed, progress);
     progress("setting models");
     ground::add_plinth(&mut list, scene, walls);

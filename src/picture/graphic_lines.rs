@@ -184,19 +184,17 @@ pub struct LineVertex {
 
 /// The view of a picture with graphics.
 pub struct GraphicView<'a> {
-    /// The displayed ground.
-    pub displayed: &'a dyn TriangleSurface,
     lines: LineView<'a>,
 }
 
 impl<'a> GraphicView<'a> {
-    pub fn new(scene: &'a SceneModel, camera: &'a Camera, displayed: &'a dyn TriangleSurface) -> Self {
-        Self { displayed, lines: LineView::new(scene, camera, LineScale::new(camera)) }
+    pub fn new(scene: &'a SceneModel, camera: &'a Camera) -> Self {
+        Self { lines: LineView::new(scene, camera, LineScale::new(camera)) }
     }
 
     /// For an eye that turns around where `camera` is: each place as if it were in the picture's middle.
-    pub fn around(scene: &'a SceneModel, camera: &'a Camera, displayed: &'a dyn TriangleSurface) -> Self {
-        Self { displayed, lines: LineView::new(scene, camera, LineScale::around(camera)) }
+    pub fn around(scene: &'a SceneModel, camera: &'a Camera) -> Self {
+        Self { lines: LineView::new(scene, camera, LineScale::around(camera)) }
     }
 
     /// Draws a line with its casing.
@@ -206,6 +204,12 @@ impl<'a> GraphicView<'a> {
             stroke_run(&run, look.width_px + 2.0 * CASING_PX, casing);
             stroke_run(&run, look.width_px, line);
         }
+    }
+
+    /// Draws a line without a casing.
+    pub fn draw_bare(&self, pen: &mut GraphicPen, points: &[DVec2], look: LineLook, feature: FeatureId) {
+        let plan = pen.plan(look.color, feature);
+        self.runs(points, look.is_dashed).iter().for_each(|run| stroke_run(run, look.width_px, plan));
     }
 
     /// The height of a text at places, in meters: that of their mean distance. `None` where all are behind the eye.

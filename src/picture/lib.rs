@@ -2,7 +2,10 @@
 
 mod airspace;
 pub mod all_round;
+mod analyses;
+pub mod analysis_look;
 mod canopy;
+mod class_hatching;
 pub mod detail;
 mod drapes;
 pub mod graphic_colors;
@@ -22,6 +25,7 @@ mod nested_plan;
 mod nested_surface;
 mod overlay;
 pub mod placed_text;
+mod post_tint;
 pub mod recut;
 pub mod setting;
 pub mod sheet_cuts;
@@ -179,6 +183,9 @@ fn listed(
     progress("draping features");
     let raised = drapes::add(&mut list, scene, displayed, viewer);
     let annotated = camera.filter(|_| purpose != ListPurpose::Relief);
+    if annotated.is_some() {
+        overlay::add_ground_tints(&mut list, scene, displayed);
+    }
     let graphic_texts = annotated.map(|camera| overlay::add(&mut list, scene, camera, displayed, progress));
     progress("setting models");
     ground::add_plinth(&mut list, scene, walls);

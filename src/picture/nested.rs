@@ -100,6 +100,7 @@ pub fn build_nested_draw_list(
     let graphic_texts = overlay::add(&mut list, scene, camera, &surface, progress);
     airspace::add(&mut list, scene);
     list.items.sort_by_key(|item| item.layer);
+    overlay::add_ground_tints(&mut list, scene, &surface);
     ViewDraw { list, displayed, ground_triangles, graphic_texts, nested: NestedHeights::new(nested) }
 }
 

@@ -17,10 +17,11 @@ use crate::graphic_lines::{self, LinePlan};
 use crate::lake_tint::{LakeTint, longest_lakes};
 use crate::line_scale::LineScale;
 use crate::markings::faded;
+use crate::overlay::GROUND_TINT_LAYER;
 use crate::placed_text::PlacedText;
-use crate::sight::{self, TintPlan};
+use crate::post_tint::{self, TintPlan};
 use crate::symbols::{PlannedSymbol, RibbonShow, planned};
-use crate::{ground, overlay};
+use crate::{analyses, ground, overlay, sight};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh, FeatureId, MaterialId};
 use sandtable_draw::patches::DrapedPiece;
@@ -74,6 +75,8 @@ pub struct GroundSheets {
     borders: Borders,
     ribbons: DrapeSheet,
     symbols: DrapeSheet,
+    /// Tints of analyses.
+    ground_tints: DrapeSheet,
     /// Tints of sight.
     tints: DrapeSheet,
     /// What a user looks at is seen from a place.
@@ -134,13 +137,8 @@ impl GroundSheets {
             sheets.material(RibbonLook::Casing(symbol.surface));
             sheets.material(RibbonLook::Fill(symbol.surface, fill_color(symbol)));
         }
-        let (mut plans, mut shapes) = (Vec::new(), Vec::new());
-        for TintPlan { plan, color, texture, feature } in sight::tints(scene) {
-            let material = sight::add_material(&mut sheets.head, color, texture);
-            plans.push(SheetPlan { material, markings: None, lake: None, layer: sight::TINT_LAYER, feature });
-            shapes.push(plan);
-        }
-        sheets.tints = DrapeSheet { drapes: Drapes::new(&sheets.borders, &shapes), plans };
+        sheets.ground_tints = sheets.tint_sheet(analyses::tints(scene), GROUND_TINT_LAYER);
+        sheets.tints = sheets.tint_sheet(sight::tints(scene), post_tint::TINT_LAYER);
         for color in overlay::colors(scene) {
             let material = graphic_lines::add_material(&mut sheets.head, Srgba(color));
             sheets.graphic_colors.insert(color, material);
@@ -148,18 +146,29 @@ impl GroundSheets {
         sheets
     }
 
+    /// Tints with their materials; they are not cut yet.
+    fn tint_sheet(&mut self, tints: Vec<TintPlan>, layer: u8) -> DrapeSheet {
+        let (mut plans, mut shapes) = (Vec::new(), Vec::new());
+        for TintPlan { plan, color, texture, feature } in tints {
+            let material = post_tint::add_material(&mut self.head, color, texture);
+            plans.push(SheetPlan { material, markings: None, lake: None, layer, feature });
+            shapes.push(plan);
+        }
+        DrapeSheet { drapes: Drapes::new(&self.borders, &shapes), plans }
+    }
+
     /// The texts of tactical graphics, as they were planned last.
     pub fn texts(&self) -> &[PlacedText] {
         &self.texts
     }
 
-    pub(super) fn sheets(&self) -> [&DrapeSheet; 5] {
-        [&self.ribbons, &self.symbols, &self.tints, &self.seen, &self.graphics]
+    pub(super) fn sheets(&self) -> [&DrapeSheet; 6] {
+        [&self.ribbons, &self.symbols, &self.ground_tints, &self.tints, &self.seen, &self.graphics]
     }
 
-    pub(super) fn sheets_mut(&mut self) -> [&mut DrapeSheet; 5] {
-        let Self { ribbons, symbols, tints, seen, graphics, .. } = self;
-        [ribbons, symbols, tints, seen, graphics]
+    pub(super) fn sheets_mut(&mut self) -> [&mut DrapeSheet; 6] {
+        let Self { ribbons, symbols, ground_tints, tints, seen, graphics, .. } = self;
+        [ribbons, symbols, ground_tints, tints, seen, graphics]
     }
 
     /// Adds the texture of a tint to the materials, before the tint is draped.
@@ -170,7 +179,7 @@ impl GroundSheets {
             // The tint before lies nowhere any more.
             (Some(id), Some(pixels)) => self.head.textures[id.0 as usize] = pixels,
             (_, texture) => {
-                self.seen_material = Some(sight::add_material(&mut self.head, tint.color, texture));
+                self.seen_material = Some(post_tint::add_material(&mut self.head, tint.color, texture));
             }
         }
     }
@@ -179,7 +188,7 @@ impl GroundSheets {
     /// the patches in which what lies has changed.
     pub fn lay_tint(&mut self, tint: Option<&SeenTint>) -> Vec<usize> {
         let laid = tint.zip(self.seen_material).map(|(SeenTint(tint), material)| {
-            let (layer, feature) = (sight::TINT_LAYER, tint.feature);
+            let (layer, feature) = (post_tint::TINT_LAYER, tint.feature);
             let plans = vec![SheetPlan { material, markings: None, lake: None, layer, feature }];
             DrapeSheet { drapes: Drapes::new(&self.borders, [&tint.plan]), plans }
         });
@@ -206,13 +215,8 @@ impl GroundSheets {
 
     /// Plans the lines of sight and the tactical graphics for an eye that turns around where `camera` is, over the finest
     /// ground. They are not cut yet; returns the patches in which what lies has changed.
-    pub fn plan_graphics(
-        &mut self,
-        scene: &SceneModel,
-        camera: &Camera,
-        ground: &dyn TriangleSurface,
-    ) -> Vec<usize> {
-        let (lines, texts) = overlay::planned(scene, camera, ground);
+    pub fn plan_graphics(&mut self, scene: &SceneModel, camera: &Camera) -> Vec<usize> {
+        let (lines, texts) = overlay::planned(scene, camera);
         self.texts = texts;
         let (mut plans, mut shapes) = (Vec::new(), Vec::new());
         for LinePlan { plan, color, feature } in lines {
@@ -290,8 +294,12 @@ impl GroundSheets {
     pub fn pieces(&self, patch: usize, camera: &Camera) -> Vec<DrapedPiece> {
         let scale = LineScale::around(camera);
         let (mut pieces, mut symbols) = (Vec::new(), self.symbols.drapes.in_patch(patch).peekable());
+        let mut tints = self.ground_tints.drapes.in_patch(patch).peekable();
         for (at, mesh) in self.ribbons.drapes.in_patch(patch) {
             let plan = &self.ribbons.plans[at];
+            while let Some((at, mesh)) = tints.next_if(|_| plan.layer > GROUND_TINT_LAYER) {
+                self.ground_tints.plans[at].add(mesh.clone(), &mut pieces);
+            }
             while let Some((at, mesh)) = symbols.next_if(|(at, _)| self.symbols.plans[*at].layer < plan.layer)
             {
                 self.symbols.plans[at].add(mesh.clone(), &mut pieces);
@@ -309,6 +317,7 @@ impl GroundSheets {
                 plan.add_with(material, mesh, &mut pieces);
             }
         }
+        tints.for_each(|(at, mesh)| self.ground_tints.plans[at].add(mesh.clone(), &mut pieces));
         symbols.for_each(|(at, mesh)| self.symbols.plans[at].add(mesh.clone(), &mut pieces));
         for sheet in [&self.tints, &self.seen, &self.graphics] {
             let cut = sheet.drapes.in_patch(patch);
@@ -337,7 +346,11 @@ impl GroundSheets {
         let graphics = of(&self.graphics, true).or_else(|| of(&self.tints, true));
         let uppermost = graphics
             .into_iter()
-            .chain([of(&self.ribbons, false), of(&self.symbols, true)].into_iter().flatten())
+            .chain(
+                [of(&self.ribbons, false), of(&self.symbols, true), of(&self.ground_tints, true)]
+                    .into_iter()
+                    .flatten(),
+            )
             .max();
         uppermost.map(|(_, feature)| feature)
     }

@@ -1,34 +1,24 @@
 //! Layers of sight on a picture: tints of seen and hidden ground, lines of sight, ranges.
-//!
-//! A viewshed is a value a post. Its tint is a texture with a texel a post (of large ground a texel a square of posts),
-//! laid over the ground as one quad that is cut to the displayed triangles like every ribbon. So no renderer knows of it,
-//! and its border is as smooth as the texture's filter makes it.
 
 use std::f64::consts::TAU;
 
-use glam::{DVec2, UVec2, Vec2, Vec4};
+use glam::{DVec2, UVec2, Vec2};
 
-use crate::add_mesh;
 use crate::graphic_colors::{self, HIDDEN, SEEN, side_color};
-use crate::graphic_lines::{GraphicPen, GraphicView, LAYER, LINE_PX, LineLook};
+use crate::graphic_lines::{GraphicPen, GraphicView, LINE_PX, LineLook};
 use crate::placed_text::{PlacedCourse, PlacedText};
+use crate::post_tint::{PostTint, TintPlan};
 use sandtable_description::words::{RangeExtent, ViewshedTint};
 use sandtable_draw::color::Srgba;
-use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh, FeatureId, MaterialId};
-use sandtable_draw::material::{AlphaMode, Material, NormalSource};
-use sandtable_draw::pixels::Pixels;
+use sandtable_draw::list::FeatureId;
 use sandtable_mesh::sink::MeshSink;
-use sandtable_ribbon::drape::drape;
 use sandtable_ribbon::plan::{PlanMesh, PlanVertex};
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::seen_ground::{PostFrame, SceneSight, SceneViewshed, SeenPosts, SightedLine};
 use sandtable_scene::sight_layers::{SceneRange, heading};
-use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::sight::line::SightEnd;
 use sandtable_terrain::sight::viewshed::{PostVisibility, Viewshed};
-
-/// Tints lie under lines.
-pub(super) const TINT_LAYER: u8 = LAYER - 1;
 
 /// Lines of sight to seen and to hidden ground.
 const SEEN_LINE: LineLook =
@@ -43,23 +33,8 @@ const OBSERVER_LINE: LineLook =
 /// The share of light that the fill of a range stops.
 const FILL_ALPHA: u8 = 84;
 
-/// The most texels of a tint along either side: finer than any picture shows at once.
-const MOST_TEXELS: u32 = 2048;
-
 /// The radius of the ring about a target and an observer, in text heights.
 const MARK_EM: f64 = 0.6;
-
-/// A tint in plan.
-pub(super) struct TintPlan {
-    /// Its triangles.
-    pub plan: PlanMesh,
-    /// Its color, or a factor of its texture's.
-    pub color: Srgba,
-    /// What it shows where.
-    pub texture: Option<Pixels>,
-    /// The feature that it belongs to.
-    pub feature: FeatureId,
-}
 
 /// The tints of seen and hidden ground and of ranges, in drawing order; they are the same for every camera.
 pub(super) fn tints(scene: &SceneModel) -> Vec<TintPlan> {
@@ -95,25 +70,6 @@ pub(super) fn line_colors(scene: &SceneModel) -> impl Iterator<Item = Srgba> {
     [SEEN_LINE, HIDDEN_LINE, OBSERVER_LINE].map(|look| look.color).into_iter().chain(ranges)
 }
 
-/// Adds the tints of sight that a picture shows, draws its lines and notes their texts.
-pub(super) fn add(
-    list: &mut DrawList,
-    scene: &SceneModel,
-    view: &GraphicView<'_>,
-    pen: &mut GraphicPen,
-    texts: &mut Vec<PlacedText>,
-) {
-    for TintPlan { plan, color, texture, feature } in tints(scene) {
-        let mut mesh = DrawMesh::default();
-        drape(&plan, view.displayed, &mut mesh);
-        if !mesh.triangles.is_empty() {
-            let material = add_material(list, color, texture);
-            add_mesh(list, mesh, material, DepthLayer::Draped(TINT_LAYER), feature);
-        }
-    }
-    draw(scene, view, pen, texts);
-}
-
 /// Draws the lines of sight and of ranges and notes their texts.
 pub(super) fn draw(
     scene: &SceneModel,
@@ -133,111 +89,32 @@ pub(super) fn draw(
 
 /// The tint of the seen and the hidden posts of a viewshed over `lattice`; `None` where nobody looked.
 pub(super) fn seen_tint(seen: &Viewshed, lattice: &Lattice) -> Option<TintPlan> {
-    let pen =
-        TintPen { origin: lattice.origin(), colors: [Some(SEEN), Some(HIDDEN)], feature: FeatureId::GROUND };
-    posts_tint(seen, &PostFrame::of(lattice), &pen)
+    let place = (&PostFrame::of(lattice), lattice.origin());
+    posts_tint(seen, place, [Some(SEEN), Some(HIDDEN)], FeatureId::GROUND)
 }
 
 fn viewshed_tint(layer: &SceneViewshed, lattice: &Lattice, colors: [Option<Srgba>; 2]) -> Option<TintPlan> {
     let SeenPosts { viewshed, frame } = layer.seen(lattice)?;
-    posts_tint(viewshed, frame, &TintPen { origin: lattice.origin(), colors, feature: layer.feature })
-}
-
-/// How a tint of posts is drawn.
-struct TintPen {
-    /// The map coordinates of world X and Y 0.
-    origin: DVec2,
-    /// Of seen and of hidden posts.
-    colors: [Option<Srgba>; 2],
-    /// Whose it is.
-    feature: FeatureId,
+    posts_tint(viewshed, (frame, lattice.origin()), colors, layer.feature)
 }
 
 /// The seen and the hidden posts in two colors; `None` where nobody looked.
-fn posts_tint(seen: &Viewshed, frame: &PostFrame, pen: &TintPen) -> Option<TintPlan> {
-    let TintPen { origin, colors, feature } = *pen;
+fn posts_tint(
+    seen: &Viewshed,
+    (frame, origin): (&PostFrame, DVec2),
+    colors: [Option<Srgba>; 2],
+    feature: FeatureId,
+) -> Option<TintPlan> {
+    let rows = seen.posts.len() as u32 / seen.columns;
+    let beside = colors.into_iter().flatten().next().unwrap_or(Srgba::WHITE);
+    let tint = PostTint { size: UVec2::new(seen.columns, rows), frame, origin, beside, feature };
     // Only the posts that somebody looked at.
-    let columns = seen.columns as usize;
     let is_looked_at =
-        |post: &PostVisibility| matches!(post, PostVisibility::Visible | PostVisibility::Hidden);
-    let mut corners: Option<[UVec2; 2]> = None;
-    for (row, posts) in seen.posts.chunks_exact(columns).enumerate() {
-        let Some(first) = posts.iter().position(is_looked_at) else { continue };
-        let last = posts.iter().rposition(is_looked_at).unwrap_or(first);
-        let (low, high) = (UVec2::new(first as u32, row as u32), UVec2::new(last as u32, row as u32));
-        corners = Some(corners.map_or([low, high], |[min, max]| [min.min(low), max.max(high)]));
-    }
-    let [min, max] = corners?;
-    let size = max - min + 1;
-    let stride = size.max_element().div_ceil(MOST_TEXELS).max(1);
-    let texels = size.map(|side| side.div_ceil(stride));
-    let post = |column: u32, row: u32| seen.posts[row as usize * columns + column as usize];
-    let pixels = Pixels::from_fn(texels.x, texels.y, |x, y| {
-        // V runs downward, rows upward.
-        let from = min + UVec2::new(x, texels.y - 1 - y) * stride;
-        let to = (from + stride - 1).min(max);
-        let (mut sum, mut count) = (Vec4::ZERO, 0.0f32);
-        for row in from.y..=to.y {
-            for column in from.x..=to.x {
-                let color = match post(column, row) {
-                    PostVisibility::Visible => colors[0],
-                    PostVisibility::Hidden => colors[1],
-                    PostVisibility::Beyond | PostVisibility::NoData => None,
-                };
-                count += 1.0;
-                if let Some(Srgba([red, green, blue, alpha])) = color {
-                    let share = f32::from(alpha);
-                    sum += Vec4::new(
-                        f32::from(red) * share,
-                        f32::from(green) * share,
-                        f32::from(blue) * share,
-                        share,
-                    );
-                }
-            }
-        }
-        blended(sum, count, colors)
-    });
-    let first = frame.map_position(Post { column: min.x, row: min.y }) - origin;
-    let texel_m = frame.cell * f64::from(stride);
-    // A post is in the middle of its texel; the tint ends half a texel from the border, where the texture would repeat.
-    let posts_m = frame.cell * (size - 1).as_dvec2();
-    let offset = frame.cell * f64::from(stride - 1) / 2.0;
-    let corner = |share: DVec2| {
-        let at = first + posts_m * share;
-        let texel = (at - first - offset) / texel_m + 0.5;
-        let uv = DVec2::new(texel.x, f64::from(texels.y) - texel.y) / texels.as_dvec2();
-        PlanVertex { at, uv: uv.as_vec2() }
-    };
-    let mut plan = PlanMesh::default();
-    let ids = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y].map(|share| plan.vertex(corner(share)));
-    plan.triangle([ids[0], ids[1], ids[2]]);
-    plan.triangle([ids[0], ids[2], ids[3]]);
-    Some(TintPlan { plan, color: Srgba::WHITE, texture: Some(pixels), feature })
-}
-
-/// The mean of colors weighted by their alpha; where there is none, a color of the tint that nothing shows of, so that a
-/// border does not blend toward black.
-fn blended(sum: Vec4, count: f32, colors: [Option<Srgba>; 2]) -> Srgba {
-    let byte = |value: f32| (value + 0.5).clamp(0.0, 255.0) as u8;
-    if sum.w > 0.0 {
-        let color = sum / sum.w;
-        return Srgba([byte(color.x), byte(color.y), byte(color.z), byte(sum.w / count)]);
-    }
-    let Srgba([red, green, blue, _]) = colors.into_iter().flatten().next().unwrap_or(Srgba::WHITE);
-    Srgba([red, green, blue, 0])
-}
-
-/// Adds the material of a tint.
-pub(super) fn add_material(list: &mut DrawList, color: Srgba, texture: Option<Pixels>) -> MaterialId {
-    let texture = texture.map(|pixels| list.add_texture(pixels));
-    list.add_material(Material {
-        name: "sight".into(),
-        base_color: color,
-        texture,
-        alpha: AlphaMode::Blend,
-        normals: NormalSource::Ground,
-        ..Material::default()
+        |index: usize| matches!(seen.posts[index], PostVisibility::Visible | PostVisibility::Hidden);
+    tint.plan(is_looked_at, |index| match seen.posts[index] {
+        PostVisibility::Visible => colors[0],
+        PostVisibility::Hidden => colors[1],
+        PostVisibility::Beyond | PostVisibility::NoData => None,
     })
 }
 
@@ -308,7 +185,7 @@ fn draw_range(
     }
 }
 
-fn level_text(
+pub(super) fn level_text(
     view: &GraphicView<'_>,
     at: DVec2,
     text: String,
@@ -367,7 +244,7 @@ fn mark_observer(
     view.draw(pen, &[0, 1, 2, 3].map(corner), OBSERVER_LINE, feature);
 }
 
-fn circle(center: DVec2, radius_m: f64) -> Vec<DVec2> {
+pub(super) fn circle(center: DVec2, radius_m: f64) -> Vec<DVec2> {
     let corner = |step: u32| {
         let angle = TAU * f64::from(step) / 24.0;
         center + DVec2::new(libm::cos(angle), libm::sin(angle)) * radius_m

@@ -11,6 +11,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::DVec2;
 
+use crate::analyses;
 use crate::assets::Assets;
 use crate::attributes;
 use crate::build_errors::BuildErrors;
@@ -121,6 +122,11 @@ pub fn build_with(
     progress: &dyn Fn(&'static str),
 ) -> Result<SceneModel, BuildErrors> {
     progress("reading elevation");
+    // What pictures need fewer samples for is analyzed with all.
+    let need = match need {
+        ElevationNeed::Pictures(_) if !document.analyses.is_empty() => ElevationNeed::AllThatFit,
+        need => need,
+    };
     let loaded = ground::load(document, assets, need)?;
     let (crs, stated_crs, mut lattice) = (loaded.crs, loaded.stated_crs, loaded.lattice);
     let frame = WorldFrame::new(document, &crs, &stated_crs, lattice.origin());
@@ -149,6 +155,8 @@ pub fn build_with(
     let of_overlays = overlays::lay(&sources, &lattice, &mut collected);
     let exact = ExactGround::new(&frame, &lattice, assets, loaded.all_samples)?;
     let sight = placed_sight::lay(&exact, &mut collected);
+    let placed_analyses = analyses::place(&exact, &mut collected);
+    let vehicles = analyses::vehicles(document, &mut collected.errors);
 
     progress("placing labels and cameras");
     let layout = layout(document, &lattice)?;
@@ -188,7 +196,7 @@ pub fn build_with(
         let span = document.terrain.dem.span().unwrap_or_default();
         collected.findings.add(FindingCode::NoPlaceOnEarth, span, missing);
     }
-    Ok(SceneModel {
+    let mut scene = SceneModel {
         title: document.title.clone(),
         subtitle: document.phase_title().map(str::to_owned).or_else(|| document.subtitle.clone()),
         phase: document.phase.clone(),
@@ -227,6 +235,8 @@ pub fn build_with(
         symbols: collected.symbols,
         graphics: collected.graphics,
         sight,
+        vehicles,
+        analyses: Vec::new(),
         solids: collected.solids,
         pictures: collected.pictures,
         uprights: collected.uprights,
@@ -247,8 +257,13 @@ pub fn build_with(
         bridge_profiles: collected.bridge_profiles,
         crs,
         stated_crs,
-        files: assets.files_read(),
-    })
+        files: Vec::new(),
+    };
+    if !placed_analyses.is_empty() {
+        analyses::analyze(&mut scene, placed_analyses, document, assets, progress)?;
+    }
+    scene.files = assets.files_read();
+    Ok(scene)
 }
 
 fn height_service(

@@ -30,10 +30,12 @@ pub enum FeatureKind {
     Graphic,
     /// A viewshed, lines of sight or a range.
     Sight,
+    /// What the ground allows.
+    Analysis,
 }
 
 /// The noun of each kind for one feature and for several, in the order of summaries.
-pub(crate) const FEATURE_NOUNS: [(FeatureKind, &str, &str); 12] = [
+pub(crate) const FEATURE_NOUNS: [(FeatureKind, &str, &str); 13] = [
     (FeatureKind::Lake, "lake", "lakes"),
     (FeatureKind::River, "river", "rivers"),
     (FeatureKind::Road, "road", "roads"),
@@ -46,6 +48,7 @@ pub(crate) const FEATURE_NOUNS: [(FeatureKind, &str, &str); 12] = [
     (FeatureKind::Scattered, "scatter of models", "scatters of models"),
     (FeatureKind::Graphic, "tactical graphic", "tactical graphics"),
     (FeatureKind::Sight, "layer of sight", "layers of sight"),
+    (FeatureKind::Analysis, "analysis", "analyses"),
 ];
 
 impl FeatureKind {

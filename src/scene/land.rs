@@ -28,9 +28,10 @@ const TRACK_M: f64 = 2.0;
 /// Trees are counted in squares of so many posts: fewer would hold one tree or none.
 const STAND_POSTS: u32 = 5;
 
-/// The land of a scene that was built true to scale, with these of its layers; the others are unknown.
+/// The land of a scene, true to scale, with these of its layers; the others are unknown.
 pub fn land_of(scene: &SceneModel, layers: &[LandPart]) -> Land {
     let mut land = Land::bare(scene.lattice.clone(), scene.crs.clone());
+    land.vehicles.clone_from(&scene.vehicles);
     for layer in layers {
         match layer {
             LandPart::Cover => land.cover = covers(scene),
@@ -211,7 +212,7 @@ fn obstacles(scene: &SceneModel) -> Vec<f32> {
         mesh_triangles(mesh, |plan, levels| {
             posts_in(&scene.lattice, plan, |index, weights| {
                 let top = weights.iter().zip(levels).map(|(weight, level)| weight * level).sum::<f64>();
-                let above = top as f32 - ground[index];
+                let above = top as f32 - scene.scale.world_z(ground[index]);
                 heights[index] = heights[index].max(if above.is_nan() { 0.0 } else { above });
             });
         });

@@ -8,6 +8,7 @@
 //! `picture` turns a scene and a camera into a draw list.
 
 mod all_samples;
+pub mod analyses;
 pub mod areas;
 pub mod assets;
 pub mod attributes;

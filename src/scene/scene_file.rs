@@ -195,6 +195,21 @@ pub fn open_scene_exaggerated(
     Ok(build(&document, &assets, progress)?)
 }
 
+/// [`open_scene`] for the land of an analysis: the scene's own analyses are not made.
+///
+/// # Errors
+/// See [`OpenSceneError`].
+pub fn open_scene_land(
+    path: &Path,
+    allowed: &[PathBuf],
+    progress: &dyn Fn(&'static str),
+) -> Result<SceneModel, OpenSceneError> {
+    progress("reading the scene file");
+    let (mut document, assets) = open_document(path, allowed, None)?;
+    document.analyses.clear();
+    Ok(build(&document, &assets, progress)?)
+}
+
 /// Reads and parses the scene file at `path`; files that it includes are read, those of its features are not.
 ///
 /// # Errors

@@ -4,6 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::Vec3;
 
+use crate::analyses::SceneAnalysis;
 use crate::earthworks::water_beside;
 use crate::feature::{FEATURE_NOUNS, FeatureKind, SceneFeature};
 use crate::feature_meshes::{FeatureSolid, Ribbon, Solid};
@@ -24,6 +25,7 @@ use crate::style::RampSource;
 use crate::sunlight::Sunlight;
 use crate::symbols::LineSymbol;
 use crate::vertical_scale::VerticalScale;
+use sandtable_analysis::movement::vehicle::Vehicle;
 use sandtable_description::document::FurnitureTable;
 use sandtable_description::finding::Finding;
 use sandtable_description::words::{GridName, StylePreset, TableTop};
@@ -113,6 +115,10 @@ pub struct SceneModel {
     pub graphics: Vec<SceneGraphic>,
     /// Viewsheds, lines of sight and ranges.
     pub sight: SightLayers,
+    /// The vehicles that it describes.
+    pub vehicles: Vec<Vehicle>,
+    /// What the ground allows.
+    pub analyses: Vec<SceneAnalysis>,
     /// Solids with fixed heights: buildings, bridges.
     pub solids: Vec<Solid>,
     /// Pictures on them, by the numbers that their coats name.

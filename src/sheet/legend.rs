@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 
 use crate::print_ink::PrintInk;
+use sandtable_analysis::outcome::Hatching;
 use sandtable_annotate::class_legend::{LegendEntry, LegendSwatch};
 use sandtable_base::message::capitalized::capitalized;
 use sandtable_description::words::{Cover, StylePreset};
@@ -80,8 +81,11 @@ pub fn legend_entries(scene: &SceneModel, picture: &Rendering) -> Vec<LegendEntr
             }
         }
     }
-    let shown = ids.into_iter().zip(sums).filter(|(_, sum)| sum.count >= LEAST_PIXELS);
     let is_print = scene.preset == Some(StylePreset::Print);
+    let hides_covers = is_print && has_hatching(scene);
+    let shown = ids.into_iter().zip(sums).filter(|(class, sum)| {
+        sum.count >= LEAST_PIXELS && !(hides_covers && matches!(class, ShownClass::Cover(_)))
+    });
     shown
         .map(|(class, sum)| match class.ink().filter(|_| is_print) {
             Some(ink) => class.printed_entry(ink),
@@ -142,15 +146,26 @@ fn classes(scene: &SceneModel) -> Vec<Option<ShownClass>> {
                 false => ShownClass::OtherModels,
             },
             FeatureKind::Scattered => ShownClass::Trees,
-            FeatureKind::Graphic | FeatureKind::Sight => return None,
+            FeatureKind::Graphic | FeatureKind::Sight | FeatureKind::Analysis => return None,
         })
     };
     scene.features.iter().enumerate().map(class).collect()
 }
 
-/// The print inks of features.
+/// The print inks of features. Covers have none where an analysis is hatched: two patterns on the same ground cannot be read.
 pub fn feature_inks(scene: &SceneModel) -> Vec<Option<PrintInk>> {
-    classes(scene).into_iter().map(|class| class.and_then(|class| class.ink())).collect()
+    let hides_covers = has_hatching(scene);
+    let ink = |class: ShownClass| match class {
+        ShownClass::Cover(_) if hides_covers => None,
+        class => class.ink(),
+    };
+    classes(scene).into_iter().map(|class| class.and_then(ink)).collect()
+}
+
+/// Whether the classes of an analysis are told by hatching.
+fn has_hatching(scene: &SceneModel) -> bool {
+    let rasters = scene.analyses.iter().filter_map(|analysis| analysis.outcome.raster.as_ref());
+    rasters.flat_map(|raster| &raster.classes).any(|class| class.look.hatching != Hatching::None)
 }
 
 /// What the ribbon of each feature is made of, leaving out what lies beside it.

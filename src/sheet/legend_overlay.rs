@@ -1,13 +1,18 @@
 //! Tactical graphics and layers of sight in the legend.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
+use sandtable_analysis::outcome::{Hatching, ValueClass};
 use sandtable_annotate::class_legend::{LegendEntry, LegendSwatch};
-use sandtable_description::words::{GraphicSide, RangeExtent, ViewshedTint};
+use sandtable_base::message::capitalized::capitalized;
+use sandtable_description::words::{GraphicSide, RangeExtent, StylePreset, ViewshedTint};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::FeatureId;
+use sandtable_draw::print_pattern::PrintPattern;
+use sandtable_picture::analysis_look::{class_of, feature_color, feature_noun, hatch_color, shown_classes};
 use sandtable_picture::graphic_colors::{HIDDEN, HIDDEN_LINE, SEEN, SEEN_LINE, graphic_color, side_color};
 use sandtable_render::picture::Rendering;
+use sandtable_scene::analyses::SceneAnalysis;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_symbology::graphic::kind::GraphicTint;
 
@@ -23,7 +28,7 @@ const EDGE: f32 = 0.45;
 
 /// The sides, obstacles and tints that `picture` shows of `scene`, in order.
 pub fn overlay_entries(scene: &SceneModel, picture: &Rendering) -> Vec<LegendEntry> {
-    if scene.graphics.is_empty() && scene.sight.is_empty() {
+    if scene.graphics.is_empty() && scene.sight.is_empty() && scene.analyses.is_empty() {
         return Vec::new();
     }
     let shown: BTreeSet<FeatureId> = picture.features.iter().copied().collect();
@@ -84,7 +89,71 @@ pub fn overlay_entries(scene: &SceneModel, picture: &Rendering) -> Vec<LegendEnt
         let extent = if range.fill == RangeExtent::Seen { " (in sight)" } else { "" };
         entries.push(line(&format!("{name}{extent}"), side_color(range.side)));
     }
+    entries.extend(scene.analyses.iter().flat_map(|analysis| analysis_entries(analysis, scene)));
     entries
+}
+
+/// The classes that a raster holds and that are tinted or hatched, and what the lines of an analysis are.
+fn analysis_entries(analysis: &SceneAnalysis, scene: &SceneModel) -> Vec<LegendEntry> {
+    let mut entries = Vec::new();
+    let is_alone = scene.analyses.iter().filter(|other| other.outcome.raster.is_some()).count() == 1;
+    if let Some(raster) = &analysis.outcome.raster {
+        let classes = shown_classes(raster);
+        let mut is_held = vec![false; classes.len()];
+        for index in 0..raster.values.len() {
+            if let Some(class) = class_of(&classes, raster.values.value(index)) {
+                is_held[class] = true;
+            }
+        }
+        let held = classes.iter().zip(is_held).filter(|(_, is_held)| *is_held);
+        let shown = held.filter(|(class, _)| class.look.tint[3] > 0 || class.look.hatching != Hatching::None);
+        entries.extend(shown.map(|(class, _)| class_entry(class, analysis, is_alone, scene.preset)));
+    }
+    let mut nouns: BTreeMap<&str, Srgba> = BTreeMap::new();
+    for feature in &analysis.outcome.features {
+        nouns.entry(feature_noun(feature)).or_insert_with(|| match scene.preset {
+            Some(StylePreset::Print) => Srgba::opaque(0, 0, 0),
+            _ => feature_color(analysis, feature),
+        });
+    }
+    // Marks of places tell what they are by their names.
+    nouns.retain(|noun, _| !matches!(*noun, "place" | "post" | "outline"));
+    let is_one = nouns.len() == 1;
+    let name = |noun: &str| match is_one {
+        true => analysis.name.clone(),
+        false => format!("{}: {noun}", analysis.name),
+    };
+    entries.extend(nouns.into_iter().map(|(noun, color)| line(&name(noun), color)));
+    entries
+}
+
+fn class_entry(
+    class: &ValueClass,
+    analysis: &SceneAnalysis,
+    is_alone: bool,
+    preset: Option<StylePreset>,
+) -> LegendEntry {
+    let tint = Srgba(class.look.tint);
+    let fill = GROUND.linear().lerp(tint.linear(), tint.alpha());
+    let name = match is_alone {
+        true => capitalized(&class.label),
+        false => format!("{}: {}", analysis.name, class.label),
+    };
+    let pattern = match class.look.hatching {
+        Hatching::None => None,
+        Hatching::Single => Some(PrintPattern::Hatching),
+        Hatching::Crossed => Some(PrintPattern::CrossHatching),
+        Hatching::Dots => Some(PrintPattern::Stipple),
+        Hatching::Level => Some(PrintPattern::Lines),
+    };
+    let swatch = match pattern.filter(|_| preset == Some(StylePreset::Print)) {
+        Some(pattern) => LegendSwatch::Pattern(pattern),
+        None => {
+            let ink = hatch_color(class.look.tint);
+            LegendSwatch::Tint { fill: Srgba::from_linear(fill), ink, pattern }
+        }
+    };
+    LegendEntry { name, swatch }
 }
 
 fn side_name(side: GraphicSide) -> &'static str {

@@ -16,11 +16,14 @@ use sandtable_draw::pixels::Pixels;
 use sandtable_draw::print_pattern::PrintPattern;
 use sandtable_render::cpu::contour_cover::contour_cover;
 use sandtable_render::picture::Rendering;
+use sandtable_scene::feature::FeatureKind;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_view::camera::Camera;
 
 /// The darkest gray of the relief, 0..=1: lighter than what a copier turns black.
 const DARKEST: f32 = 0.66;
+/// The luminance below which what an analysis shows is one of its lines, which are black, and not its tint.
+const MARK: f32 = 0.012;
 /// Gray of the walls of the block.
 const WALL: u8 = 225;
 /// The brightest red of the scene in the night look, and of letters and lines on it, of full red: the scene must not
@@ -68,6 +71,11 @@ fn print(scene: &SceneModel, contours: &[f32], picture: &mut Rendering) {
         let index = features[row as usize * width as usize + column as usize].index()?;
         inks.get(index).copied().flatten()
     };
+    let is_analysis = |feature: FeatureId| {
+        let feature = feature.index().and_then(|index| scene.features.get(index));
+        feature.is_some_and(|feature| feature.kind == FeatureKind::Analysis)
+    };
+    let is_mark = |feature: FeatureId, pixel: Srgba| luminance(pixel.linear()) < MARK && is_analysis(feature);
     let before = &picture.pixels;
     let data: Vec<Srgba> = (0..height)
         .into_par_iter()
@@ -79,6 +87,7 @@ fn print(scene: &SceneModel, contours: &[f32], picture: &mut Rendering) {
                     return match features[index] {
                         FeatureId::NONE => Srgba::WHITE,
                         FeatureId::PLINTH => Srgba::opaque(WALL, WALL, WALL),
+                        feature if is_mark(feature, before.at(column, row)) => BLACK,
                         _ => inked(gray, contours.get(index).copied().unwrap_or_default()),
                     };
                 };

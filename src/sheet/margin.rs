@@ -2,8 +2,10 @@
 
 use glam::{DVec2, UVec2, Vec2, Vec3};
 
+use sandtable_analysis::outcome::{OutcomeTable, PropertyValue};
 use sandtable_annotate::locator::LocatorMap;
 use sandtable_annotate::margin::MarginNotes;
+use sandtable_annotate::margin_table::MarginTable;
 use sandtable_annotate::nice::format_trimmed;
 use sandtable_annotate::norths::ThreeNorths;
 use sandtable_annotate::sheet_frame::SheetFrame;
@@ -39,6 +41,7 @@ pub fn margin_notes(
         classification: furniture.classification.clone(),
         facts: facts(scene, grid),
         sources: sources(scene),
+        tables: tables(scene),
         norths: if is_military { norths(scene, middle) } else { None },
         locator: Some(locator(scene, camera, frame)),
     }
@@ -85,6 +88,22 @@ fn sources(scene: &SceneModel) -> Vec<String> {
     let date = furniture.date.as_ref().map(|date| format!("Information as of {}", date.as_str()));
     let lines = furniture.sources.iter().flatten().cloned().chain(date);
     lines.chain(furniture.notes.iter().flatten().cloned()).collect()
+}
+
+/// The tables of the scene's analyses.
+fn tables(scene: &SceneModel) -> Vec<MarginTable> {
+    let all = scene.analyses.iter().flat_map(|analysis| {
+        analysis.outcome.tables.iter().map(|table| (format!("{}: {}", table.title, analysis.name), table))
+    });
+    all.map(|(title, table)| margin_table(title, table)).collect()
+}
+
+fn margin_table(title: String, table: &OutcomeTable) -> MarginTable {
+    let columns = table.columns.iter().map(|column| (column.name.to_owned(), column.unit.to_owned()));
+    let row = |row: &Vec<PropertyValue>| {
+        row.iter().zip(&table.columns).map(|(value, column)| value.written(column.decimals)).collect()
+    };
+    MarginTable { title, columns: columns.collect(), rows: table.rows.iter().map(row).collect() }
 }
 
 /// The norths at map coordinates; `None` where they have no place on Earth.

@@ -240,7 +240,8 @@ impl LaidGround {
 
     /// Plans symbols and graphics for the camera where it has moved by a share of its height above the ground.
     fn plan_lines(&mut self, scene: &SceneModel, lattice: &Lattice, camera: &Camera) {
-        let has_graphics = !(scene.graphics.is_empty() && scene.sight.is_empty());
+        let has_graphics =
+            !(scene.graphics.is_empty() && scene.sight.is_empty() && scene.analyses.is_empty());
         if scene.symbols.is_empty() && !has_graphics {
             return;
         }
@@ -253,7 +254,7 @@ impl LaidGround {
             self.planned = Some(eye);
             let mut replanned = self.sheets.plan_symbols(scene, camera);
             if has_graphics {
-                replanned.extend(self.sheets.plan_graphics(scene, camera, &ground));
+                replanned.extend(self.sheets.plan_graphics(scene, camera));
             }
             replanned.into_iter().for_each(|patch| self.patches[patch].is_replanned = true);
         }

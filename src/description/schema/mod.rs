@@ -14,6 +14,7 @@ use crate::styles::STYLE_KEY;
 use crate::value::COORDINATES;
 use crate::words::{RampName, WordDeclaration, declarations};
 use sandtable_base::limits::{EXPRESSION_BYTES, INLINE_POINTS, SCENE_LIST, SCENE_TEXT};
+use sandtable_catalog::parameter::ParameterForm;
 
 /// The schema as one JSON object.
 pub fn schema() -> Value {
@@ -201,7 +202,35 @@ fn shape(key: &KeyDeclaration) -> Value {
             json!({ "type": "array", "items": reference(key.name) })
         }
         KeyKind::Styles => styles(),
-        KeyKind::Group(_) => Value::Null,
+        KeyKind::NamedTables(keys) => {
+            let table = Value::Object(object(KeyDeclaration::flattened(keys)));
+            json!({ "type": "object", "additionalProperties": table })
+        }
+        KeyKind::Argument(forms) => match forms {
+            [form] => argument(form),
+            _ => json!({ "anyOf": forms.iter().map(argument).collect::<Vec<_>>() }),
+        },
+        KeyKind::Group(_) | KeyKind::AnalysisArguments => Value::Null,
+    }
+}
+
+/// The values of an argument of an analysis.
+fn argument(form: &ParameterForm) -> Value {
+    match *form {
+        ParameterForm::Number { least, greatest } => number(Bounds::Within(least, greatest)),
+        ParameterForm::Numbers { least, greatest } => {
+            list(number(Bounds::Within(least, greatest)), 1, INLINE_POINTS.count())
+        }
+        ParameterForm::Word(words) => json!({ "enum": words }),
+        ParameterForm::Vehicle | ParameterForm::Ground => text(),
+        ParameterForm::Points { least: least @ 2.. } => {
+            list(reference("point"), least, INLINE_POINTS.count())
+        }
+        ParameterForm::Points { .. } => {
+            json!({ "anyOf": [reference("point"), list(reference("point"), 1, INLINE_POINTS.count())] })
+        }
+        ParameterForm::Line => list(reference("point"), 2, INLINE_POINTS.count()),
+        ParameterForm::Area => list(reference("point"), 3, INLINE_POINTS.count()),
     }
 }
 

@@ -3,6 +3,8 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use sandtable_catalog::parameter::ParameterForm;
+use sandtable_description::bounds::Bounds;
 use sandtable_description::declaration::{KeyDeclaration, KeyKind, Presence};
 use sandtable_description::document::Document;
 use sandtable_description::phases::PHASES_KEY;
@@ -29,10 +31,12 @@ fn add_section(page: &mut String, title: &str, doc: &str, keys: &[&KeyDeclaratio
     let _ =
         writeln!(page, "| key | type | unit | range | default | what it does |\n|---|---|---|---|---|---|");
     keys.iter().for_each(|key| page.push_str(&row(key)));
-    for key in keys.iter().filter(|key| !matches!(key.kind, KeyKind::Group(_)) && !key.inner().is_empty()) {
+    let is_group = |key: &KeyDeclaration| matches!(key.kind, KeyKind::Group(_) | KeyKind::AnalysisArguments);
+    for key in keys.iter().filter(|key| !is_group(key) && !key.inner().is_empty()) {
         let dotted = if dotted.is_empty() { key.name.to_owned() } else { format!("{dotted}.{}", key.name) };
         let (title, common): (_, &[&KeyDeclaration]) = match key.kind {
             KeyKind::Table(_) => (format!("`[{dotted}]`"), &[][..]),
+            KeyKind::NamedTables(_) => (format!("`[{dotted}.NAME]`"), &[][..]),
             KeyKind::StyledTables(_) => (format!("`[[{dotted}]]`"), &[&STYLE_KEY, &PHASES_KEY][..]),
             _ => (format!("`[[{dotted}]]`"), &[][..]),
         };
@@ -46,6 +50,9 @@ fn row(key: &KeyDeclaration) -> String {
         let names: Vec<String> = keys.iter().map(|key| format!("`{}`", key.name)).collect();
         let doc = key.doc();
         return format!("| {} | [source](#source-of-features) | | | | {doc} |\n", names.join(", "));
+    }
+    if matches!(key.kind, KeyKind::AnalysisArguments) {
+        return key.inner().iter().map(row).collect();
     }
     let (kind, range) = kind_and_range(key.kind);
     let default = match key.presence {
@@ -88,7 +95,36 @@ fn kind_and_range(kind: KeyKind) -> (String, String) {
         KeyKind::Selection => any("table or expression"),
         KeyKind::Table(_) => any("table"),
         KeyKind::Tables(_) | KeyKind::StyledTables(_) => any("list of tables"),
-        KeyKind::Group(_) => any(""),
+        KeyKind::NamedTables(_) => any("tables with names of yours"),
+        KeyKind::Argument(forms) => {
+            let (kinds, ranges): (Vec<String>, Vec<String>) = forms.iter().map(form_and_range).unzip();
+            (
+                kinds.join(" or "),
+                ranges.into_iter().filter(|range| !range.is_empty()).collect::<Vec<_>>().join(" or "),
+            )
+        }
+        KeyKind::Group(_) | KeyKind::AnalysisArguments => any(""),
+    }
+}
+
+fn form_and_range(form: &ParameterForm) -> (String, String) {
+    let any = |kind: &str| (kind.to_owned(), String::new());
+    match *form {
+        ParameterForm::Number { least, greatest } => {
+            ("number".into(), Bounds::Within(least, greatest).to_string())
+        }
+        ParameterForm::Numbers { least, greatest } => {
+            ("list of numbers that rise".into(), Bounds::Within(least, greatest).to_string())
+        }
+        ParameterForm::Word(words) => {
+            any(&words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", "))
+        }
+        ParameterForm::Points { least: 2.. } => any("list of points"),
+        ParameterForm::Points { .. } => any("point or list of points"),
+        ParameterForm::Line => any("list of points, a line"),
+        ParameterForm::Area => any("list of points, a ring"),
+        ParameterForm::Vehicle => any("name of a vehicle"),
+        ParameterForm::Ground => any("file, or `source`"),
     }
 }
 

@@ -1,0 +1,253 @@
+//! Analyses on a picture: tints of their classes with hatching, and their points, lines and areas.
+
+use glam::{DVec2, UVec2};
+
+use crate::analysis_look::{class_of, feature_color, hatch_color, is_seen, property, shown_classes};
+use crate::class_hatching::HatchedRaster;
+use crate::graphic_lines::{GraphicPen, GraphicView, LineLook};
+use crate::placed_text::{PlacedCourse, PlacedText};
+use crate::post_tint::{PostTint, TintPlan};
+use crate::sight::{circle, level_text};
+use sandtable_analysis::outcome::{FeatureRole, OutcomeFeature, OutcomeShape, PropertyValue};
+use sandtable_description::words::StylePreset;
+use sandtable_draw::color::Srgba;
+use sandtable_geom::polygon::doubled_area;
+use sandtable_ribbon::area;
+use sandtable_scene::analyses::SceneAnalysis;
+use sandtable_scene::scene_model::SceneModel;
+use sandtable_scene::seen_ground::PostFrame;
+use sandtable_scene::sight_layers::heading;
+
+/// The radius of marks of places in text heights.
+const MARK_EM: f64 = 0.5;
+
+/// The half width and the length of an avenue's head in text heights.
+const HEAD_EM: [f64; 2] = [0.9, 1.7];
+
+/// The share of light that the fill of a site stops, of 255.
+const SITE_ALPHA: u8 = 70;
+
+/// The tints of analyses, in drawing order; they are the same for every camera.
+pub(super) fn tints(scene: &SceneModel) -> Vec<TintPlan> {
+    scene.analyses.iter().filter_map(|analysis| tint(analysis, scene)).collect()
+}
+
+fn tint(analysis: &SceneAnalysis, scene: &SceneModel) -> Option<TintPlan> {
+    let raster = analysis.outcome.raster.as_ref()?;
+    let (classes, lattice) = (shown_classes(raster), &*scene.lattice);
+    let colors: Vec<Option<Srgba>> = classes
+        .iter()
+        .map(|class| Some(Srgba(class.look.tint)).filter(|Srgba([.., alpha])| *alpha > 0))
+        .collect();
+    let color = |index: usize| colors[class_of(&classes, raster.values.value(index))?];
+    let tint = PostTint {
+        size: UVec2::new(lattice.columns(), lattice.rows()),
+        frame: &PostFrame::of(lattice),
+        origin: lattice.origin(),
+        beside: colors.iter().flatten().next().copied().unwrap_or(Srgba::WHITE),
+        feature: analysis.feature,
+    };
+    tint.plan(|index| color(index).is_some(), color)
+}
+
+/// The colors of all that [`draw`] draws.
+pub(super) fn colors(scene: &SceneModel) -> impl Iterator<Item = Srgba> {
+    scene.analyses.iter().flat_map(|analysis| {
+        let outcome = &analysis.outcome;
+        let classes = outcome.raster.iter().flat_map(|raster| shown_classes(raster).into_owned());
+        let of_classes = classes.map(|class| printed(scene, hatch_color(class.look.tint)));
+        let of_features =
+            outcome.features.iter().map(|feature| printed(scene, feature_color(analysis, feature)));
+        of_classes.chain(of_features.flat_map(|color| [color, site_fill(color)]))
+    })
+}
+
+/// The color of lines on a picture: black on one in black on white.
+pub(super) fn printed(scene: &SceneModel, color: Srgba) -> Srgba {
+    if scene.preset == Some(StylePreset::Print) { Srgba::opaque(0, 0, 0) } else { color }
+}
+
+/// The fill of a site with lines of this color.
+fn site_fill(Srgba([red, green, blue, _]): Srgba) -> Srgba {
+    Srgba([red, green, blue, SITE_ALPHA])
+}
+
+/// Draws the hatching and the features of analyses and notes their texts.
+pub(super) fn draw(
+    scene: &SceneModel,
+    view: &GraphicView<'_>,
+    pen: &mut GraphicPen,
+    texts: &mut Vec<PlacedText>,
+) {
+    for analysis in &scene.analyses {
+        if let Some(raster) = &analysis.outcome.raster {
+            let classes = shown_classes(raster);
+            HatchedRaster { raster, classes: &classes, scene, feature: analysis.feature }.draw(view, pen);
+        }
+        let drawing = FeatureDrawing { analysis, view, scene, origin: scene.lattice.origin() };
+        analysis.outcome.features.iter().for_each(|feature| drawing.draw(feature, pen, texts));
+    }
+}
+
+/// The features of an analysis on a picture.
+struct FeatureDrawing<'a> {
+    analysis: &'a SceneAnalysis,
+    view: &'a GraphicView<'a>,
+    scene: &'a SceneModel,
+    /// The map coordinates of world X and Y 0.
+    origin: DVec2,
+}
+
+impl FeatureDrawing<'_> {
+    fn draw(&self, feature: &OutcomeFeature, pen: &mut GraphicPen, texts: &mut Vec<PlacedText>) {
+        let color = printed(self.scene, feature_color(self.analysis, feature));
+        let is_dashed = feature.role == FeatureRole::Link && !is_seen(feature);
+        let look = LineLook { color, is_dashed, width_px: width_px(feature) };
+        match &feature.shape {
+            OutcomeShape::Point(at) => self.draw_point(feature, *at - self.origin, look, pen, texts),
+            OutcomeShape::Line(line) => {
+                let line: Vec<DVec2> = line.iter().map(|at| *at - self.origin).collect();
+                self.draw_line(feature, &line, look, pen, texts);
+            }
+            OutcomeShape::Area(rings) => {
+                let rings: Vec<Vec<DVec2>> =
+                    rings.iter().map(|ring| ring.iter().map(|at| *at - self.origin).collect()).collect();
+                self.draw_area(feature, &rings, look, pen, texts);
+            }
+        }
+    }
+
+    fn stroke(&self, line: &[DVec2], look: LineLook, pen: &mut GraphicPen) {
+        self.view.draw(pen, line, look, self.analysis.feature);
+    }
+
+    fn draw_point(
+        &self,
+        feature: &OutcomeFeature,
+        at: DVec2,
+        look: LineLook,
+        pen: &mut GraphicPen,
+        texts: &mut Vec<PlacedText>,
+    ) {
+        let Some(em_m) = self.view.em_m(&[at]) else { return };
+        let radius_m = MARK_EM * em_m;
+        if feature.role == FeatureRole::Post {
+            let up_deg = self.view.up_azimuth_deg(at);
+            let corner = |turn: u32| at + heading(up_deg + 120.0 * f64::from(turn)) * radius_m * 1.4;
+            self.stroke(&[0, 1, 2, 3].map(corner), look, pen);
+        } else {
+            self.stroke(&circle(at, radius_m), look, pen);
+        }
+        self.name_beside(feature, at, look.color, texts);
+    }
+
+    fn draw_line(
+        &self,
+        feature: &OutcomeFeature,
+        line: &[DVec2],
+        look: LineLook,
+        pen: &mut GraphicPen,
+        texts: &mut Vec<PlacedText>,
+    ) {
+        self.stroke(line, look, pen);
+        if feature.role == FeatureRole::Corridor {
+            self.draw_head(line, look, pen);
+        }
+        match feature.role {
+            FeatureRole::Isoline | FeatureRole::Stream | FeatureRole::FormLine | FeatureRole::Link => {
+                if !feature.name.is_empty() {
+                    let course = PlacedCourse::Once(self.view.pieces(line));
+                    let at = line[line.len() / 2];
+                    let text = self.text(feature, at, look.color);
+                    texts.push(PlacedText { course, ..text });
+                }
+            }
+            _ => self.name_beside(feature, line[line.len() / 2], look.color, texts),
+        }
+    }
+
+    /// The head of an avenue, at its end.
+    fn draw_head(&self, line: &[DVec2], look: LineLook, pen: &mut GraphicPen) {
+        let Some((&tip, before)) = line.split_last() else { return };
+        let Some(em_m) = self.view.em_m(&[tip]) else { return };
+        let [half_m, length_m] = HEAD_EM.map(|em| em * em_m);
+        let from = before.iter().rev().find(|at| at.distance(tip) >= length_m).or(line.first());
+        let Some(along) = from.and_then(|from| (tip - *from).try_normalize()) else { return };
+        let (tip, base) = (tip + along * (length_m * 0.5), tip - along * (length_m * 0.5));
+        let ring = [tip, base + along.perp() * half_m, base - along.perp() * half_m];
+        area::fill(&ring, &[], 1.0, pen.plan(look.color, self.analysis.feature));
+    }
+
+    fn draw_area(
+        &self,
+        feature: &OutcomeFeature,
+        rings: &[Vec<DVec2>],
+        look: LineLook,
+        pen: &mut GraphicPen,
+        texts: &mut Vec<PlacedText>,
+    ) {
+        let Some((outer, holes)) = rings.split_first().filter(|(outer, _)| outer.len() > 2) else { return };
+        if feature.role == FeatureRole::Site {
+            let turned = |ring: &Vec<DVec2>| -> Vec<DVec2> {
+                match doubled_area(ring) < 0.0 {
+                    true => ring.iter().rev().copied().collect(),
+                    false => ring.clone(),
+                }
+            };
+            let holes: Vec<Vec<DVec2>> = holes.iter().map(turned).collect();
+            let fill = site_fill(look.color);
+            area::fill(&turned(outer), &holes, 1.0, pen.ground(fill, self.analysis.feature));
+        }
+        for ring in rings.iter().filter(|ring| ring.len() > 1) {
+            let closed: Vec<DVec2> = ring.iter().chain(ring.first()).copied().collect();
+            self.stroke(&closed, look, pen);
+        }
+        let middle = outer.iter().sum::<DVec2>() / outer.len() as f64;
+        if feature.role != FeatureRole::Site {
+            if !feature.name.is_empty() {
+                texts.push(self.text(feature, middle, look.color));
+            }
+            return;
+        }
+        // A site that is smaller than its mark on the picture has the mark.
+        let em_m = self.view.em_at(middle);
+        if middle.distance(outer[0]) < MARK_EM * em_m {
+            self.stroke(&circle(middle, MARK_EM * em_m), look, pen);
+        }
+        let down = heading(self.view.up_azimuth_deg(middle)) * -em_m;
+        let south = outer.iter().map(|at| (*at - middle).dot(down.normalize_or_zero())).fold(0.0, f64::max);
+        let below = middle + down.normalize_or_zero() * (south - MARK_EM * em_m).max(0.0);
+        self.name_beside(feature, below, look.color, texts);
+    }
+
+    fn text(&self, feature: &OutcomeFeature, at: DVec2, color: Srgba) -> PlacedText {
+        level_text(self.view, at, feature.name.clone(), color, self.analysis.feature)
+    }
+
+    /// The name of a feature below its place.
+    fn name_beside(&self, feature: &OutcomeFeature, at: DVec2, color: Srgba, texts: &mut Vec<PlacedText>) {
+        if feature.name.is_empty() {
+            return;
+        }
+        let down = heading(self.view.up_azimuth_deg(at)) * -self.view.em_at(at);
+        let toward = self.view.on_ground(at + down);
+        texts.push(PlacedText { toward, ..self.text(feature, at, color) });
+    }
+}
+
+/// The width of a feature's lines, in pixels of a picture 1080 lines high.
+fn width_px(feature: &OutcomeFeature) -> f64 {
+    match feature.role {
+        FeatureRole::Place | FeatureRole::Post => 2.4,
+        FeatureRole::Route => 4.2,
+        FeatureRole::Corridor => 5.0,
+        FeatureRole::Isoline => 1.2,
+        FeatureRole::Stream => match property(feature, "order") {
+            Some(PropertyValue::Whole(order)) => 1.0 + 0.7 * (*order).clamp(1, 8) as f64,
+            _ => 1.7,
+        },
+        FeatureRole::FormLine => 2.0,
+        FeatureRole::Site | FeatureRole::Outline => 2.2,
+        FeatureRole::Link => 2.6,
+    }
+}

@@ -1,0 +1,259 @@
+//! Analyses as layers of the scene: the arguments that the document states, and what the land then gives.
+//!
+//! Arguments are checked with all else that the document places; the analyses run once the scene stands, on the land that the
+//! command `analyze` has, by the same functions.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use glam::DVec2;
+
+use crate::assets::Assets;
+use crate::build::build_ground;
+use crate::build_errors::{BuildErrorSink, BuildErrors};
+use crate::builder::SceneBuilder;
+use crate::exact_ground::ExactGround;
+use crate::feature::FeatureKind;
+use crate::feature_origin::FeatureOrigin;
+use crate::land::land_of;
+use crate::scene_file::{OpenSceneError, is_scene_file, open_scene_ground};
+use crate::scene_findings::SceneFindings;
+use crate::scene_model::SceneModel;
+use sandtable_analysis::arguments::{AnalysisArguments, ArgumentValue};
+use sandtable_analysis::error::AnalysisError;
+use sandtable_analysis::land::Land;
+use sandtable_analysis::movement::vehicle::Vehicle;
+use sandtable_analysis::outcome::Outcome;
+use sandtable_analysis::run::run;
+use sandtable_base::message::choice::Choice as _;
+use sandtable_catalog::parameter::ParameterForm;
+use sandtable_description::analyses::{AnalysisTable, DescribedValue, VehicleTable};
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_description::parse::parse;
+use sandtable_description::stated::Stated;
+use sandtable_draw::list::FeatureId;
+use sandtable_geom::position::Position;
+use sandtable_raster::answer::Answer;
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::query::service::HeightService;
+use sandtable_terrain::query::{Interpolation, Surface};
+use sandtable_terrain::stop_flag::StopFlag;
+
+/// The word for the elevation of the scene before its earthworks.
+const SOURCE: &str = "source";
+
+/// An analysis of the scene's land.
+pub struct SceneAnalysis {
+    /// Its name in the legend.
+    pub name: String,
+    /// Its kind and what it was asked, positions in map coordinates.
+    pub arguments: AnalysisArguments,
+    /// Its number among the scene's, from 0.
+    pub number: usize,
+    /// The feature that it is.
+    pub feature: FeatureId,
+    /// What it gives.
+    pub outcome: Outcome,
+}
+
+/// An analysis whose arguments have their places.
+pub(super) struct PlacedAnalysis {
+    arguments: AnalysisArguments,
+    feature: FeatureId,
+    name: String,
+    /// Its number among the document's.
+    table: usize,
+}
+
+/// Places the arguments of the document's analyses. `collected` keeps an error for each position without ground.
+pub(super) fn place(exact: &ExactGround<'_>, collected: &mut SceneBuilder) -> Vec<PlacedAnalysis> {
+    let tables = exact.frame.document.analyses.iter().enumerate();
+    tables.filter_map(|(number, table)| placed(number, table, exact, collected)).collect()
+}
+
+fn placed(
+    number: usize,
+    table: &AnalysisTable,
+    exact: &ExactGround<'_>,
+    collected: &mut SceneBuilder,
+) -> Option<PlacedAnalysis> {
+    let kind = *table.kind;
+    let mut arguments = Some(AnalysisArguments::new(kind));
+    for argument in &table.arguments.0 {
+        let value = match &*argument.value {
+            DescribedValue::Number(number) => Some(ArgumentValue::Number(*number)),
+            DescribedValue::Numbers(numbers) => Some(ArgumentValue::Numbers(numbers.clone())),
+            DescribedValue::Word(word) => Some(ArgumentValue::Word(word.clone())),
+            DescribedValue::Places(places) => {
+                // A corner of an area may lie where there is no ground.
+                let needs_ground = argument.parameter.form != ParameterForm::Area;
+                let placed = places
+                    .iter()
+                    .map(|at| collected.errors.keep(map_position(exact, table, at, needs_ground)));
+                let placed: Vec<Option<DVec2>> = placed.collect();
+                placed.into_iter().collect::<Option<Vec<DVec2>>>().map(ArgumentValue::Points)
+            }
+        };
+        arguments = arguments.zip(value).map(|(all, value)| all.with(argument.parameter.name, value));
+    }
+    let name = table.name.clone().unwrap_or_else(|| kind.title.to_owned());
+    let origin = FeatureOrigin::stated(table.kind.span());
+    let feature = collected.add(FeatureKind::Analysis, name.clone(), origin);
+    Some(PlacedAnalysis { arguments: arguments?, feature, name, table: number })
+}
+
+/// The map coordinates of a stated position.
+fn map_position(
+    exact: &ExactGround<'_>,
+    table: &AnalysisTable,
+    at: &Stated<Position>,
+    needs_ground: bool,
+) -> Result<DVec2, Diagnostic> {
+    let frame = exact.frame;
+    let world = frame.point(at, table.crs.as_ref())?;
+    if needs_ground {
+        frame.on_ground(exact.lattice, at, world)?;
+    }
+    Ok(world + frame.origin)
+}
+
+/// The vehicles of the document. `errors` keeps an error for each whose limits are out of order.
+pub(super) fn vehicles(document: &Document, errors: &mut BuildErrorSink) -> Vec<Vehicle> {
+    let checked = |(name, table): &(Stated<String>, VehicleTable)| {
+        let vehicle = vehicle(name, table);
+        let fault = |fault| document.error(name, format!("[vehicle.{}]: {fault}", name.as_str()));
+        errors.keep(vehicle.check().map_err(fault)).map(|()| vehicle)
+    };
+    document.vehicles.iter().filter_map(checked).collect()
+}
+
+fn vehicle(name: &str, table: &VehicleTable) -> Vehicle {
+    let like = table.like.word();
+    let built_in = Vehicle::built_in(like).unwrap_or_else(|| panic!("{like} is built in"));
+    let mut road_speed_kmh = built_in.road_speed_kmh;
+    let stated = table.road_speed_kmh.iter().flat_map(|speeds| speeds.iter());
+    road_speed_kmh.iter_mut().zip(stated).for_each(|(speed, stated)| *speed = *stated);
+    Vehicle {
+        name: name.to_owned(),
+        slope_up_percent: table.slope_up_percent.unwrap_or(built_in.slope_up_percent),
+        slope_down_percent: table.slope_down_percent.unwrap_or(built_in.slope_down_percent),
+        slope_across_percent: table.slope_across_percent.unwrap_or(built_in.slope_across_percent),
+        speed_kmh: table.speed_kmh.unwrap_or(built_in.speed_kmh),
+        road_speed_kmh,
+        ford_m: table.ford_m.unwrap_or(built_in.ford_m),
+        gap_m: table.gap_m.unwrap_or(built_in.gap_m),
+        step_m: table.step_m.unwrap_or(built_in.step_m),
+        width_m: table.width_m.unwrap_or(built_in.width_m),
+        stem_m: table.stem_m.unwrap_or(built_in.stem_m),
+        mass_t: table.mass_t.unwrap_or(built_in.mass_t),
+        ..built_in
+    }
+}
+
+/// Runs analyses on the land of a scene and notes what they do not know among its findings.
+///
+/// # Errors
+/// Those that have no outcome, each at the key that is at fault.
+pub(super) fn analyze(
+    scene: &mut SceneModel,
+    placed: Vec<PlacedAnalysis>,
+    document: &Document,
+    assets: &Assets,
+    progress: &dyn Fn(&'static str),
+) -> Result<(), BuildErrors> {
+    let (mut errors, mut findings) = (BuildErrorSink::new(&document.source), SceneFindings::new(document));
+    let mut land: Option<Land> = None;
+    let mut layers: &[_] = &[];
+    let mut analyses = Vec::with_capacity(placed.len());
+    for PlacedAnalysis { arguments, feature, name, table } in placed {
+        let (kind, table) = (arguments.kind(), &document.analyses[table]);
+        progress(kind.title);
+        let mut of_kind = match land.take().filter(|_| layers == kind.layers) {
+            Some(land) => land,
+            None => land_of(scene, kind.layers),
+        };
+        layers = kind.layers;
+        let compared = other_ground(table, &of_kind, scene, assets, document);
+        let Some(other) = errors.keep(compared) else { continue };
+        of_kind.other_ground = other;
+        let outcome = run(&of_kind, &arguments, &StopFlag::default());
+        land = Some(of_kind);
+        let Some(outcome) = errors.keep(outcome.map_err(|error| failed(document, table, error))) else {
+            continue;
+        };
+        for note in &outcome.notes {
+            let span = table.kind.span().unwrap_or_default();
+            findings.add(FindingCode::AnalysisLimited, span, format!("{name}: {note}"));
+        }
+        analyses.push(SceneAnalysis { name, arguments, number: analyses.len(), feature, outcome });
+    }
+    errors.finish()?;
+    scene.findings.extend(findings.into_vec());
+    scene.analyses = analyses;
+    Ok(())
+}
+
+/// The error of an analysis at the argument that is at fault, or else at its kind.
+fn failed(document: &Document, table: &AnalysisTable, error: AnalysisError) -> Diagnostic {
+    match error.key().and_then(|key| table.arguments.get(key)) {
+        Some(argument) => document.error(&argument.value, error),
+        None => document.error(&table.kind, error),
+    }
+}
+
+/// The ground that an analysis compares with, at the posts of the land; `None` for one that states none.
+fn other_ground(
+    table: &AnalysisTable,
+    land: &Land,
+    scene: &SceneModel,
+    assets: &Assets,
+    document: &Document,
+) -> Result<Option<Arc<Lattice>>, Diagnostic> {
+    let stated = table.arguments.0.iter().find(|argument| argument.parameter.form == ParameterForm::Ground);
+    let Some(stated) = stated else { return Ok(None) };
+    let DescribedValue::Word(file) = &*stated.value else { return Ok(None) };
+    let of_file;
+    let (heights, surface) = match file.as_str() {
+        SOURCE => (&scene.heights, Surface::Source),
+        _ => {
+            let opened = heights_of(file, assets);
+            of_file = opened.map_err(|error| document.error(&stated.value, error))?;
+            (&of_file, Surface::Ground)
+        }
+    };
+    let lattice = sampled(heights, surface, land).ok_or_else(|| {
+        let message = format!("{file} has no ground at the posts of the scene");
+        document.error(&stated.value, message)
+    })?;
+    Ok(Some(lattice))
+}
+
+/// The heights of an elevation file, or of the ground of another scene file.
+fn heights_of(file: &str, assets: &Assets) -> Result<HeightService, OpenSceneError> {
+    if is_scene_file(Path::new(file)) {
+        return Ok(open_scene_ground(&assets.resolve(file)?, &[])?.heights);
+    }
+    let quoted = serde_json::Value::from(file);
+    let other = parse(file, &format!("[terrain]\ndem = {quoted}\n"))?;
+    Ok(build_ground(&other, assets)?.heights)
+}
+
+/// Heights at the posts of the land; `None` where there are none.
+fn sampled(heights: &HeightService, surface: Surface, land: &Land) -> Option<Arc<Lattice>> {
+    let ground = &land.ground;
+    let (columns, rows) = (ground.columns(), ground.rows());
+    let snapshot = heights.snapshot();
+    let mut answers = vec![Answer::NoData; columns as usize];
+    let mut samples = Vec::with_capacity(columns as usize * rows as usize);
+    for row in 0..rows {
+        let at = (0..columns)
+            .map(|column| land.crs.transform(snapshot.crs(), ground.map_position(Post { column, row })));
+        let at: Vec<DVec2> = at.collect::<Result<_, _>>().ok()?;
+        snapshot.heights(surface, Interpolation::default(), &at, &mut answers);
+        samples
+            .extend(answers.iter().map(|answer| answer.height_m().map_or(f32::NAN, |height| height as f32)));
+    }
+    Lattice::new(ground.origin(), ground.cell(), columns, samples).map(Arc::new).ok()
+}
