@@ -7,7 +7,7 @@ use crate::parameter::{AnalysisParameter, ParameterDefault};
 const LIMITS: &[&str] = &[
     "Water flows over the ground alone: soil, pipes, culverts and bridges are unknown to it, so that an embankment dams a valley.",
     "Posts beside a hole in the data are outlets, as those at the border are: a hole swallows the water that reaches it.",
-    "Flow has eight directions; on level ground and in depressions it takes the way by which the flood came.",
+    "Flow has eight directions; level ground and filled depressions drain away from higher and toward lower ground (Barnes, Lehman and Mulla 2014b), which is a guess at the channels in them.",
 ];
 
 /// The kinds.

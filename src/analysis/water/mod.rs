@@ -1,6 +1,8 @@
 //! Water on the land.
 
+mod directions;
 mod drainage;
+mod fill;
 mod kinds;
 
 use crate::run::KindFunction;
