@@ -8,6 +8,7 @@ use crate::outcome::{
     FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, PostValues,
     PropertyValue, ValueClass,
 };
+use crate::water::carve::{carved, cut_note};
 use crate::water::drainage::{Drainage, drain};
 use crate::water::fill::filled;
 use sandtable_terrain::lattice::Lattice;
@@ -29,9 +30,9 @@ pub(crate) fn fill(
     arguments: &AnalysisArguments,
     stop: &StopFlag,
 ) -> Result<Outcome, AnalysisError> {
-    let filled_m = filled(land.ground.heights(), land.ground.columns() as usize, stop)?;
-    let heights = land.ground.heights();
-    let deep = || filled_m.iter().zip(heights).map(|(filled, height)| filled - height);
+    let (heights, cuts) = carved(land);
+    let filled_m = filled(&heights, land.ground.columns() as usize, stop)?;
+    let deep = || filled_m.iter().zip(heights.iter()).map(|(filled, height)| filled - height);
     let posts = deep().filter(|depth| *depth > 0.0).count();
     let volume_m3 = deep().filter(|depth| *depth > 0.0).map(f64::from).sum::<f64>() * land.ground.cell_m2();
     let figures = vec![
@@ -42,7 +43,7 @@ pub(crate) fn fill(
         "filled" => numbers("filled", "m", filled_m, Vec::new()),
         _ => numbers("depth", "m", deep().collect(), ValueClass::of_rows(DEPTHS)),
     };
-    Ok(Outcome { raster: Some(raster), figures, ..Outcome::default() })
+    Ok(Outcome { raster: Some(raster), figures, notes: cut_note(cuts), ..Outcome::default() })
 }
 
 /// Where water flows: the area that drains through each post, or the direction in which it drains.
@@ -54,8 +55,8 @@ pub(crate) fn flow(
     arguments: &AnalysisArguments,
     stop: &StopFlag,
 ) -> Result<Outcome, AnalysisError> {
-    let drainage = drain(&land.ground, land.ground.heights(), stop)?;
-    let heights = land.ground.heights();
+    let (heights, cuts) = carved(land);
+    let drainage = drain(&land.ground, &heights, stop)?;
     let raster = if arguments.word("show") == "direction" {
         OutcomeRaster {
             name: "direction",
@@ -68,9 +69,9 @@ pub(crate) fn flow(
         let area = |(count, height): (u32, &f32)| {
             if height.is_nan() { f32::NAN } else { (f64::from(count) * land.ground.cell_m2()) as f32 }
         };
-        numbers("drained area", "m²", counts.into_iter().zip(heights).map(area).collect(), Vec::new())
+        numbers("drained area", "m²", counts.into_iter().zip(heights.iter()).map(area).collect(), Vec::new())
     };
-    Ok(Outcome { raster: Some(raster), ..Outcome::default() })
+    Ok(Outcome { raster: Some(raster), notes: cut_note(cuts), ..Outcome::default() })
 }
 
 /// Streams: the ways of water that drain at least an area, from each source or confluence to the next, with Strahler's order.
@@ -82,7 +83,8 @@ pub(crate) fn streams(
     arguments: &AnalysisArguments,
     stop: &StopFlag,
 ) -> Result<Outcome, AnalysisError> {
-    let drainage = drain(&land.ground, land.ground.heights(), stop)?;
+    let (heights, cuts) = carved(land);
+    let drainage = drain(&land.ground, &heights, stop)?;
     let counts = drainage.accumulation();
     let least = (arguments.number("area_m2") / land.ground.cell_m2()).ceil().max(1.0);
     let is_stream = |index: u32| f64::from(counts[index as usize]) >= least;
@@ -126,6 +128,7 @@ pub(crate) fn streams(
     Ok(Outcome {
         features,
         figures: vec![Figure::new("length of streams", total_km, "km")],
+        notes: cut_note(cuts),
         ..Outcome::default()
     })
 }

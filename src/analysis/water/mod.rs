@@ -1,5 +1,6 @@
 //! Water on the land.
 
+mod carve;
 mod directions;
 mod drainage;
 mod fill;
