@@ -29,6 +29,8 @@ pub struct Land {
     pub obstacles_m: Option<Vec<f32>>,
     /// Bridges, culverts and fords.
     pub crossings: Vec<Crossing>,
+    /// Whether the crossings are known although the roads are not asked for.
+    pub knows_crossings: bool,
     /// Walls, fences, banks and cliffs that a vehicle must climb.
     pub steps: Vec<Step>,
     /// The vehicles that the scene describes.
@@ -180,17 +182,19 @@ impl Land {
             woods: None,
             obstacles_m: None,
             crossings: Vec::new(),
+            knows_crossings: false,
             steps: Vec::new(),
             vehicles: Vec::new(),
             other_ground: None,
         }
     }
 
-    /// Whether a layer is known. Crossings are where roads are.
+    /// Whether a layer is known. Crossings are where roads are, or where the land says so.
     pub fn knows(&self, layer: LandPart) -> bool {
         match layer {
             LandPart::Cover => self.cover.is_some(),
-            LandPart::Roads | LandPart::Crossings => self.roads.is_some(),
+            LandPart::Roads => self.roads.is_some(),
+            LandPart::Crossings => self.roads.is_some() || self.knows_crossings,
             LandPart::Water => self.water.is_some(),
             LandPart::Woods => self.woods.is_some(),
             LandPart::Obstacles => self.obstacles_m.is_some(),

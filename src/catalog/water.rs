@@ -1,14 +1,18 @@
 //! Kinds about water.
 
-use crate::kind::{AnalysisFamily, AnalysisKind, AnalysisReach, AnalysisYield};
+use crate::kind::{AnalysisFamily, AnalysisKind, AnalysisReach, AnalysisYield, LandPart};
 use crate::parameter::{AnalysisParameter, ParameterDefault};
 
 /// What no kind of water knows.
 const LIMITS: &[&str] = &[
-    "Water flows over the ground alone: soil, pipes, culverts and bridges are unknown to it, so that an embankment dams a valley.",
+    "Water flows over the ground alone, and nothing soaks into it: soil, pipes and sluices are unknown to it.",
+    "Below bridges and culverts of the scene the ground is cut through, straight from the lowest post within 30 m of the way on one side to that on the other; without them an embankment dams its valley. A road that crosses a stream narrower than 3 m without a bridge is taken to have a culvert.",
     "Posts beside a hole in the data are outlets, as those at the border are: a hole swallows the water that reaches it.",
-    "Flow has eight directions; on level ground and in depressions it takes the way by which the flood came.",
+    "Flow has eight directions; level ground and filled depressions drain away from higher and toward lower ground (Barnes, Lehman and Mulla 2014b), which is a guess at the channels in them.",
 ];
+
+/// The layers that water needs: what lets it through embankments.
+const CROSSINGS: &[LandPart] = &[LandPart::Crossings];
 
 /// The kinds.
 pub(crate) const KINDS: &[AnalysisKind] = &[
@@ -25,7 +29,7 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
         )],
         yields: AnalysisYield::Raster,
         reach: AnalysisReach::Whole,
-        layers: &[],
+        layers: CROSSINGS,
         source: "Barnes, Lehman and Mulla 2014 (Priority-Flood)",
         limits: LIMITS,
     },
@@ -42,7 +46,7 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
         )],
         yields: AnalysisYield::Raster,
         reach: AnalysisReach::Whole,
-        layers: &[],
+        layers: CROSSINGS,
         source: "O'Callaghan and Mark 1984 (D8) on ground filled after Barnes, Lehman and Mulla 2014",
         limits: LIMITS,
     },
@@ -60,7 +64,7 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
         )],
         yields: AnalysisYield::Features,
         reach: AnalysisReach::Whole,
-        layers: &[],
+        layers: CROSSINGS,
         source: "O'Callaghan and Mark 1984; Strahler 1957",
         limits: LIMITS,
     },

@@ -14,6 +14,8 @@ use sandtable_analysis::line_posts::along_line;
 use sandtable_catalog::kind::LandPart;
 use sandtable_description::words::Cover;
 use sandtable_draw::list::{DrawMesh, FeatureId};
+use sandtable_geom::leg_tree::{LegTree, LineLeg};
+use sandtable_geom::segment;
 use sandtable_ribbon::texture::RibbonSurface;
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::post_rect::PostRect;
@@ -24,6 +26,12 @@ const MAIN_M: f64 = 9.0;
 
 /// A track narrower than this is a path, meters.
 const TRACK_M: f64 = 2.0;
+
+/// Streams narrower than this run below roads through a pipe, meters.
+const CULVERT_M: f64 = 3.0;
+
+/// How far a road over a culvert reaches on either side of its stream, meters.
+const CULVERT_ROAD_M: f64 = 10.0;
 
 /// Trees are counted in squares of so many posts: fewer would hold one tree or none.
 const STAND_POSTS: u32 = 5;
@@ -36,7 +44,11 @@ pub fn land_of(scene: &SceneModel, layers: &[LandPart]) -> Land {
         match layer {
             LandPart::Cover => land.cover = covers(scene),
             LandPart::Roads => land.roads = Some(roads(scene)),
-            LandPart::Crossings => land.crossings = bridges(scene),
+            LandPart::Crossings => {
+                land.crossings = bridges(scene);
+                land.crossings.extend(culverts(scene));
+                land.knows_crossings = true;
+            }
             LandPart::Water => land.water = Some(waters(scene)),
             LandPart::Woods => land.woods = Some(stands(scene)),
             LandPart::Obstacles => land.obstacles_m = Some(obstacles(scene)),
@@ -182,6 +194,42 @@ fn bridges(scene: &SceneModel) -> Vec<Crossing> {
         Some(Crossing { name, kind: CrossingKind::Bridge, line, width_m, load_t: None })
     };
     ways(scene).filter_map(bridge).collect()
+}
+
+/// The roads on the ground over streams narrower than [`CULVERT_M`]: each runs through a pipe, which no map shows.
+fn culverts(scene: &SceneModel) -> Vec<Crossing> {
+    let streams: Vec<&LineSymbol> = scene.symbols.iter().filter(|symbol| is_river(symbol)).collect();
+    let legs =
+        streams.iter().enumerate().flat_map(|(index, symbol)| LineLeg::all(index, &symbol.alignment.line));
+    let legs = LegTree::new(legs.collect());
+    if legs.legs().is_empty() {
+        return Vec::new();
+    }
+    let snapshot = scene.heights.snapshot();
+    let is_bridged = |at: DVec2| snapshot.decks().is_some_and(|decks| decks.height_m(at).is_some());
+    let mut culverts = Vec::new();
+    for (RoadLine { name, width_m, .. }, symbol) in ways(scene).filter(|(_, symbol)| symbol.deck.is_none()) {
+        let line = &symbol.alignment.line;
+        for leg in LineLeg::all(0, line) {
+            for near in legs.near(&leg) {
+                let other = &legs.legs()[near];
+                let ends = |leg: &LineLeg| (leg.ends[0], leg.ends[1]);
+                let Some([part, along]) = segment::crossing(ends(&leg), ends(other)) else { continue };
+                let stream_m = streams[other.line]
+                    .alignment
+                    .width
+                    .at(other.stations[0] + (other.stations[1] - other.stations[0]) * along);
+                if stream_m >= CULVERT_M || is_bridged(leg.ends[0].lerp(leg.ends[1], part)) {
+                    continue;
+                }
+                let station_m = leg.stations[0] + (leg.stations[1] - leg.stations[0]) * part;
+                let over = line.between(station_m - CULVERT_ROAD_M, station_m + CULVERT_ROAD_M);
+                let (kind, line) = (CrossingKind::Culvert, on_map(scene, &over));
+                culverts.push(Crossing { name: name.clone(), kind, line, width_m, load_t: None });
+            }
+        }
+    }
+    culverts
 }
 
 /// The meshes of buildings.

@@ -1,116 +1,187 @@
-//! Depressions filled, and where each post drains to: Priority-Flood (Barnes, Lehman and Mulla 2014).
+//! The drained ground: filled, with the direction in which each post drains.
 //!
-//! The flood enters at the border of the land and beside holes, lowest post first. A post that it reaches is filled up to the
-//! post from which it was reached. A post drains to its steepest lower neighbor of the filled ground (O'Callaghan and Mark
-//! 1984); where it has none, on level ground and in filled depressions, to the post from which the flood came. So every post
-//! drains to the border, and each drains to one that was flooded before it.
+//! Every post drains to the border of the land or to a hole, each by others at or below its level, and none twice.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use std::sync::atomic::{AtomicU8, AtomicU32, Ordering};
 
+use rayon::prelude::*;
+
+use super::directions::{NO_DIRECTION, OFF, directions};
+use super::fill::filled;
 use crate::error::AnalysisError;
 use sandtable_terrain::lattice::Lattice;
-use sandtable_terrain::neighbors::{STEPS, neighbors};
+use sandtable_terrain::neighbors::STEPS;
 use sandtable_terrain::stop_flag::StopFlag;
-
-/// A post that drains off the land, or has no data.
-pub(crate) const NO_POST: u32 = u32::MAX;
-
-/// The flood checks whether it may end early once in so many posts.
-const STOP_STRIDE: usize = 1 << 16;
 
 /// The drained ground.
 pub(crate) struct Drainage {
     /// The heights with depressions filled, meters; NaN without data.
     pub filled_m: Vec<f32>,
-    /// The post that each drains to; [`NO_POST`] where it drains off the land.
-    pub to: Vec<u32>,
-    /// The posts with data in the order of the flood: each drains to one before it.
-    pub order: Vec<u32>,
+    /// The direction in which each post drains: 1 to 8 as [`STEPS`] has them, [`OFF`] or [`NO_DIRECTION`].
+    pub codes: Vec<u8>,
+    columns: usize,
+    /// What is added to a post's number by direction.
+    strides: [isize; 9],
 }
 
-/// A height as a number that sorts alike.
-fn sortable(height_m: f32) -> u32 {
-    let bits = (height_m + 0.0).to_bits();
-    if bits >> 31 == 0 { bits | 0x8000_0000 } else { !bits }
-}
-
-/// Fills the ground and finds where it drains to.
+/// Fills the ground with these heights and finds where it drains to.
 ///
 /// # Errors
-/// [`AnalysisError::Stopped`].
-pub(crate) fn drain(ground: &Lattice, stop: &StopFlag) -> Result<Drainage, AnalysisError> {
-    let (columns, rows) = (ground.columns() as usize, ground.rows() as usize);
-    let heights = ground.heights();
-    let mut filled_m = vec![f32::NAN; heights.len()];
-    let mut from = vec![NO_POST; heights.len()];
-    let mut order = Vec::with_capacity(heights.len());
-    let mut is_reached = vec![false; heights.len()];
-    let mut flood = BinaryHeap::new();
-    // Posts of the depression that is being filled: all at its level, so they need no heap.
-    let mut pit = std::collections::VecDeque::new();
-    for (index, &height) in heights.iter().enumerate().filter(|(_, height)| !height.is_nan()) {
-        let beside = neighbors(index, columns, rows);
-        let (mut count, mut is_beside_hole) = (0, false);
-        for (_, other) in beside {
-            count += 1;
-            is_beside_hole |= heights[other].is_nan();
-        }
-        if count < STEPS.len() || is_beside_hole {
-            is_reached[index] = true;
-            filled_m[index] = height;
-            flood.push(Reverse((sortable(height), index as u32)));
-        }
+/// [`AnalysisError::Memory`] and [`AnalysisError::Stopped`].
+pub(crate) fn drain(ground: &Lattice, heights: &[f32], stop: &StopFlag) -> Result<Drainage, AnalysisError> {
+    let columns = ground.columns() as usize;
+    let filled_m = filled(heights, columns, stop)?;
+    let codes = directions(ground, &filled_m, stop)?;
+    let mut strides = [0; 9];
+    for (stride, (east, north)) in strides[1..].iter_mut().zip(STEPS) {
+        *stride = north as isize * columns as isize + east as isize;
     }
-    while let Some(index) = pit.pop_front().or_else(|| flood.pop().map(|Reverse((_, index))| index)) {
-        order.push(index);
-        if order.len() % STOP_STRIDE == 0 && stop.is_stopped() {
-            return Err(AnalysisError::Stopped);
-        }
-        let level = filled_m[index as usize];
-        for (_, other) in neighbors(index as usize, columns, rows) {
-            if is_reached[other] || heights[other].is_nan() {
-                continue;
-            }
-            is_reached[other] = true;
-            from[other] = index;
-            if heights[other] <= level {
-                filled_m[other] = level;
-                pit.push_back(other as u32);
-            } else {
-                filled_m[other] = heights[other];
-                flood.push(Reverse((sortable(heights[other]), other as u32)));
-            }
-        }
-    }
-    let cell = ground.cell();
-    let run_m = STEPS.map(|(east, north)| (cell * glam::DVec2::new(east as f64, north as f64)).length());
-    let to = (0..heights.len()).map(|index| {
-        let own = f64::from(filled_m[index]);
-        let mut steepest = (0.0, from[index]);
-        for (step, other) in neighbors(index, columns, rows) {
-            let fall = (own - f64::from(filled_m[other])) / run_m[step];
-            if fall > steepest.0 {
-                steepest = (fall, other as u32);
-            }
-        }
-        steepest.1
-    });
-    let to = to.collect();
-    Ok(Drainage { filled_m, to, order })
+    Ok(Drainage { filled_m, codes, columns, strides })
 }
 
 impl Drainage {
+    /// The post that a post drains to; `None` where it drains off the land or has no data.
+    #[inline]
+    pub fn to(&self, index: usize) -> Option<usize> {
+        match self.codes[index] {
+            OFF | NO_DIRECTION => None,
+            code => Some(index.wrapping_add_signed(self.strides[usize::from(code)])),
+        }
+    }
+
+    /// Whether a post has data.
+    pub fn has_data(&self, index: usize) -> bool {
+        self.codes[index] != NO_DIRECTION
+    }
+
+    /// The number of neighbors that drain to each post.
+    pub fn entering(&self) -> Vec<u8> {
+        let columns = self.columns;
+        let count = |(row, counts): (usize, &mut [u8])| {
+            // A neighbor at step n drains here where its direction is the opposite of n.
+            for (step, (east, north)) in STEPS.into_iter().enumerate() {
+                let wanted = ((step + 4) % 8 + 1) as u8;
+                let Some(row) = row.checked_add_signed(north as isize) else { continue };
+                let Some(codes) = self.codes.get(row * columns..(row + 1) * columns) else { continue };
+                let (here, there) = match east {
+                    1 => (&mut counts[..columns - 1], &codes[1..]),
+                    0 => (&mut counts[..], codes),
+                    _ => (&mut counts[1..], &codes[..columns - 1]),
+                };
+                for (count, &code) in here.iter_mut().zip(there) {
+                    *count += u8::from(code == wanted);
+                }
+            }
+        };
+        let mut counts = vec![0; self.codes.len()];
+        counts.par_chunks_mut(columns).enumerate().for_each(count);
+        counts
+    }
+
     /// The number of posts that drain through each, itself among them; 0 without data.
     pub fn accumulation(&self) -> Vec<u32> {
-        let mut counts = vec![0_u32; self.to.len()];
-        for &index in self.order.iter().rev() {
-            counts[index as usize] += 1;
-            let to = self.to[index as usize];
-            if to != NO_POST {
-                counts[to as usize] += counts[index as usize];
+        // One more than the neighbors that have not told yet; 0 where nothing enters.
+        let awaited: Vec<AtomicU8> = {
+            let entering = self.entering();
+            entering.into_iter().map(|count| AtomicU8::new(if count == 0 { 0 } else { count + 1 })).collect()
+        };
+        let counts: Vec<AtomicU32> =
+            (0..self.codes.len()).into_par_iter().map(|_| AtomicU32::new(0)).collect();
+        let follow = |start: usize| {
+            let (mut at, mut carried) = (start, 1);
+            loop {
+                counts[at].store(carried, Ordering::Relaxed);
+                let Some(to) = self.to(at) else { return };
+                if awaited[to].load(Ordering::Acquire) == 2 {
+                    carried += counts[to].load(Ordering::Relaxed) + 1;
+                } else {
+                    counts[to].fetch_add(carried, Ordering::Relaxed);
+                    // Whoever tells last goes on.
+                    if awaited[to].fetch_sub(1, Ordering::AcqRel) != 2 {
+                        return;
+                    }
+                    carried = counts[to].load(Ordering::Relaxed) + 1;
+                }
+                at = to;
+            }
+        };
+        (0..self.codes.len()).into_par_iter().with_min_len(1 << 14).for_each(|index| {
+            if self.has_data(index) && awaited[index].load(Ordering::Relaxed) == 0 {
+                follow(index);
+            }
+        });
+        counts.into_iter().map(AtomicU32::into_inner).collect()
+    }
+
+    /// The posts with data, each before the one that it drains to.
+    pub fn downstream(&self) -> Vec<u32> {
+        let mut awaited = self.entering();
+        let mut order = Vec::with_capacity(awaited.len());
+        let sources: Vec<u32> = (0..awaited.len() as u32)
+            .filter(|&index| self.has_data(index as usize) && awaited[index as usize] == 0)
+            .collect();
+        for source in sources {
+            let mut at = source as usize;
+            loop {
+                order.push(at as u32);
+                let Some(to) = self.to(at) else { break };
+                awaited[to] -= 1;
+                if awaited[to] > 0 {
+                    break;
+                }
+                at = to;
             }
         }
-        counts
+        order
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_land::{bare, on_pool};
+    use glam::DVec2;
+
+    fn drained(columns: u32, count: usize, mut seed: u32, steps: u32) -> Drainage {
+        let heights: Vec<f32> = (0..count)
+            .map(|_| {
+                seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                if seed >> 27 == 0 { f32::NAN } else { ((seed >> 12) % steps) as f32 }
+            })
+            .collect();
+        let land = bare((DVec2::ZERO, DVec2::new(10.0, 14.0)), columns, heights);
+        drain(&land.ground, land.ground.heights(), &StopFlag::default()).expect("drained")
+    }
+
+    #[test]
+    fn each_post_comes_before_the_one_that_it_drains_to() {
+        for steps in [2, 16, 60_000] {
+            let drainage = drained(30, 900, 7, steps);
+            let order = drainage.downstream();
+            let mut rank = vec![0; 900];
+            order.iter().enumerate().for_each(|(at, &index)| rank[index as usize] = at);
+            let with_data = (0..900).filter(|&index| drainage.has_data(index)).count();
+            assert_eq!(order.len(), with_data, "{steps} steps: a loop, or a post that is told twice");
+            for &index in &order {
+                let to = drainage.to(index as usize);
+                assert!(to.is_none_or(|to| rank[to] > rank[index as usize]));
+                assert!(to.is_none_or(|to| drainage.filled_m[to] <= drainage.filled_m[index as usize]));
+            }
+        }
+    }
+
+    #[test]
+    fn every_post_is_counted_on_its_whole_way() {
+        let drainage = drained(40, 1600, 5, 9);
+        let mut wanted = vec![0; 1600];
+        for start in (0..1600).filter(|&index| drainage.has_data(index)) {
+            let mut at = Some(start);
+            while let Some(index) = at {
+                wanted[index] += 1;
+                at = drainage.to(index);
+            }
+        }
+        assert_eq!(drainage.accumulation(), wanted);
+        assert_eq!(on_pool(1, || drainage.accumulation()), on_pool(3, || drainage.accumulation()));
     }
 }

@@ -8,9 +8,10 @@ use crate::outcome::{
     FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, PostValues,
     PropertyValue, ValueClass,
 };
-use crate::water::drainage::{Drainage, NO_POST, drain};
+use crate::water::carve::{carved, cut_note};
+use crate::water::drainage::{Drainage, drain};
+use crate::water::fill::filled;
 use sandtable_terrain::lattice::Lattice;
-use sandtable_terrain::neighbors::neighbors;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// The depths from which depressions are classed, meters, with their tints.
@@ -29,9 +30,9 @@ pub(crate) fn fill(
     arguments: &AnalysisArguments,
     stop: &StopFlag,
 ) -> Result<Outcome, AnalysisError> {
-    let Drainage { filled_m, .. } = drain(&land.ground, stop)?;
-    let heights = land.ground.heights();
-    let deep = || filled_m.iter().zip(heights).map(|(filled, height)| filled - height);
+    let (heights, cuts) = carved(land);
+    let filled_m = filled(&heights, land.ground.columns() as usize, stop)?;
+    let deep = || filled_m.iter().zip(heights.iter()).map(|(filled, height)| filled - height);
     let posts = deep().filter(|depth| *depth > 0.0).count();
     let volume_m3 = deep().filter(|depth| *depth > 0.0).map(f64::from).sum::<f64>() * land.ground.cell_m2();
     let figures = vec![
@@ -42,7 +43,7 @@ pub(crate) fn fill(
         "filled" => numbers("filled", "m", filled_m, Vec::new()),
         _ => numbers("depth", "m", deep().collect(), ValueClass::of_rows(DEPTHS)),
     };
-    Ok(Outcome { raster: Some(raster), figures, ..Outcome::default() })
+    Ok(Outcome { raster: Some(raster), figures, notes: cut_note(cuts), ..Outcome::default() })
 }
 
 /// Where water flows: the area that drains through each post, or the direction in which it drains.
@@ -54,29 +55,23 @@ pub(crate) fn flow(
     arguments: &AnalysisArguments,
     stop: &StopFlag,
 ) -> Result<Outcome, AnalysisError> {
-    let drainage = drain(&land.ground, stop)?;
-    let heights = land.ground.heights();
-    let columns = land.ground.columns() as usize;
+    let (heights, cuts) = carved(land);
+    let drainage = drain(&land.ground, &heights, stop)?;
     let raster = if arguments.word("show") == "direction" {
-        let rows = land.ground.rows() as usize;
-        let code = |index: usize| match drainage.to[index] {
-            _ if heights[index].is_nan() => PostValues::NO_CODE,
-            NO_POST => 0,
-            to => {
-                let step = neighbors(index, columns, rows).find(|&(_, other)| other == to as usize);
-                step.map_or(0, |(step, _)| step as u8 + 1)
-            }
-        };
-        let codes = (0..heights.len()).map(code).collect();
-        OutcomeRaster { name: "direction", unit: "", values: PostValues::Codes(codes), classes: Vec::new() }
+        OutcomeRaster {
+            name: "direction",
+            unit: "",
+            values: PostValues::Codes(drainage.codes),
+            classes: Vec::new(),
+        }
     } else {
         let counts = drainage.accumulation();
         let area = |(count, height): (u32, &f32)| {
             if height.is_nan() { f32::NAN } else { (f64::from(count) * land.ground.cell_m2()) as f32 }
         };
-        numbers("drained area", "m²", counts.into_iter().zip(heights).map(area).collect(), Vec::new())
+        numbers("drained area", "m²", counts.into_iter().zip(heights.iter()).map(area).collect(), Vec::new())
     };
-    Ok(Outcome { raster: Some(raster), ..Outcome::default() })
+    Ok(Outcome { raster: Some(raster), notes: cut_note(cuts), ..Outcome::default() })
 }
 
 /// Streams: the ways of water that drain at least an area, from each source or confluence to the next, with Strahler's order.
@@ -88,21 +83,20 @@ pub(crate) fn streams(
     arguments: &AnalysisArguments,
     stop: &StopFlag,
 ) -> Result<Outcome, AnalysisError> {
-    let drainage = drain(&land.ground, stop)?;
+    let (heights, cuts) = carved(land);
+    let drainage = drain(&land.ground, &heights, stop)?;
     let counts = drainage.accumulation();
     let least = (arguments.number("area_m2") / land.ground.cell_m2()).ceil().max(1.0);
     let is_stream = |index: u32| f64::from(counts[index as usize]) >= least;
     // By post: the number of streams that enter it, and Strahler's order with how many of them have it.
     let mut entering = vec![0_u8; counts.len()];
     let mut orders = vec![(0_u8, 0_u8); counts.len()];
-    for &index in drainage.order.iter().rev().filter(|&&index| is_stream(index)) {
+    let order: Vec<u32> = drainage.downstream().into_iter().filter(|&index| is_stream(index)).collect();
+    for &index in &order {
         let order = own_order(orders[index as usize]);
-        let to = drainage.to[index as usize];
-        if to == NO_POST {
-            continue;
-        }
-        entering[to as usize] += 1;
-        let (highest, times) = &mut orders[to as usize];
+        let Some(to) = drainage.to(index as usize) else { continue };
+        entering[to] += 1;
+        let (highest, times) = &mut orders[to];
         match order.cmp(highest) {
             std::cmp::Ordering::Greater => (*highest, *times) = (order, 1),
             std::cmp::Ordering::Equal => *times += 1,
@@ -111,8 +105,8 @@ pub(crate) fn streams(
     }
     let mut features = Vec::new();
     let mut total_km = 0.0;
-    for &start in drainage.order.iter().rev() {
-        if !is_stream(start) || entering[start as usize] == 1 {
+    for &start in &order {
+        if entering[start as usize] == 1 {
             continue;
         }
         let line = reach(start, &drainage, &entering, &land.ground);
@@ -134,6 +128,7 @@ pub(crate) fn streams(
     Ok(Outcome {
         features,
         figures: vec![Figure::new("length of streams", total_km, "km")],
+        notes: cut_note(cuts),
         ..Outcome::default()
     })
 }
@@ -149,15 +144,15 @@ fn own_order((highest, times): (u8, u8)) -> u8 {
 
 /// The positions from a source or confluence down to the next confluence, or to the edge of the land.
 fn reach(start: u32, drainage: &Drainage, entering: &[u8], ground: &Lattice) -> Vec<glam::DVec2> {
-    let place = |index: u32| ground.map_position(ground.post_at(index as usize));
-    let mut line = vec![place(start)];
-    let mut at = drainage.to[start as usize];
-    while at != NO_POST {
-        line.push(place(at));
-        if entering[at as usize] != 1 {
+    let place = |index: usize| ground.map_position(ground.post_at(index));
+    let mut line = vec![place(start as usize)];
+    let mut at = drainage.to(start as usize);
+    while let Some(index) = at {
+        line.push(place(index));
+        if entering[index] != 1 {
             break;
         }
-        at = drainage.to[at as usize];
+        at = drainage.to(index);
     }
     line
 }
@@ -242,31 +237,5 @@ mod tests {
         orders.sort_unstable();
         assert_eq!(orders.last(), Some(&2), "{:?}", outcome.features);
         assert!(orders.iter().filter(|&&order| order == 1).count() >= 2, "{orders:?}");
-    }
-
-    #[test]
-    fn each_post_drains_to_one_that_was_flooded_before_it() {
-        let mut seed = 7_u32;
-        let heights: Vec<f32> = (0..900)
-            .map(|_| {
-                seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                if seed >> 28 == 0 { f32::NAN } else { ((seed >> 24) % 16) as f32 }
-            })
-            .collect();
-        let land = land(30, &heights);
-        let drainage = drain(&land.ground, &StopFlag::default()).expect("drained");
-        let mut rank = vec![usize::MAX; 900];
-        drainage.order.iter().enumerate().for_each(|(at, &index)| rank[index as usize] = at);
-        for &index in &drainage.order {
-            let to = drainage.to[index as usize];
-            assert!(to == NO_POST || rank[to as usize] < rank[index as usize]);
-        }
-        let off: u32 = drainage
-            .order
-            .iter()
-            .filter(|&&index| drainage.to[index as usize] == NO_POST)
-            .map(|&index| drainage.accumulation()[index as usize])
-            .sum();
-        assert_eq!(off as usize, heights.iter().filter(|height| !height.is_nan()).count());
     }
 }

@@ -1,6 +1,9 @@
 //! Water on the land.
 
+mod carve;
+mod directions;
 mod drainage;
+mod fill;
 mod kinds;
 
 use crate::run::KindFunction;
