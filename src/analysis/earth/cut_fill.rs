@@ -1,6 +1,5 @@
 //! Cut and fill between two grounds: the difference at each post, and volumes as prisms on the cells.
 
-use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::arguments::AnalysisArguments;
@@ -10,6 +9,7 @@ use crate::outcome::{
     FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, PostValues,
     ValueClass,
 };
+use crate::ring::{counter_clockwise, holds};
 use sandtable_terrain::lattice::Post;
 use sandtable_terrain::stop_flag::StopFlag;
 
@@ -87,31 +87,6 @@ pub(crate) fn cut_fill(
     })
 }
 
-/// Whether a ring holds a position, by the even-odd rule.
-fn holds(ring: &[DVec2], at: DVec2) -> bool {
-    let mut before = ring.last().copied().unwrap_or(at);
-    let mut is_inside = false;
-    for &corner in ring {
-        if (corner.y > at.y) != (before.y > at.y)
-            && at.x < before.x + (corner.x - before.x) * (at.y - before.y) / (corner.y - before.y)
-        {
-            is_inside = !is_inside;
-        }
-        before = corner;
-    }
-    is_inside
-}
-
-fn counter_clockwise(ring: &[DVec2]) -> Vec<DVec2> {
-    let mut ring = ring.to_vec();
-    let twice_area: f64 =
-        (0..ring.len()).map(|index| ring[index].perp_dot(ring[(index + 1) % ring.len()])).sum();
-    if twice_area < 0.0 {
-        ring.reverse();
-    }
-    ring
-}
-
 fn classes() -> Vec<ValueClass> {
     let rows = [
         (-2e7, "cut", [200, 60, 40, 120], Hatching::Single),
@@ -125,6 +100,7 @@ fn classes() -> Vec<ValueClass> {
 mod tests {
     use super::*;
     use crate::arguments::ArgumentValue;
+    use glam::DVec2;
     use sandtable_geom::crs::Crs;
     use sandtable_terrain::lattice::Lattice;
     use std::sync::Arc;
