@@ -8,7 +8,7 @@ use crate::parameter::{
 };
 
 /// The kinds.
-pub(crate) const KINDS: &[AnalysisKind] = &[LANDING_ZONES, SITES];
+pub(crate) const KINDS: &[AnalysisKind] = &[LANDING_ZONES, DROP_ZONES, SITES];
 
 const LANDING_ZONES: AnalysisKind = AnalysisKind {
     name: "landing-zones",
@@ -67,6 +67,91 @@ const LANDING_ZONES: AnalysisKind = AnalysisKind {
         "Approach and departure are opposite, straight, and in the directions of the eight neighbors of a post alone.",
         "Ground beyond the land and without data counts as clear of obstacles on approach and departure.",
         "Wires and obstacles between posts are unknown, as are wind, dust and the bearing strength of soil.",
+    ],
+};
+
+const DROP_ZONES: AnalysisKind = AnalysisKind {
+    name: "drop-zones",
+    family: AnalysisFamily::Landing,
+    title: "Drop zones",
+    summary: "Where parachutists can be dropped: 0 unsuited, 1 with caution, 2 suited as the center of a zone of the length that they need.",
+    parameters: &[
+        AnalysisParameter::number(
+            "jumpers",
+            (1.0, 1000.0),
+            "",
+            Value("12"),
+            "The jumpers of one pass, from whom the length follows where it is not stated.",
+        ),
+        AnalysisParameter::number(
+            "speed_kn",
+            (10.0, 300.0),
+            "kn",
+            Value("130"),
+            "The aircraft's speed over the ground.",
+        ),
+        AnalysisParameter::number(
+            "interval_s",
+            (0.1, 60.0),
+            "s",
+            Value("1"),
+            "Seconds from one jumper to the next.",
+        ),
+        AnalysisParameter::number(
+            "buffer_m",
+            (0.0, 5000.0),
+            "m",
+            Value("100"),
+            "The ground left free at each end.",
+        ),
+        AnalysisParameter::number(
+            "length_m",
+            (10.0, 50_000.0),
+            "m",
+            Otherwise("that of the jumpers, at least 275"),
+            "The length along the heading.",
+        ),
+        AnalysisParameter::number("width_m", (10.0, 50_000.0), "m", Value("275"), "The width across it."),
+        AnalysisParameter::number(
+            "heading",
+            (0.0, 360.0),
+            "°",
+            Otherwise("the best of every ten degrees"),
+            "The heading of the aircraft, clockwise from north.",
+        ),
+        AnalysisParameter::number(
+            "free_slope",
+            (0.0, 45.0),
+            "°",
+            Value("6"),
+            "The greatest slope without caution.",
+        ),
+        AnalysisParameter::number(
+            "greatest_slope",
+            (0.0, 45.0),
+            "°",
+            Value("17"),
+            "The greatest slope at all.",
+        ),
+        AnalysisParameter::number("count", (0.0, 100.0), "", Value("3"), "The greatest number of zones."),
+        AnalysisParameter::number(
+            "separation_m",
+            (0.0, 100_000.0),
+            "m",
+            Value("100"),
+            "The least distance between two zones along their length.",
+        ),
+    ],
+    yields: AnalysisYield::Both,
+    reach: AnalysisReach::Whole,
+    layers: &[LandPart::Cover, LandPart::Water, LandPart::Woods, LandPart::Obstacles],
+    source: "D = R · T with 200 m of buffers and at least 275 m, after FM 3-21.38 and TC 3-21.220 for drops that the ground \
+             releases; all numbers are defaults, which the unit's own rules overrule",
+    limits: &[
+        "Slopes, covers and widths are this program's defaults, not a manual's; sizes for drops that the aircraft computes and \
+         for loads differ.",
+        "Wind, its drift and the scatter of jumpers are unknown, as are wires and obstacles between posts.",
+        "Water, woods and masts beside a zone count nothing, nor does the way of the aircraft to it.",
     ],
 };
 

@@ -1,7 +1,9 @@
 //! Landing and sites on the land.
 
 pub(crate) mod disk;
+mod drop;
 mod mask;
+mod rectangle;
 mod sites;
 pub mod zones;
 
@@ -9,4 +11,4 @@ use crate::run::KindFunction;
 
 /// The functions of the family's kinds.
 pub(crate) const FUNCTIONS: &[(&str, KindFunction)] =
-    &[("landing-zones", zones::landing_zones), ("sites", sites::sites)];
+    &[("landing-zones", zones::landing_zones), ("sites", sites::sites), ("drop-zones", drop::drop_zones)];
