@@ -18,6 +18,7 @@ pub mod movement;
 pub mod observation;
 pub mod outcome;
 mod place;
+mod ring;
 pub mod run;
 pub mod surface;
 #[cfg(test)]

@@ -37,6 +37,53 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
         ],
     },
     AnalysisKind {
+        name: "haul",
+        family: AnalysisFamily::Earth,
+        title: "Hauls of earth",
+        summary: "Which cut goes to which fill between two states of the ground, so that volume times distance is the least.",
+        parameters: &[
+            AnalysisParameter::plain(
+                "against",
+                ParameterForm::Ground,
+                ParameterDefault::Required,
+                "The ground before: an elevation file, or `source`, the elevation before the scene's earthworks.",
+            ),
+            AnalysisParameter::plain(
+                "area",
+                ParameterForm::Area,
+                ParameterDefault::Otherwise("the whole land"),
+                "The area whose earth is hauled.",
+            ),
+            AnalysisParameter::number(
+                "block_m",
+                (0.1, 100_000.0),
+                "m",
+                ParameterDefault::Otherwise(
+                    "the smallest of 1, 2, 5, 10, … m that gives up to 400 blocks of cut and of fill",
+                ),
+                "The side of the square blocks in which earth is gathered.",
+            ),
+            AnalysisParameter::number(
+                "swell",
+                (0.5, 2.0),
+                "",
+                ParameterDefault::Value("1"),
+                "The volume of fill for each cubic meter of cut. All volumes count as cut.",
+            ),
+        ],
+        yields: AnalysisYield::Features,
+        reach: AnalysisReach::Whole,
+        layers: &[],
+        source: "Stark and Mayer 1983, as the transportation problem of Hitchcock 1941, solved exactly by cheapest paths \
+                 (Edmonds and Karp 1972)",
+        limits: &[
+            "The plan is the best one for the centroids of blocks; a plan for every post differs by at most the figure \
+             `haul, uncertain by blocks`.",
+            "Distances are straight and level: roads, slopes, water and the order of works count nothing.",
+            "What is left over is waste, and what is missing is borrow, both without a haul.",
+        ],
+    },
+    AnalysisKind {
         name: "berms",
         family: AnalysisFamily::Earth,
         title: "Berms and ditches",

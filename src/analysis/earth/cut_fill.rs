@@ -1,6 +1,5 @@
 //! Cut and fill between two grounds: the difference at each post, and volumes as prisms on the cells.
 
-use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::arguments::AnalysisArguments;
@@ -10,6 +9,7 @@ use crate::outcome::{
     FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, PostValues,
     ValueClass,
 };
+use crate::ring::{counter_clockwise, holds};
 use sandtable_terrain::lattice::Post;
 use sandtable_terrain::stop_flag::StopFlag;
 
@@ -22,43 +22,15 @@ pub(crate) fn cut_fill(
     arguments: &AnalysisArguments,
     stop: &StopFlag,
 ) -> Result<Outcome, AnalysisError> {
-    let Some(other) = &land.other_ground else {
-        return Err(AnalysisError::argument(
-            "against",
-            "names no ground; state an elevation file or `source`",
-        ));
-    };
     let ground = &*land.ground;
     let (columns, rows) = (ground.columns() as usize, ground.rows() as usize);
-    if (other.columns(), other.rows()) != (ground.columns(), ground.rows()) {
-        return Err(AnalysisError::argument(
-            "against",
-            "has other posts than the ground; sample it at the same ones",
-        ));
-    }
     let area = arguments.points("area");
-    let mut values = vec![f32::NAN; ground.heights().len()];
-    values.par_chunks_mut(columns).enumerate().for_each(|(row, values)| {
-        if stop.is_stopped() {
-            return;
-        }
-        for (column, value) in values.iter_mut().enumerate() {
-            let post = Post { column: column as u32, row: row as u32 };
-            if area.is_empty() || holds(area, ground.map_position(post)) {
-                let index = row * columns + column;
-                *value = ground.heights()[index] - other.heights()[index];
-            }
-        }
-    });
-    if stop.is_stopped() {
-        return Err(AnalysisError::Stopped);
-    }
+    let values = differences(land, arguments, stop)?;
     // Each row has its sums, which add up in the order of rows: the same bits for any number of threads.
-    let share = |index: usize, count: usize| if index == 0 || index + 1 == count { 0.5 } else { 1.0 };
     let row_sums = |(row, values): (usize, &[f32])| {
         let mut sums = [0.0_f64; 2];
         for (column, &value) in values.iter().enumerate().filter(|(_, value)| !value.is_nan()) {
-            let volume = f64::from(value) * share(column, columns) * share(row, rows);
+            let volume = f64::from(value) * shares(column, columns) * shares(row, rows);
             sums[usize::from(value > 0.0)] += volume.abs();
         }
         sums
@@ -87,29 +59,52 @@ pub(crate) fn cut_fill(
     })
 }
 
-/// Whether a ring holds a position, by the even-odd rule.
-fn holds(ring: &[DVec2], at: DVec2) -> bool {
-    let mut before = ring.last().copied().unwrap_or(at);
-    let mut is_inside = false;
-    for &corner in ring {
-        if (corner.y > at.y) != (before.y > at.y)
-            && at.x < before.x + (corner.x - before.x) * (at.y - before.y) / (corner.y - before.y)
-        {
-            is_inside = !is_inside;
-        }
-        before = corner;
+/// The ground above the other one in meters at each post; NaN outside the area and without data.
+///
+/// # Errors
+/// An argument where there is no other ground, or where it has other posts; [`AnalysisError::Stopped`].
+pub(crate) fn differences(
+    land: &Land,
+    arguments: &AnalysisArguments,
+    stop: &StopFlag,
+) -> Result<Vec<f32>, AnalysisError> {
+    let Some(other) = &land.other_ground else {
+        return Err(AnalysisError::argument(
+            "against",
+            "names no ground; state an elevation file or `source`",
+        ));
+    };
+    let ground = &*land.ground;
+    let columns = ground.columns() as usize;
+    if (other.columns(), other.rows()) != (ground.columns(), ground.rows()) {
+        return Err(AnalysisError::argument(
+            "against",
+            "has other posts than the ground; sample it at the same ones",
+        ));
     }
-    is_inside
+    let area = arguments.points("area");
+    let mut values = vec![f32::NAN; ground.heights().len()];
+    values.par_chunks_mut(columns).enumerate().for_each(|(row, values)| {
+        if stop.is_stopped() {
+            return;
+        }
+        for (column, value) in values.iter_mut().enumerate() {
+            let post = Post { column: column as u32, row: row as u32 };
+            if area.is_empty() || holds(area, ground.map_position(post)) {
+                let index = row * columns + column;
+                *value = ground.heights()[index] - other.heights()[index];
+            }
+        }
+    });
+    if stop.is_stopped() {
+        return Err(AnalysisError::Stopped);
+    }
+    Ok(values)
 }
 
-fn counter_clockwise(ring: &[DVec2]) -> Vec<DVec2> {
-    let mut ring = ring.to_vec();
-    let twice_area: f64 =
-        (0..ring.len()).map(|index| ring[index].perp_dot(ring[(index + 1) % ring.len()])).sum();
-    if twice_area < 0.0 {
-        ring.reverse();
-    }
-    ring
+/// The share of a cell that belongs to a post along a row or column of so many: half of it at the border.
+pub(crate) fn shares(index: usize, count: usize) -> f64 {
+    if index == 0 || index + 1 == count { 0.5 } else { 1.0 }
 }
 
 fn classes() -> Vec<ValueClass> {
@@ -125,6 +120,7 @@ fn classes() -> Vec<ValueClass> {
 mod tests {
     use super::*;
     use crate::arguments::ArgumentValue;
+    use glam::DVec2;
     use sandtable_geom::crs::Crs;
     use sandtable_terrain::lattice::Lattice;
     use std::sync::Arc;

@@ -1,5 +1,6 @@
-//! The greatest value in a disk around each post, by sliding maxima over the rows of the disk.
+//! Disks around posts: the greatest value within each, by sliding maxima over the rows of the disk, and their outlines.
 
+use glam::DVec2;
 use rayon::prelude::*;
 
 /// The rows of a disk: for each row from the center's, how many posts it reaches east and west.
@@ -11,7 +12,7 @@ pub(crate) struct DiskRows {
 impl DiskRows {
     /// The posts within `radius_m` of a post; `cell` is the meters between posts, eastward and northward. No row reaches
     /// beyond `posts`, the size of the land.
-    pub(crate) fn new(radius_m: f64, cell: glam::DVec2, posts: usize) -> Self {
+    pub(crate) fn new(radius_m: f64, cell: DVec2, posts: usize) -> Self {
         let rows = ((radius_m / cell.y) as usize).min(posts);
         let half_width = |row: usize| {
             let north = row as f64 * cell.y;
@@ -68,4 +69,13 @@ fn raise_by_window(maxima: &mut [f32], line: &[f32], half: usize, outside: f32, 
             *value = value.max(outside);
         }
     }
+}
+
+/// A ring of 32 corners around `center`, counter-clockwise.
+pub(crate) fn circle(center: DVec2, radius_m: f64) -> Vec<DVec2> {
+    let corner = |index: u32| {
+        let angle = f64::from(index) * std::f64::consts::TAU / 32.0;
+        center + DVec2::new(libm::cos(angle), libm::sin(angle)) * radius_m
+    };
+    (0..32).map(corner).collect()
 }

@@ -1,9 +1,14 @@
 //! Landing and sites on the land.
 
 pub(crate) mod disk;
+mod drop;
+mod mask;
+mod rectangle;
+mod sites;
 pub mod zones;
 
 use crate::run::KindFunction;
 
 /// The functions of the family's kinds.
-pub(crate) const FUNCTIONS: &[(&str, KindFunction)] = &[("landing-zones", zones::landing_zones)];
+pub(crate) const FUNCTIONS: &[(&str, KindFunction)] =
+    &[("landing-zones", zones::landing_zones), ("sites", sites::sites), ("drop-zones", drop::drop_zones)];

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::disk::DiskRows;
+use super::disk::{DiskRows, circle};
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::{Land, LandCover, WaterKind};
@@ -209,15 +209,6 @@ fn clear_headings(land: &Land, disk: &DiskRows, ratio: f64, length_m: f64) -> Ve
 /// The first heading that is clear with its opposite: the way in and the way out.
 fn axis(headings: u8) -> Option<usize> {
     (0..4).find(|&heading| headings >> heading & 0b1_0001 == 0b1_0001)
-}
-
-/// A ring of 32 corners around `center`, counter-clockwise.
-fn circle(center: DVec2, radius: f64) -> Vec<DVec2> {
-    let corner = |index: u32| {
-        let angle = f64::from(index) * std::f64::consts::TAU / 32.0;
-        center + DVec2::new(libm::cos(angle), libm::sin(angle)) * radius
-    };
-    (0..32).map(corner).collect()
 }
 
 fn classes() -> Vec<ValueClass> {

@@ -7,7 +7,7 @@ mod best_posts;
 mod exposure;
 mod fields_of_fire;
 mod intervisibility;
-mod lookout;
+pub(crate) mod lookout;
 mod masking;
 #[cfg(test)]
 mod test_hills;
