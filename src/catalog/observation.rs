@@ -271,7 +271,8 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
         limits: &[
             BARE_GROUND,
             "A radar's power, clutter and lobes are unknown: a target above the masking height may be missed.",
-            "The range is measured in plan; without one, hidden ground costs a line of sight a post across the land.",
+            "The range is measured in plan.",
+            "Heights are exact to a centimeter or a ten-thousandth of them, whichever is more; where they are 0 is exact.",
         ],
     },
     AnalysisKind {

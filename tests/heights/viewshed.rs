@@ -10,9 +10,13 @@ use sandtable_raster::answer::Answer;
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::sight::Curvature;
 use sandtable_terrain::sight::line::{Sight, SightEnd, line_of_sight};
+use sandtable_terrain::sight::viewshed::rises::{
+    RISE_ERROR_M, RISE_ERROR_SHARE, required_rises, required_rises_by_lines,
+};
 use sandtable_terrain::sight::viewshed::{
     PostVisibility, Sector, Viewshed, ViewshedOptions, viewshed, viewshed_by_lines,
 };
+use sandtable_terrain::stop_flag::StopFlag;
 
 use crate::common::data::data;
 
@@ -76,7 +80,28 @@ fn options(at: DVec2) -> ViewshedOptions {
     }
 }
 
-/// Where the viewshed and the lines differ.
+/// Checks that the rises of targets are those of lines within their error, and above 0 exactly where the viewshed hides; the
+/// greatest difference in meters, and the number of lines.
+fn check_rises(lattice: &Lattice, options: &ViewshedOptions, swept: &Viewshed) -> (f64, usize) {
+    let rises = required_rises(lattice, options, &StopFlag::default()).expect("ground").expect("not stopped");
+    let by_lines = required_rises_by_lines(lattice, options).expect("ground");
+    let mut most_m = 0.0_f64;
+    for (post, &seen) in lattice.posts().zip(&swept.posts) {
+        let index = lattice.index(post);
+        let (rise_m, wanted_m) = (rises.rises_m[index], by_lines.rises_m[index]);
+        let is_known = matches!(seen, PostVisibility::Visible | PostVisibility::Hidden);
+        assert_eq!((!rise_m.is_nan(), rise_m > 0.0), (is_known, seen == PostVisibility::Hidden), "{post:?}");
+        if is_known {
+            let off_m = f64::from((rise_m - wanted_m).abs());
+            let most = RISE_ERROR_M.max(RISE_ERROR_SHARE * f64::from(wanted_m));
+            assert!(off_m <= most, "{post:?}: {rise_m} for {wanted_m}");
+            most_m = most_m.max(off_m);
+        }
+    }
+    (most_m, rises.lines)
+}
+
+/// Where the viewshed and the lines differ; checks the rises too.
 fn differences(lattice: &Lattice, options: &ViewshedOptions) -> Vec<(Post, PostVisibility, PostVisibility)> {
     let (swept, lines) = (viewshed(lattice, options), viewshed_by_lines(lattice, options));
     let (swept, lines) = match (swept, lines) {
@@ -86,6 +111,7 @@ fn differences(lattice: &Lattice, options: &ViewshedOptions) -> Vec<(Post, PostV
             return Vec::new();
         }
     };
+    check_rises(lattice, options, &swept);
     let pairs = lattice.posts().zip(swept.posts.iter().zip(&lines.posts));
     pairs
         .filter(|(_, (swept, line))| swept != line)
@@ -187,8 +213,12 @@ fn holds_on(name: &str, lattice: &Lattice) {
             ..options(ORIGIN)
         };
         let differences = differences(lattice, &options);
-        let lines = viewshed(lattice, &options).map_or(0, |viewshed| viewshed.lines);
-        println!("{name} from {grid}: {lines} of {} posts by line", lattice.heights().len());
+        if let Ok(swept) = viewshed(lattice, &options) {
+            let (most_m, rise_lines) = check_rises(lattice, &options, &swept);
+            let (lines, posts) = (swept.lines, lattice.heights().len());
+            println!("{name} from {grid}: {lines} of {posts} posts by line");
+            println!("  rises: {rise_lines} by line, off by {most_m} m at most");
+        }
         assert!(differences.is_empty(), "{name} {grid}: {} of them", differences.len());
     }
 }

@@ -15,6 +15,7 @@ use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::sight::Curvature;
 use sandtable_terrain::sight::line::SightEnd;
+use sandtable_terrain::sight::viewshed::rises::required_rises;
 use sandtable_terrain::sight::viewshed::{PostVisibility, Viewshed, ViewshedOptions, viewshed_until};
 use sandtable_terrain::stop_flag::StopFlag;
 
@@ -128,17 +129,40 @@ pub(crate) fn look(
     options: &ViewshedOptions,
     stop: &StopFlag,
 ) -> Result<LookoutView, AnalysisError> {
+    let (held, view) = on_posts_around(ground, key, options, |ground| viewshed_until(ground, options, stop))?;
+    Ok(LookoutView { held, view })
+}
+
+/// How far targets on the ground must rise to be seen; see [`required_rises`]. With the posts that were looked at.
+///
+/// # Errors
+/// As for [`look`].
+pub(crate) fn rises(
+    ground: &Lattice,
+    key: &'static str,
+    options: &ViewshedOptions,
+    stop: &StopFlag,
+) -> Result<(PostRect, Vec<f32>), AnalysisError> {
+    let (held, rises) =
+        on_posts_around(ground, key, options, |ground| required_rises(ground, options, stop))?;
+    Ok((held, rises.rises_m))
+}
+
+/// What `task` gives on the ground that holds only posts within range, and which these are.
+fn on_posts_around<T, E>(
+    ground: &Lattice,
+    key: &'static str,
+    options: &ViewshedOptions,
+    task: impl FnOnce(&Lattice) -> Result<Option<T>, E>,
+) -> Result<(PostRect, T), AnalysisError> {
     let at = options.observer.at;
     let place = |_| AnalysisError::Place { key, at, problem: missing_ground(ground, at) };
-    let all = PostRect::all(ground);
     let held = posts_around(ground, at, options.range_m);
-    let view = if held == all {
-        viewshed_until(ground, options, stop)
-    } else {
-        viewshed_until(&ground.holding_only(held), options, stop)
+    let found = match held == PostRect::all(ground) {
+        true => task(ground),
+        false => task(&ground.holding_only(held)),
     };
-    let view = view.map_err(place)?.ok_or(AnalysisError::Stopped)?;
-    Ok(LookoutView { held, view })
+    Ok((held, found.map_err(place)?.ok_or(AnalysisError::Stopped)?))
 }
 
 /// The posts within a range and those of a cell around them.

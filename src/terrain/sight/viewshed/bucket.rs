@@ -87,6 +87,19 @@ pub(super) struct Bucket {
 }
 
 impl Bucket {
+    /// The horizon on a ray of the bucket, and its error.
+    #[inline]
+    pub fn level(&self, u: f64) -> (f64, f64) {
+        let mut piece = &self.pieces[0];
+        for next in &self.pieces[1..] {
+            if next.u > u {
+                break;
+            }
+            piece = next;
+        }
+        (piece.at(u), piece.error)
+    }
+
     /// A lower bound of the horizon up to the bucket's `end`.
     pub fn least(&self, end: f64) -> f64 {
         let ends = self.pieces.iter().skip(1).map(|next| next.u).chain([end]);

@@ -175,19 +175,21 @@ impl Horizon {
     /// of `u`.
     pub fn span(&self, u: f64, v: f64, ray_error: f64) -> Option<HorizonSpan> {
         let bucket = &self.buckets[self.bucket_of(u)];
-        let mut piece = &bucket.pieces[0];
-        for next in &bucket.pieces[1..] {
-            if next.u > u {
-                break;
-            }
-            piece = next;
-        }
-        let at = piece.at(u);
-        let span = HorizonSpan { low: at - piece.error, high: at + piece.error };
+        let (at, error) = bucket.level(u);
+        let span = HorizonSpan { low: at - error, high: at + error };
         let applies = |doubt: &Doubt| {
             u >= doubt.u0 - ray_error && u <= doubt.u1 + ray_error && v <= doubt.v && v >= span.low
         };
         (!bucket.doubts.iter().any(applies)).then_some(span)
+    }
+
+    /// The horizon on the ray `u` and its error, `None` where only a line of sight decides; `ray_error` is the error of `u`.
+    pub fn level(&self, u: f64, ray_error: f64) -> Option<(f64, f64)> {
+        let bucket = &self.buckets[self.bucket_of(u)];
+        let (at, error) = bucket.level(u);
+        let applies =
+            |doubt: &Doubt| u >= doubt.u0 - ray_error && u <= doubt.u1 + ray_error && doubt.v >= at - error;
+        (!bucket.doubts.iter().any(applies)).then_some((at, error))
     }
 
     /// Adds rays that only lines of sight decide.

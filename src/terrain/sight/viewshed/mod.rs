@@ -17,6 +17,7 @@ mod frame;
 mod horizon;
 mod near;
 mod ring;
+pub mod rises;
 mod sector;
 mod step;
 mod sweep;
@@ -33,7 +34,7 @@ use crate::sight::Curvature;
 use crate::sight::crossings::crossings;
 use crate::sight::line::{SightEnd, SightLine};
 use crate::sight::viewshed::frame::OctantFrame;
-use crate::sight::viewshed::sweep::{Margins, PostTests, SweepScene, sweep};
+use crate::sight::viewshed::sweep::{Margins, PostTests, SweepAnswer, SweepScene, sweep};
 use crate::stop_flag::StopFlag;
 use sandtable_raster::answer::Answer;
 
@@ -167,25 +168,10 @@ pub fn viewshed_until(
     let observer = Observer::new(lattice, options)?;
     // Zeros come from the system as they are needed: behind a ridge, nothing is.
     let visible: Vec<AtomicBool> = bytemuck::zeroed_vec(lattice.held_heights().len());
-    let sees = |post: Post| !stop.is_stopped() && observer.reaches(post) && observer.sees(post);
-    let is_clear_near = |post: Post, part: f64| observer.is_clear_up_to(post, part);
-    // Lines from a post meet no diagonal but at its ends.
-    let is_on_post = observer.grid.fract() == DVec2::ZERO;
-    let is_clear_of_diagonals = |post: Post| is_on_post || !observer.may_meet_a_diagonal_at(post);
-    let tests = PostTests {
-        sees: &sees,
-        is_clear_near: &is_clear_near,
-        is_clear_of_diagonals: &is_clear_of_diagonals,
-    };
-    let scene = observer.scene(stop);
-    let wedges = wedges(OctantFrame::all(lattice, observer.grid), &options.sector);
-    let lines = AtomicUsize::new(0);
-    // One by one in their order, so that no thread begins a large one when the others are done.
-    wedges.into_iter().par_bridge().for_each(|(frame, rays)| {
-        lines.fetch_add(sweep(&scene, &frame, rays, tests, &visible), Ordering::Relaxed);
-    });
+    let lines = observer.sweep_all(SweepAnswer::Visible(&visible), stop);
     for post in observer.own_posts() {
-        visible[lattice.index(post)].store(sees(post), Ordering::Relaxed);
+        visible[lattice.index(post)]
+            .store(!stop.is_stopped() && observer.reaches(post) && observer.sees(post), Ordering::Relaxed);
     }
     if stop.is_stopped() {
         return Ok(None);
@@ -194,7 +180,7 @@ pub fn viewshed_until(
         true => seen_posts(visible, lattice.held_heights()),
         false => observer.posts(|index, _| visible[index].load(Ordering::Relaxed)),
     };
-    Ok(Some(Viewshed { lines: lines.into_inner(), ..observer.viewshed(posts) }))
+    Ok(Some(Viewshed { lines, ..observer.viewshed(posts) }))
 }
 
 /// The visibility of posts that are all looked at, from whether they were found in sight, and their heights.
@@ -251,6 +237,28 @@ impl<'a> Observer<'a> {
         let Answer::Height(ground_m) = ground else { return Err(ground) };
         let grid = lattice.grid_from_map(at);
         Ok(Self { lattice, options, grid, eye_m: ground_m + options.observer.above_m })
+    }
+
+    /// Sweeps over all posts; the number of those that a line of sight decided.
+    fn sweep_all(&self, answer: SweepAnswer<'_>, stop: &StopFlag) -> usize {
+        let sees = |post: Post| !stop.is_stopped() && self.reaches(post) && self.sees(post);
+        let is_clear_near = |post: Post, part: f64| self.is_clear_up_to(post, part);
+        // Lines from a post meet no diagonal but at its ends.
+        let is_on_post = self.grid.fract() == DVec2::ZERO;
+        let is_clear_of_diagonals = |post: Post| is_on_post || !self.may_meet_a_diagonal_at(post);
+        let tests = PostTests {
+            sees: &sees,
+            is_clear_near: &is_clear_near,
+            is_clear_of_diagonals: &is_clear_of_diagonals,
+        };
+        let scene = self.scene(stop);
+        let wedges = wedges(OctantFrame::all(self.lattice, self.grid), &self.options.sector);
+        let lines = AtomicUsize::new(0);
+        // One by one in their order, so that no thread begins a large one when the others are done.
+        wedges.into_iter().par_bridge().for_each(|(frame, rays)| {
+            lines.fetch_add(sweep(&scene, &frame, rays, tests, answer), Ordering::Relaxed);
+        });
+        lines.into_inner()
     }
 
     /// Whether the line of sight to the target on a post is clear: the definition.

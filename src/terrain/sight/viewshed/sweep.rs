@@ -27,6 +27,7 @@ use crate::sight::viewshed::bucket::{Doubt, EdgeChain};
 use crate::sight::viewshed::frame::OctantFrame;
 use crate::sight::viewshed::horizon::{Horizon, HorizonEdge, HorizonSpan};
 use crate::sight::viewshed::ring::{BLOCK, PostRing, RingChunk, RingPost, RingView};
+use crate::sight::viewshed::rises::RiseTests;
 use crate::sight::viewshed::step::RingStep;
 use crate::stop_flag::StopFlag;
 
@@ -43,7 +44,7 @@ pub(super) struct Margins {
 
 /// Rings nearer than this many cells are decided by lines of sight: too few posts to gain from a sweep, and the observer's
 /// own cell has edges on all sides.
-const NEAR: f64 = 3.0;
+pub(super) const NEAR: f64 = 3.0;
 
 /// An edge that spans less than this share of the distance between posts, seen from the observer, is nearly along the
 /// rays: its crossing with a ray is ill determined, so it is a doubt and hides nothing.
@@ -83,14 +84,22 @@ pub(super) struct PostTests<'a> {
     pub is_clear_of_diagonals: &'a (dyn Fn(Post) -> bool + Sync),
 }
 
-/// Decides every post of a wedge and marks the visible ones in `visible`, in the order of the lattice's held heights; returns
-/// the number of posts decided by a line of sight.
+/// What a sweep finds, for each post in the order of the lattice's held heights.
+#[derive(Clone, Copy)]
+pub(super) enum SweepAnswer<'a> {
+    /// The visible posts, which it marks.
+    Visible(&'a [AtomicBool]),
+    /// The rises of targets that make them visible.
+    Rises(RiseTests<'a>),
+}
+
+/// Decides every post of a wedge; returns the number of posts decided by a line of sight.
 pub(super) fn sweep(
     scene: &SweepScene<'_>,
     frame: &OctantFrame,
     (from, to): (f64, f64),
     tests: PostTests<'_>,
-    visible: &[AtomicBool],
+    answer: SweepAnswer<'_>,
 ) -> usize {
     let drop = |cell_m: f64| scene.drop_per_square_m * cell_m * cell_m;
     let mut sweep = Sweep {
@@ -99,7 +108,7 @@ pub(super) fn sweep(
         from,
         to,
         tests,
-        visible,
+        answer,
         horizon: Horizon::new(from, to),
         near: f64::NEG_INFINITY,
         bend: CurvatureDrop { along: drop(frame.ring_cell_m), across: drop(frame.cross_cell_m) },
@@ -125,9 +134,9 @@ pub(super) struct Sweep<'a> {
     pub frame: &'a OctantFrame,
     from: f64,
     to: f64,
-    tests: PostTests<'a>,
-    visible: &'a [AtomicBool],
-    horizon: Horizon,
+    pub tests: PostTests<'a>,
+    answer: SweepAnswer<'a>,
+    pub horizon: Horizon,
     /// An upper bound of `v` of the ground nearer than [`NEAREST`].
     pub near: f64,
     pub bend: CurvatureDrop,
@@ -136,7 +145,7 @@ pub(super) struct Sweep<'a> {
     pub ring: PostRing,
     step: RingStep,
     /// The number of posts decided by a line of sight.
-    lines: usize,
+    pub lines: usize,
 }
 
 /// Whether the corners of a cell are prominent: `a` and `d` on the ring before, `b` and `c` on the ring, as they join end to
@@ -183,7 +192,7 @@ impl Sweep<'_> {
                 self.ring.any_prominent = true;
                 self.ring.is_prominent.fill(true);
                 if ring > 0 {
-                    self.decide();
+                    self.answer(true);
                     self.near_strip(ring);
                 }
                 continue;
@@ -195,9 +204,7 @@ impl Sweep<'_> {
             } else {
                 self.step.measure(&mut self.before, &self.ring, self.frame.parity(ring - 1));
             }
-            if any_target || self.ring.x <= NEAR {
-                self.decide();
-            }
+            self.answer(any_target || self.ring.x <= NEAR);
             if self.before.x < NEAR {
                 self.near_strip(ring);
             } else if self.before.any_prominent || self.ring.any_prominent {
@@ -280,8 +287,22 @@ impl Sweep<'_> {
         any_target
     }
 
+    /// Finds what is asked of the posts of the ring; `any_target` is false where no target on them is visible.
+    fn answer(&mut self, any_target: bool) {
+        match self.answer {
+            SweepAnswer::Visible(visible) if any_target => self.decide(visible),
+            SweepAnswer::Visible(_) => {}
+            SweepAnswer::Rises(found) => self.find_rises(found),
+        }
+    }
+
+    /// Whether a ray belongs to the wedge; a border belongs to the wedge that it begins.
+    pub fn is_inside(&self, u: f64) -> bool {
+        u >= self.from && (u < self.to || self.to == 1.0 && u <= LAST)
+    }
+
     /// Decides the posts of the ring.
-    fn decide(&mut self) {
+    fn decide(&mut self, visible: &[AtomicBool]) {
         let lift = self.scene.target_m / self.ring.x;
         let is_near = self.ring.x <= NEAR;
         let floor = std::mem::take(self.horizon.floor());
@@ -304,22 +325,20 @@ impl Sweep<'_> {
                     let floor = floor[((target.u * count) as usize).min(last)];
                     !is_near && target.v + self.ring.error < floor
                 };
-                // A border belongs to the wedge that it begins.
-                let is_inside =
-                    target.u >= self.from && (target.u < self.to || self.to == 1.0 && target.u <= LAST);
+                let is_inside = self.is_inside(target.u);
                 // NaN, where it is not known, hides nothing.
                 let is_behind = is_measured && self.step.rise[index] + lift < hidden;
                 // A prominent post is known not to be low.
                 let is_open = !is_behind && is_inside && !target.v.is_nan() && (is_ground || !is_low());
                 if is_open {
-                    self.decide_post(index, target);
+                    self.decide_post(index, target, visible);
                 }
             }
         }
         *self.horizon.floor() = floor;
     }
 
-    fn decide_post(&mut self, index: usize, target: RingPost) {
+    fn decide_post(&mut self, index: usize, target: RingPost, visible: &[AtomicBool]) {
         let post = self.frame.post(self.ring.number, self.ring.first + index as i64);
         let decided = if self.ring.x <= NEAR { None } else { self.is_visible(index, target, post) };
         let decided = decided.filter(|&is_visible| !is_visible || (self.tests.is_clear_of_diagonals)(post));
@@ -328,7 +347,7 @@ impl Sweep<'_> {
             (self.tests.sees)(post)
         });
         if is_visible {
-            self.visible[self.scene.lattice.index(post)].store(true, Ordering::Relaxed);
+            visible[self.scene.lattice.index(post)].store(true, Ordering::Relaxed);
         }
     }
 
@@ -361,12 +380,19 @@ impl Sweep<'_> {
 
     /// `v` on the diagonal of the last cell before a post at the post's ray; NaN where the diagonal ends at the post.
     fn last_diagonal(&self, index: usize, u: f64) -> f64 {
+        if self.before.x >= NEAR && index > 0 && !self.step.bulge[index - 1].is_nan() {
+            let j = self.ring.first + index as i64;
+            let ends_here = (self.frame.parity(self.ring.number) + j) % 2 == 0;
+            return if ends_here { f64::NAN } else { self.ring.v[index] - self.step.bulge[index - 1] };
+        }
+        self.far_diagonal(index, u)
+    }
+
+    /// [`Sweep::last_diagonal`] of any post, whether it was compared with the ring before or not.
+    pub fn far_diagonal(&self, index: usize, u: f64) -> f64 {
         let j = self.ring.first + index as i64;
         if (self.frame.parity(self.ring.number) + j) % 2 == 0 {
             return f64::NAN;
-        }
-        if self.before.x >= NEAR && index > 0 && !self.step.bulge[index - 1].is_nan() {
-            return self.ring.v[index] - self.step.bulge[index - 1];
         }
         match (self.before.get(j), self.ring.get(j - 1)) {
             (Some(near), Some(far)) => far.v + (near.v - far.v) * ((u - far.u) / (near.u - far.u)),
