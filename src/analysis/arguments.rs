@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use sandtable_catalog::kind::AnalysisKind;
+use sandtable_catalog::kind::{AnalysisKind, AnalysisReach};
 use sandtable_catalog::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
 
 /// The arguments of an analysis of a kind. What is not stated has the catalog's default.
@@ -89,6 +89,18 @@ impl AnalysisArguments {
         }
     }
 
+    /// From how many posts away the land has an effect on a value, where posts lie `cell` meters apart; `None` where it has one
+    /// from everywhere.
+    pub fn reach_posts(&self, cell: DVec2) -> Option<u32> {
+        let posts = |reach_m: f64| ((reach_m / cell.min_element()).ceil() as u32).saturating_add(1);
+        match self.kind.reach {
+            AnalysisReach::Posts(posts) => Some(posts),
+            AnalysisReach::PostsBy(name) => Some(posts(self.number(name) * cell.max_element())),
+            AnalysisReach::MetersBy(name) => Some(posts(self.number(name))),
+            AnalysisReach::Whole => None,
+        }
+    }
+
     fn get(&self, name: &str) -> Option<ArgumentValue> {
         let stated = self.stated.iter().find(|&&(stated, _)| stated == name);
         stated.map(|(_, value)| value.clone()).or_else(|| default(self.kind.parameter(name)?))
@@ -110,6 +122,8 @@ fn default(parameter: &AnalysisParameter) -> Option<ArgumentValue> {
         ParameterForm::Word(_) | ParameterForm::Vehicle | ParameterForm::Ground => {
             ArgumentValue::Word(text.to_owned())
         }
-        ParameterForm::Points { .. } | ParameterForm::Line | ParameterForm::Area => return None,
+        ParameterForm::Points { .. } | ParameterForm::Line | ParameterForm::Area | ParameterForm::Extent => {
+            return None;
+        }
     })
 }

@@ -3,8 +3,10 @@
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
-use crate::outcome::Outcome;
+use crate::outcome::{Figure, Outcome, OutcomeRaster, PostValues};
 use crate::{earth, landing, movement, observation, surface, water};
+use sandtable_catalog::kind::AnalysisKind;
+use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// The function of a kind.
@@ -39,6 +41,15 @@ pub fn run(land: &Land, arguments: &AnalysisArguments, stop: &StopFlag) -> Resul
     Ok(outcome)
 }
 
+/// The figures of a kind that can be parted, from its raster on the posts of `ground`: of a part those of the part.
+pub fn raster_figures(kind: &AnalysisKind, raster: &OutcomeRaster, ground: &Lattice) -> Vec<Figure> {
+    match (kind.name, &raster.values) {
+        ("obstacles", PostValues::Codes(codes)) => movement::obstacles::code_figures(codes, ground),
+        ("speed", PostValues::Numbers(values)) => movement::obstacles::speed_figures(values),
+        _ => Vec::new(),
+    }
+}
+
 fn function(name: &str) -> Option<KindFunction> {
     FAMILIES.into_iter().flatten().find(|&&(kind, _)| kind == name).map(|&(_, function)| function)
 }
@@ -52,9 +63,9 @@ mod tests {
     use super::*;
     use crate::arguments::ArgumentValue;
     use crate::test_land::shaped;
-    use sandtable_catalog::kind::{AnalysisReach, AnalysisYield};
+    use sandtable_catalog::kind::AnalysisYield;
     use sandtable_catalog::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
-    use sandtable_terrain::lattice::{Lattice, Post};
+    use sandtable_terrain::lattice::Post;
     use sandtable_terrain::post_rect::PostRect;
 
     #[test]
@@ -71,22 +82,31 @@ mod tests {
             (21, 13) => f32::NAN,
             _ => ((column * 31 + row * 17 + column * row) % 23) as f32 * 1.7,
         };
-        let whole = shaped(48, 40, 10.0, heights);
+        let square = shaped(48, 40, 10.0, heights);
+        let cell = DVec2::new(10.0, 14.0);
+        let oblong = Lattice::new(DVec2::ZERO, cell, 48, square.ground.heights().to_vec()).expect("sound");
+        let oblong = Land { ground: Arc::new(oblong), ..square.clone() };
+        for whole in [square, oblong] {
+            check_parts(&whole);
+        }
+    }
+
+    fn check_parts(whole: &Land) {
         let (first, last) = (Post { column: 17, row: 12 }, Post { column: 27, row: 24 });
-        let mut kinds = 0;
-        for kind in sandtable_catalog::kinds() {
-            let arguments = AnalysisArguments::new(kind);
-            let reach = match kind.reach {
-                AnalysisReach::Posts(posts) => posts,
-                AnalysisReach::PostsBy(name) => arguments.number(name) as u32,
-                AnalysisReach::MetersBy(_) | AnalysisReach::Whole => continue,
-            };
-            kinds += 1;
+        let mut tried = 0;
+        for (kind, arguments) in
+            sandtable_catalog::kinds().flat_map(|kind| variants(kind).map(move |of| (kind, of)))
+        {
+            let Some(reach) = arguments.reach_posts(whole.ground.cell()) else { continue };
+            tried += 1;
             let around = PostRect { first, last }.grown((reach, reach), &whole.ground);
             let part = whole.ground.holding_only(around).cut_to_held().expect("more than two posts a side");
             let values = |ground: Arc<Lattice>| {
                 let land = Land { ground, ..whole.clone() };
-                run(&land, &arguments, &StopFlag::default()).expect(kind.name).raster.expect(kind.name).values
+                let outcome = run(&land, &arguments, &StopFlag::default()).expect(kind.name);
+                let raster = outcome.raster.expect(kind.name);
+                assert_eq!(raster_figures(kind, &raster, &land.ground), outcome.figures, "{}", kind.name);
+                raster.values
             };
             let (of_whole, of_part) = (values(whole.ground.clone()), values(Arc::new(part.clone())));
             for post in (PostRect { first, last }).posts() {
@@ -97,7 +117,32 @@ mod tests {
                 assert_eq!(found.to_bits(), wanted.to_bits(), "{} at {post:?}", kind.name);
             }
         }
-        assert!(kinds >= 6, "{kinds} kinds");
+        assert!(tried >= 15, "{tried}");
+    }
+
+    /// The defaults of a kind, then each of its words alone, and its radius at 3 where it has one.
+    fn variants(kind: &'static AnalysisKind) -> impl Iterator<Item = AnalysisArguments> {
+        let of = |parameter: &'static AnalysisParameter| -> Vec<ArgumentValue> {
+            match parameter.form {
+                ParameterForm::Word(words) => {
+                    words.iter().map(|&word| ArgumentValue::Word(word.to_owned())).collect()
+                }
+                _ if parameter.name == "radius" => vec![ArgumentValue::Number(3.0)],
+                _ => Vec::new(),
+            }
+        };
+        let stated = kind
+            .parameters
+            .iter()
+            .flat_map(move |parameter| of(parameter).into_iter().map(move |value| (parameter.name, value)));
+        // `tri` and the ranges of others allow no other radius than their own.
+        let fits = move |(name, _): &(&str, ArgumentValue)| kind.name != "ruggedness" || *name != "radius";
+        let with = move |(name, value)| AnalysisArguments::new(kind).with(name, value);
+        let wide = (kind.name == "ruggedness").then(|| {
+            let vrm = ArgumentValue::Word("vrm".to_owned());
+            AnalysisArguments::new(kind).with("measure", vrm).with("radius", ArgumentValue::Number(3.0))
+        });
+        std::iter::once(AnalysisArguments::new(kind)).chain(stated.filter(fits).map(with)).chain(wide)
     }
 
     #[test]

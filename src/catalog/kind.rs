@@ -1,6 +1,6 @@
 //! A kind of analysis.
 
-use crate::parameter::AnalysisParameter;
+use crate::parameter::{AnalysisParameter, EXTENT};
 
 /// A kind of analysis: a function from the land to a raster, features or a table.
 #[derive(Debug)]
@@ -64,11 +64,11 @@ pub enum AnalysisYield {
 pub enum AnalysisReach {
     /// From at most so many posts.
     Posts(u32),
-    /// From as many posts as this parameter says.
+    /// From as many of the longer sides of a cell as this parameter says, and a post more.
     PostsBy(&'static str),
     /// From as many meters as this parameter says, and the posts of one cell more.
     MetersBy(&'static str),
-    /// From everywhere: the land cannot be parted.
+    /// From everywhere: the land cannot be parted, and an extent cuts it.
     Whole,
 }
 
@@ -104,7 +104,12 @@ impl LandPart {
 }
 
 impl AnalysisKind {
-    /// The parameter of this name; `None` where the kind has none.
+    /// Its own parameters, then those that every kind has.
+    pub fn all_parameters(&self) -> impl Iterator<Item = &'static AnalysisParameter> {
+        self.parameters.iter().chain([&EXTENT])
+    }
+
+    /// Its own parameter of this name; `None` where the kind has none.
     pub fn parameter(&self, name: &str) -> Option<&'static AnalysisParameter> {
         self.parameters.iter().find(|parameter| parameter.name == name)
     }

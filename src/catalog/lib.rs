@@ -38,6 +38,7 @@ pub fn kind(name: &str) -> Option<&'static AnalysisKind> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kind::{AnalysisReach, AnalysisYield};
     use crate::parameter::{ParameterDefault, ParameterForm};
     use std::collections::BTreeSet;
 
@@ -47,7 +48,7 @@ mod tests {
         for kind in kinds() {
             assert!(names.insert(kind.name), "{} is there twice", kind.name);
             let mut parameters = BTreeSet::new();
-            for parameter in kind.parameters {
+            for parameter in kind.all_parameters() {
                 assert!(
                     parameters.insert(parameter.name),
                     "{} of {} is there twice",
@@ -63,6 +64,14 @@ mod tests {
         for kind in kinds() {
             assert!(!kind.source.is_empty() && !kind.limits.is_empty(), "{}", kind.name);
             assert!(kind.summary.ends_with('.'), "{}: a sentence", kind.name);
+        }
+    }
+
+    #[test]
+    fn what_can_be_parted_gives_a_raster_alone() {
+        // Features of two parts would meet at their border.
+        for kind in kinds().filter(|kind| kind.reach != AnalysisReach::Whole) {
+            assert_eq!(kind.yields, AnalysisYield::Raster, "{}", kind.name);
         }
     }
 

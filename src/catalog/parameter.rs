@@ -47,7 +47,17 @@ pub enum ParameterForm {
     Vehicle,
     /// Another ground to compare with: an elevation file, or `source`, the elevation before the scene's earthworks.
     Ground,
+    /// A part of the land: `x0,y0,x1,y1`, two positions at opposite corners, or an area of three positions or more.
+    Extent,
 }
+
+/// The parameter of every kind that limits an analysis to a part of the land.
+pub const EXTENT: AnalysisParameter = AnalysisParameter::plain(
+    "extent",
+    ParameterForm::Extent,
+    ParameterDefault::Otherwise("the whole land"),
+    "The part of the land that the answer is about: x0,y0,x1,y1, two positions at opposite corners, or an area of three or more.",
+);
 
 /// What holds where a parameter is not stated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

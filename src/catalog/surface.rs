@@ -131,8 +131,7 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
             ),
         ],
         yields: AnalysisYield::Raster,
-        // Normals reach a post farther than the square.
-        reach: AnalysisReach::Whole,
+        reach: AnalysisReach::PostsBy("radius"),
         layers: &[],
         source: "Riley, DeGloria and Elliot 1999 (TRI); Weiss 2001 (TPI); Sappington, Longshore and Thompson 2007 (VRM); \
                  Wilson et al. 2007 (roughness)",

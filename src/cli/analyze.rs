@@ -72,7 +72,7 @@ impl FromArgMatches for AnalyzeCommand {
         Ok(Self {
             kind,
             dataset: DatasetArguments::from_arg_matches(matches)?,
-            arguments: kind.parameters.iter().filter_map(written).collect(),
+            arguments: kind.all_parameters().filter_map(written).collect(),
             output: matches.get_one::<PathBuf>("output").cloned(),
         })
     }
@@ -94,7 +94,7 @@ fn kind_command(kind: &'static AnalysisKind) -> Command {
         .value_name("OUT")
         .value_parser(clap::value_parser!(PathBuf))
         .help("Write the answer to this file: a raster as .tif or .asc, features as .gpkg or .geojson");
-    kind.parameters.iter().fold(command, |command, parameter| command.arg(option(parameter))).arg(output)
+    kind.all_parameters().fold(command, |command, parameter| command.arg(option(parameter))).arg(output)
 }
 
 /// The option of a parameter.
@@ -123,6 +123,7 @@ fn value_name(parameter: &AnalysisParameter) -> String {
         ParameterForm::Points { .. } | ParameterForm::Line | ParameterForm::Area => "X,Y;X,Y…".into(),
         ParameterForm::Vehicle => "VEHICLE".into(),
         ParameterForm::Ground => "FILE|source".into(),
+        ParameterForm::Extent => "X,Y,X,Y".into(),
     }
 }
 
@@ -167,7 +168,7 @@ fn analyzed(command: &AnalyzeCommand, steps: &StepTimer) -> Result<Analyzed, Cli
     steps.begin("analyzing");
     let land = match &scene {
         Some(scene) => land_of(scene, kind.layers),
-        None => bare_land(&dataset)?,
+        None => bare_land(&dataset, (kind, arguments), &crs)?,
     };
     Ok(analyze(&dataset, land, (*kind, arguments), &crs, &StopFlag::default())?)
 }

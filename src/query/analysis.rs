@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
+use crate::analysis_extent::{LandExtent, ground_part, land_part, raster_part};
 use crate::dataset::{Dataset, DatasetOptions, OpenError, QueryError};
 use crate::ground::GroundError;
 use crate::positions::{PositionArgument, position_list};
@@ -14,13 +15,14 @@ use sandtable_analysis::arguments::{AnalysisArguments, ArgumentValue};
 use sandtable_analysis::error::AnalysisError;
 use sandtable_analysis::land::Land;
 use sandtable_analysis::outcome::{Outcome, OutcomeRaster, PostValues};
-use sandtable_analysis::run::run;
+use sandtable_analysis::run::{raster_figures, run};
 use sandtable_base::message::suggest::{quoted, remedy};
 use sandtable_catalog::kind::AnalysisKind;
-use sandtable_catalog::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
+use sandtable_catalog::parameter::{AnalysisParameter, EXTENT, ParameterDefault, ParameterForm};
 use sandtable_geom::crs::{Crs, CrsError};
 use sandtable_raster::raster::{Raster, Samples};
-use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::lattice::{Lattice, LatticeError, Post};
+use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::query::{Interpolation, Surface};
 use sandtable_terrain::stop_flag::StopFlag;
 
@@ -67,34 +69,104 @@ pub struct Analyzed {
     pub outcome: Outcome,
 }
 
-/// The land of a dataset without what lies on its ground.
+/// The land of a dataset without what lies on its ground: as much of it as the analysis needs, where that is read from disk.
 ///
 /// # Errors
-/// [`AnalyzeError::Query`] and [`AnalyzeError::Ground`].
-pub fn bare_land(dataset: &Dataset) -> Result<Land, AnalyzeError> {
-    let ground = dataset.ground(&GroundReach { crs: &dataset.crs(), at: &[], around_m: f64::INFINITY })?;
-    Ok(Land::bare(ground.held_lattice()?, ground.crs.clone()))
+/// [`AnalyzeError::Query`], [`AnalyzeError::Ground`], and [`AnalyzeError::Argument`] of an extent.
+pub fn bare_land(
+    dataset: &Dataset,
+    (kind, arguments): (&'static AnalysisKind, &[WrittenArgument]),
+    crs: &Crs,
+) -> Result<Land, AnalyzeError> {
+    // A few posts, or all where they are in memory.
+    let frame = dataset.ground(&GroundReach { crs: &dataset.crs(), at: &[], around_m: 0.0 })?;
+    if frame.lattice.holds_all() {
+        return Ok(Land::bare(frame.lattice, frame.crs));
+    }
+    let posts = match extent(arguments, crs, &frame.crs)? {
+        None => PostRect::all(&frame.lattice),
+        Some(extent) => {
+            let arguments = read(kind, arguments, crs, &frame.crs)?;
+            extent.needed_posts(&arguments, &frame.lattice).map_err(of_extent)?
+        }
+    };
+    let corners = [posts.first, posts.last].map(|post| frame.lattice.map_position(post));
+    let ground = dataset.ground(&GroundReach { crs: &frame.crs, at: &corners, around_m: 0.0 })?;
+    let part = ground_part(&ground.lattice, posts).map_err(GroundError::from)?;
+    Ok(Land::bare(part, ground.crs))
 }
 
-/// Analyzes the land of a dataset. Positions of `arguments` are in coordinates of `crs`.
+/// The argument `extent`; `None` where it is not stated.
+fn extent(
+    arguments: &[WrittenArgument],
+    crs: &Crs,
+    land_crs: &Crs,
+) -> Result<Option<LandExtent>, AnalyzeError> {
+    let written = arguments.iter().find(|argument| argument.name == EXTENT.name);
+    written.map(|argument| LandExtent::parse(&argument.text, crs, land_crs).map_err(of_extent)).transpose()
+}
+
+fn of_extent(problem: String) -> AnalyzeError {
+    AnalyzeError::argument(EXTENT.name, problem)
+}
+
+/// Analyzes the land of a dataset, or the part of it that the argument `extent` states. Positions of `arguments` are in
+/// coordinates of `crs`.
 ///
 /// # Errors
 /// See [`AnalyzeError`].
 pub fn analyze(
     dataset: &Dataset,
-    mut land: Land,
+    land: Land,
     (kind, arguments): (&'static AnalysisKind, &[WrittenArgument]),
     crs: &Crs,
     stop: &StopFlag,
 ) -> Result<Analyzed, AnalyzeError> {
+    let extent = extent(arguments, crs, &land.crs)?;
     let arguments = read(kind, arguments, crs, &land.crs)?;
+    let Some(extent) = extent else { return analyze_all(dataset, land, &arguments, stop) };
+    let is_beyond = extent.is_beyond(&land.ground);
+    let lattice = |error: LatticeError| AnalyzeError::Ground(error.into());
+    let needed = extent.needed_posts(&arguments, &land.ground).map_err(of_extent)?;
+    let mut land = land_part(land, needed).map_err(lattice)?;
+    let is_cut = arguments.reach_posts(land.ground.cell()).is_none();
+    if is_cut {
+        land = extent.masked(land).map_err(of_extent)?;
+    }
+    let mut analyzed = analyze_all(dataset, land, &arguments, stop)?;
+    if !is_cut {
+        let posts = extent.posts(&analyzed.ground).map_err(of_extent)?;
+        let ground = ground_part(&analyzed.ground, posts).map_err(lattice)?;
+        let raster = analyzed.outcome.raster.take();
+        analyzed.outcome.raster = raster.map(|raster| {
+            let mut raster = raster_part(raster, &analyzed.ground, posts);
+            extent.mask(&mut raster, &ground);
+            analyzed.outcome.figures = raster_figures(kind, &raster, &ground);
+            raster
+        });
+        analyzed.ground = ground;
+    }
+    if is_beyond {
+        analyzed.outcome.notes.push("`extent` reaches beyond the land; nothing is known there".into());
+    }
+    Ok(analyzed)
+}
+
+/// Analyzes all of the land.
+fn analyze_all(
+    dataset: &Dataset,
+    mut land: Land,
+    arguments: &AnalysisArguments,
+    stop: &StopFlag,
+) -> Result<Analyzed, AnalyzeError> {
+    let kind = arguments.kind();
     for parameter in kind.parameters.iter().filter(|parameter| parameter.form == ParameterForm::Ground) {
         let file = arguments.word(parameter.name);
         if !file.is_empty() {
             land.other_ground = Some(other_ground(parameter.name, &file, dataset, &land)?);
         }
     }
-    let outcome = run(&land, &arguments, stop)?;
+    let outcome = run(&land, arguments, stop)?;
     Ok(Analyzed { ground: land.ground, crs: land.crs, outcome })
 }
 
@@ -132,7 +204,7 @@ fn other_ground(
     Lattice::new(land.ground.origin(), land.ground.cell(), columns, heights).map(Arc::new).map_err(none)
 }
 
-/// The arguments of a kind from what users wrote, positions brought from `crs` to `land_crs`.
+/// The arguments of a kind from what users wrote, without the extent, positions brought from `crs` to `land_crs`.
 ///
 /// # Errors
 /// [`AnalyzeError::Argument`]: a name that the kind does not know, a value out of its range or of another form, a parameter
@@ -144,9 +216,9 @@ pub fn read(
     land_crs: &Crs,
 ) -> Result<AnalysisArguments, AnalyzeError> {
     let mut arguments = AnalysisArguments::new(kind);
-    for WrittenArgument { name, text } in written {
+    for WrittenArgument { name, text } in written.iter().filter(|argument| argument.name != EXTENT.name) {
         let Some(parameter) = kind.parameter(name) else {
-            let names: Vec<&str> = kind.parameters.iter().map(|parameter| parameter.name).collect();
+            let names: Vec<&str> = kind.all_parameters().map(|parameter| parameter.name).collect();
             let help = remedy(name, &names, "it has none");
             return Err(AnalyzeError::argument(
                 name,
@@ -196,7 +268,9 @@ fn value(
         ParameterForm::Points { least } => points(text, least, crs, land_crs),
         ParameterForm::Line => points(text, 2, crs, land_crs),
         ParameterForm::Area => points(text, 3, crs, land_crs),
-        ParameterForm::Vehicle | ParameterForm::Ground => Ok(ArgumentValue::Word(text.to_owned())),
+        ParameterForm::Vehicle | ParameterForm::Ground | ParameterForm::Extent => {
+            Ok(ArgumentValue::Word(text.to_owned()))
+        }
     }
 }
 

@@ -161,6 +161,12 @@ impl Dataset {
         Self { name: name.to_owned(), content, warning: None }
     }
 
+    /// The dataset of elevation that stays on disk, which messages call `name`.
+    #[cfg(test)]
+    pub(crate) fn from_windows(name: &str, elevation: WindowedElevation) -> Self {
+        Self { name: name.to_owned(), content: DatasetContent::Windows(Box::new(elevation)), warning: None }
+    }
+
     /// A warning for the user about the files, where there is one.
     pub fn warning(&self) -> Option<&str> {
         self.warning.as_deref()

@@ -5,7 +5,7 @@ mod corridors;
 mod going;
 mod grade;
 mod isochrones;
-mod obstacles;
+pub(crate) mod obstacles;
 mod queue;
 mod route;
 mod travel;

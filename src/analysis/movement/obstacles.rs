@@ -10,6 +10,7 @@ use crate::movement::going::{Going, RESTRICTED, SEVERELY_RESTRICTED, UNRESTRICTE
 use crate::movement::grade::GradeTable;
 use crate::movement::vehicle::Vehicle;
 use crate::outcome::{Figure, Hatching, Outcome, OutcomeRaster, PostValues, ValueClass};
+use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// The names and looks of the codes.
@@ -30,14 +31,7 @@ pub(crate) fn obstacles(
 ) -> Result<Outcome, AnalysisError> {
     let vehicle = Vehicle::named(land, &arguments.word("vehicle"))?;
     let going = Going::new(land, &vehicle)?;
-    let count = |code: u8| going.codes.par_iter().filter(|&&found| found == code).count();
-    let known = going.codes.len() - count(PostValues::NO_CODE);
-    let mut figures = Vec::new();
-    for (code, label, ..) in OVERLAY {
-        let posts = count(code);
-        figures.push(Figure::new(label, area_km2(&land.ground, posts), "km²"));
-        figures.push(Figure::new(format!("share of {label}"), percent(posts, known), "%"));
-    }
+    let figures = code_figures(&going.codes, &land.ground);
     let raster = OutcomeRaster {
         name: "obstacles",
         unit: "",
@@ -47,6 +41,19 @@ pub(crate) fn obstacles(
         ),
     };
     Ok(Outcome { raster: Some(raster), figures, notes: going.notes, ..Outcome::default() })
+}
+
+/// The area of each code, and its share of the posts that have one.
+pub(crate) fn code_figures(codes: &[u8], ground: &Lattice) -> Vec<Figure> {
+    let count = |code: u8| codes.par_iter().filter(|&&found| found == code).count();
+    let known = codes.len() - count(PostValues::NO_CODE);
+    let mut figures = Vec::new();
+    for (code, label, ..) in OVERLAY {
+        let posts = count(code);
+        figures.push(Figure::new(label, area_km2(ground, posts), "km²"));
+        figures.push(Figure::new(format!("share of {label}"), percent(posts, known), "%"));
+    }
+    figures
 }
 
 /// The speed at each post straight up its slope, km/h; 0 where the vehicle cannot go. Roads are not slowed by the slope
@@ -72,10 +79,7 @@ pub(crate) fn speed(
             }
         }
     });
-    let ground: Vec<f64> =
-        values.iter().filter(|&&speed| speed > 0.0).map(|&speed| f64::from(speed)).collect();
-    let mean = if ground.is_empty() { 0.0 } else { ground.iter().sum::<f64>() / ground.len() as f64 };
-    let figures = vec![Figure::new("mean speed where it can go", mean, "km/h")];
+    let figures = speed_figures(&values);
     let raster = OutcomeRaster {
         name: "speed",
         unit: "km/h",
@@ -83,6 +87,14 @@ pub(crate) fn speed(
         classes: speed_classes(),
     };
     Ok(Outcome { raster: Some(raster), figures, notes, ..Outcome::default() })
+}
+
+/// The mean of the speeds above 0.
+pub(crate) fn speed_figures(values: &[f32]) -> Vec<Figure> {
+    let ground: Vec<f64> =
+        values.iter().filter(|&&speed| speed > 0.0).map(|&speed| f64::from(speed)).collect();
+    let mean = if ground.is_empty() { 0.0 } else { ground.iter().sum::<f64>() / ground.len() as f64 };
+    vec![Figure::new("mean speed where it can go", mean, "km/h")]
 }
 
 fn speed_classes() -> Vec<ValueClass> {

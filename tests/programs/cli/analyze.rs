@@ -49,3 +49,14 @@ fn a_kind_without_a_raster_says_what_it_can_be_written_as() {
     let refused = run_in(scratch.folder(), &wrong).failed(2);
     assert!(refused.contains(".geojson"), "{refused}");
 }
+
+#[test]
+fn an_extent_limits_the_raster_and_one_off_the_land_is_refused() {
+    let scratch = tilted();
+    let part = ["analyze", "slope", "tilt.asc", "--extent", "15,5,45,35", "-o", "part.asc"];
+    run_in(scratch.folder(), &part).ok();
+    let grid = fs::read_to_string(scratch.folder().join("part.asc")).expect("written");
+    assert!(grid.starts_with("ncols 4\nnrows 4\n"), "{grid}");
+    let off = run_in(scratch.folder(), &["analyze", "slope", "tilt.asc", "--extent", "500,5,600,35"]).failed(1);
+    assert!(off.contains("`extent`") && off.contains("off the land"), "{off}");
+}
