@@ -10,6 +10,7 @@
 pub mod arguments;
 pub mod earth;
 pub mod error;
+pub mod extent;
 pub mod land;
 pub mod landing;
 pub mod line_posts;

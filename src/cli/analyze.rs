@@ -14,6 +14,7 @@ use crate::options::DatasetArguments;
 use crate::output::{print, print_lines, row, warn};
 use crate::output_format::output_format;
 use crate::progress::StepTimer;
+use crate::render::find_camera;
 use sandtable_analysis::outcome::{Figure, Outcome, OutcomeTable, PropertyValue};
 use sandtable_catalog::kind::{AnalysisKind, AnalysisYield};
 use sandtable_catalog::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
@@ -22,10 +23,14 @@ use sandtable_dem::dem_format::DemFormat;
 use sandtable_dem::formats::WRITTEN_EXTENSIONS;
 use sandtable_export::features::FeatureFormat;
 use sandtable_export::features::outcome::{OutcomeFrame, export_outcome, json_value};
-use sandtable_files::raster_file;
-use sandtable_query::analysis::{Analyzed, WrittenArgument, analyze, bare_land, raster};
+use sandtable_files::{disk, raster_file};
+use sandtable_query::analysis::{Analyzed, WrittenArgument, analyze, bare_land, ground_raster, raster};
+use sandtable_render::RenderBackend;
+use sandtable_scene::analysis_map::{MapTexts, ground_map, scene_map};
 use sandtable_scene::land::land_of;
 use sandtable_scene::scene_file::open_scene_land;
+use sandtable_scene::scene_model::SceneModel;
+use sandtable_sheet::picture::{PictureSize, render_view};
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// An analysis and its options.
@@ -40,6 +45,8 @@ pub struct AnalyzeCommand {
 /// A file to write.
 #[derive(Clone, Copy)]
 enum AnalysisFormat {
+    /// A map, as a picture.
+    Map,
     Raster(&'static DemFormat),
     Features(FeatureFormat),
 }
@@ -93,7 +100,7 @@ fn kind_command(kind: &'static AnalysisKind) -> Command {
         .long("output")
         .value_name("OUT")
         .value_parser(clap::value_parser!(PathBuf))
-        .help("Write the answer to this file: a raster as .tif or .asc, features as .gpkg or .geojson");
+        .help("Write the answer to this file: a map as .png, a raster as .tif or .asc, features as .gpkg or .geojson");
     kind.all_parameters().fold(command, |command, parameter| command.arg(option(parameter))).arg(output)
 }
 
@@ -135,10 +142,15 @@ pub fn run(command: &AnalyzeCommand) -> Result<(), CliError> {
         .map(|path| Ok::<_, CliError>((path, format(command.kind, path, input)?)))
         .transpose()?;
     let steps = StepTimer::default();
-    let analyzed = analyzed(command, &steps)?;
-    if let Some((path, format)) = output {
-        steps.begin("writing");
-        write(command, &analyzed, path, format)?;
+    let is_map = matches!(output, Some((_, AnalysisFormat::Map)));
+    let (analyzed, scene) = analyzed(command, is_map, &steps)?;
+    match output {
+        Some((path, AnalysisFormat::Map)) => write_map(command, &analyzed, scene, path, &steps)?,
+        Some((path, format)) => {
+            steps.begin("writing");
+            write(command, &analyzed, path, format)?;
+        }
+        None => {}
     }
     steps.finish();
     analyzed.outcome.notes.iter().for_each(|note| warn(&format!("note: {note}")));
@@ -148,16 +160,20 @@ pub fn run(command: &AnalyzeCommand) -> Result<(), CliError> {
     print_lines(&text(command, &analyzed.outcome))
 }
 
-/// The analysis; a scene is built only for a kind that uses what lies on its ground.
-fn analyzed(command: &AnalyzeCommand, steps: &StepTimer) -> Result<Analyzed, CliError> {
+/// The analysis; a scene is built only for a map, and for a kind that uses what lies on its ground.
+fn analyzed(
+    command: &AnalyzeCommand,
+    is_map: bool,
+    steps: &StepTimer,
+) -> Result<(Analyzed, Option<SceneModel>), CliError> {
     let AnalyzeCommand { kind, dataset: of_dataset, arguments, .. } = command;
     steps.begin("reading the ground");
-    let scene = match kind.layers.is_empty() || !of_dataset.is_scene() {
-        true => None,
-        false => {
-            let progress = |step| steps.begin(step);
-            Some(open_scene_land(&of_dataset.file, &of_dataset.access.allow, &progress)?)
-        }
+    let progress = |step| steps.begin(step);
+    let (file, allowed) = (&of_dataset.file, &of_dataset.access.allow);
+    let scene = match of_dataset.is_scene() {
+        true if is_map => Some(scene_map(file, allowed, map_texts(command), &progress)?),
+        true if !kind.layers.is_empty() => Some(open_scene_land(file, allowed, &progress)?),
+        _ => None,
     };
     let dataset = match &scene {
         Some(scene) => of_dataset.of_scene(scene),
@@ -170,11 +186,57 @@ fn analyzed(command: &AnalyzeCommand, steps: &StepTimer) -> Result<Analyzed, Cli
         Some(scene) => land_of(scene, kind.layers),
         None => bare_land(&dataset, (kind, arguments), &crs)?,
     };
-    Ok(analyze(&dataset, land, (*kind, arguments), &crs, &StopFlag::default())?)
+    let analyzed = analyze(&dataset, land, (*kind, arguments), &crs, &StopFlag::default())?;
+    Ok((analyzed, scene))
+}
+
+/// The texts of a map: what it is, of what, by whom, and what it does not know.
+fn map_texts(command: &AnalyzeCommand) -> MapTexts {
+    let stated = command.arguments.iter().map(|argument| format!("{} {}", argument.name, argument.text));
+    let file = disk::file_name(&command.dataset.file);
+    let subtitle: Vec<String> = std::iter::once(file).chain(stated).collect();
+    let source = format!("Method: {}", command.kind.source);
+    let limits = command.kind.limits.iter().map(|limit| (*limit).to_owned());
+    MapTexts {
+        title: command.kind.title.to_owned(),
+        subtitle: subtitle.join(" · "),
+        notes: std::iter::once(source).chain(limits).collect(),
+    }
+}
+
+/// Writes the map of an analysis: the land from above, what the analysis gives over it, a legend and tables.
+fn write_map(
+    command: &AnalyzeCommand,
+    analyzed: &Analyzed,
+    scene: Option<SceneModel>,
+    path: &Path,
+    steps: &StepTimer,
+) -> Result<(), CliError> {
+    let progress = |step| steps.begin(step);
+    let Analyzed { ground, crs, outcome } = analyzed;
+    let mut scene = match scene {
+        Some(scene) => scene,
+        None => {
+            let raster = ground_raster(ground, crs);
+            ground_map(&command.dataset.file, raster, map_texts(command), &progress)?
+        }
+    };
+    disk::check_output(path, &scene.files)?;
+    let kind = command.kind;
+    scene.add_analysis((kind, kind.title.to_owned()), ground.clone(), outcome.clone());
+    let view = find_camera(&scene, None)?;
+    let size = PictureSize::of(&scene, view);
+    let picture = render_view(&scene, view, size, RenderBackend::Cpu, &progress)?;
+    progress("writing");
+    Ok(disk::write_picture(path, &picture.pixels)?)
 }
 
 /// The format of a file; refuses a raster of a kind that gives none before anything is computed.
 fn format(kind: &AnalysisKind, path: &Path, inputs: &[PathBuf]) -> Result<AnalysisFormat, CliError> {
+    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+        disk::check_output(path, inputs)?;
+        return Ok(AnalysisFormat::Map);
+    }
     let features = |extension: &str| {
         let format = FeatureFormat::from_extension(extension)?;
         matches!(format, FeatureFormat::GeoPackage | FeatureFormat::GeoJson)
@@ -183,13 +245,15 @@ fn format(kind: &AnalysisKind, path: &Path, inputs: &[PathBuf]) -> Result<Analys
     let either = |extension: &str| {
         DemFormat::to_write(extension).map(AnalysisFormat::Raster).or_else(|| features(extension))
     };
-    let written = format!("analyses are written as .gpkg or .geojson, and rasters as {WRITTEN_EXTENSIONS}");
+    let written =
+        format!("analyses are written as .png, .gpkg or .geojson, and rasters as {WRITTEN_EXTENSIONS}");
     let format = output_format(path, inputs, either, &written)?;
     let gives_raster = matches!(kind.yields, AnalysisYield::Raster | AnalysisYield::Both);
     match format {
-        AnalysisFormat::Raster(_) if !gives_raster => {
-            Err(CliError::usage(format!("{} gives no raster; write it as .gpkg or .geojson", kind.name)))
-        }
+        AnalysisFormat::Raster(_) if !gives_raster => Err(CliError::usage(format!(
+            "{} gives no raster; write it as .png, .gpkg or .geojson",
+            kind.name
+        ))),
         format => Ok(format),
     }
 }
@@ -203,6 +267,8 @@ fn write(
     let inputs = from_ref(&command.dataset.file);
     let Analyzed { ground, crs, outcome } = analyzed;
     match format {
+        // A map is written with the scene under it.
+        AnalysisFormat::Map => {}
         AnalysisFormat::Raster(format) => {
             let values = outcome.raster.as_ref();
             let values = values.unwrap_or_else(|| panic!("{} gives a raster", command.kind.name));

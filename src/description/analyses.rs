@@ -119,7 +119,7 @@ impl Table for DescribedArguments {
     fn read(reader: &mut TableReader<'_, '_>) -> Option<Self> {
         let kind = reader.word("kind").and_then(sandtable_catalog::kind)?;
         let mut arguments = Some(Vec::new());
-        for parameter in kind.parameters {
+        for parameter in kind.all_parameters() {
             let read = |value: KeyValue<'_, '_>| value.argument(parameter.form);
             match reader.read_with(parameter.name, read) {
                 Some(Some(value)) => {
@@ -135,7 +135,7 @@ impl Table for DescribedArguments {
                 None => {}
             }
         }
-        let names: Vec<&str> = kind.parameters.iter().map(|parameter| parameter.name).collect();
+        let names: Vec<&str> = kind.all_parameters().map(|parameter| parameter.name).collect();
         let others = argument_keys().iter().map(|key| key.name).filter(|name| !names.contains(name));
         let help = match names[..] {
             [] => "remove it".to_owned(),
@@ -185,6 +185,7 @@ impl KeyValue<'_, '_> {
             ParameterForm::Points { least } => self.place_or_places(least).map(DescribedValue::Places),
             ParameterForm::Line => self.places(2).map(DescribedValue::Places),
             ParameterForm::Area => self.places(3).map(DescribedValue::Places),
+            ParameterForm::Extent => self.places(2).map(DescribedValue::Places),
         }
     }
 }
@@ -206,7 +207,7 @@ pub(super) fn kind_words() -> Vec<WordDeclaration> {
 pub(super) fn argument_keys() -> &'static [KeyDeclaration] {
     static KEYS: LazyLock<Vec<KeyDeclaration>> = LazyLock::new(|| {
         let mut names: Vec<&'static str> = Vec::new();
-        for parameter in sandtable_catalog::kinds().flat_map(|kind| kind.parameters) {
+        for parameter in sandtable_catalog::kinds().flat_map(AnalysisKind::all_parameters) {
             if !names.contains(&parameter.name) {
                 names.push(parameter.name);
             }
@@ -223,7 +224,9 @@ fn argument_key(name: &'static str) -> KeyDeclaration {
     // Documentation and default, with the kinds that have them.
     let mut docs: Vec<(&AnalysisParameter, Vec<&str>)> = Vec::new();
     for kind in sandtable_catalog::kinds() {
-        let Some(parameter) = kind.parameter(name) else { continue };
+        let Some(parameter) = kind.all_parameters().find(|parameter| parameter.name == name) else {
+            continue;
+        };
         if !forms.contains(&parameter.form) {
             forms.push(parameter.form);
         }
@@ -245,7 +248,10 @@ fn argument_key(name: &'static str) -> KeyDeclaration {
             ParameterDefault::Required => " Needed.".to_owned(),
             ParameterDefault::Value(text) | ParameterDefault::Otherwise(text) => format!(" Default: {text}."),
         };
-        format!("Of {}: {}{default}", kinds.join(", "), parameter.doc)
+        match docs.len() == 1 && kinds.len() == sandtable_catalog::kinds().count() {
+            true => parameter.doc.to_owned(),
+            false => format!("Of {}: {}{default}", kinds.join(", "), parameter.doc),
+        }
     };
     let doc = docs.iter().map(says).collect::<Vec<_>>().join(" ");
     let default = match docs[..] {

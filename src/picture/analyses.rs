@@ -34,7 +34,7 @@ pub(super) fn tints(scene: &SceneModel) -> Vec<TintPlan> {
 
 fn tint(analysis: &SceneAnalysis, scene: &SceneModel) -> Option<TintPlan> {
     let raster = analysis.outcome.raster.as_ref()?;
-    let (classes, lattice) = (shown_classes(raster), &*scene.lattice);
+    let (classes, lattice) = (shown_classes(raster), &*analysis.ground);
     let colors: Vec<Option<Srgba>> = classes
         .iter()
         .map(|class| Some(Srgba(class.look.tint)).filter(|Srgba([.., alpha])| *alpha > 0))
@@ -43,7 +43,7 @@ fn tint(analysis: &SceneAnalysis, scene: &SceneModel) -> Option<TintPlan> {
     let tint = PostTint {
         size: UVec2::new(lattice.columns(), lattice.rows()),
         frame: &PostFrame::of(lattice),
-        origin: lattice.origin(),
+        origin: scene.lattice.origin(),
         beside: colors.iter().flatten().next().copied().unwrap_or(Srgba::WHITE),
         feature: analysis.feature,
     };
@@ -82,7 +82,7 @@ pub(super) fn draw(
     for analysis in &scene.analyses {
         if let Some(raster) = &analysis.outcome.raster {
             let classes = shown_classes(raster);
-            HatchedRaster { raster, classes: &classes, scene, feature: analysis.feature }.draw(view, pen);
+            HatchedRaster { raster, classes: &classes, analysis, scene }.draw(view, pen);
         }
         let drawing = FeatureDrawing { analysis, view, scene, origin: scene.lattice.origin() };
         analysis.outcome.features.iter().for_each(|feature| drawing.draw(feature, pen, texts));

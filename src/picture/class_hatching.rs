@@ -12,8 +12,8 @@ use crate::analyses::printed;
 use crate::analysis_look::{class_of, hatch_color};
 use crate::graphic_lines::{GraphicPen, GraphicView, LineLook};
 use sandtable_analysis::outcome::{Hatching, OutcomeRaster, ValueClass};
-use sandtable_draw::list::FeatureId;
 use sandtable_geom::rect::Rect;
+use sandtable_scene::analyses::SceneAnalysis;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::lattice::Post;
 
@@ -40,10 +40,10 @@ pub(super) struct HatchedRaster<'a> {
     pub raster: &'a OutcomeRaster,
     /// Their classes.
     pub classes: &'a [ValueClass],
-    /// The scene of whose posts they are.
+    /// Whose they are.
+    pub analysis: &'a SceneAnalysis,
+    /// The scene that it is of.
     pub scene: &'a SceneModel,
-    /// Whose it is.
-    pub feature: FeatureId,
 }
 
 impl HatchedRaster<'_> {
@@ -52,7 +52,7 @@ impl HatchedRaster<'_> {
         if self.classes.iter().all(|class| class.look.hatching == Hatching::None) {
             return;
         }
-        let extent = self.scene.lattice.extent();
+        let extent = self.extent();
         let Some(em_m) = nearest_em_m(view, &extent) else { return };
         let middle = extent.center();
         let up = view.up(middle).normalize_or(DVec2::Y);
@@ -77,6 +77,12 @@ impl HatchedRaster<'_> {
         }
     }
 
+    /// The land in world X and Y.
+    fn extent(&self) -> Rect {
+        let (of_land, origin) = (self.analysis.ground.map_extent(), self.scene.lattice.origin());
+        Rect { min: of_land.min - origin, max: of_land.max - origin }
+    }
+
     fn draw_stretch(
         &self,
         class: usize,
@@ -87,17 +93,21 @@ impl HatchedRaster<'_> {
         let look = self.classes[class].look;
         let color = printed(self.scene, hatch_color(look.tint));
         let width_px = if look.hatching == Hatching::Dots { DOT_WIDTH_PX } else { WIDTH_PX };
-        view.draw_bare(pen, &[from, to], LineLook { color, is_dashed: false, width_px }, self.feature);
+        view.draw_bare(
+            pen,
+            &[from, to],
+            LineLook { color, is_dashed: false, width_px },
+            self.analysis.feature,
+        );
     }
 
     /// The stretches of a line that are hatched.
     fn stretches(&self, line: i64, lines: &HatchLines<'_>, shows: impl Fn(Hatching) -> bool) -> Vec<Stretch> {
         let start = lines.middle + lines.along.perp() * (line as f64 * lines.apart_m());
-        let Some([from_m, to_m]) = within(&self.scene.lattice.extent(), start, lines.along, lines.radius_m)
-        else {
+        let Some([from_m, to_m]) = within(&self.extent(), start, lines.along, lines.radius_m) else {
             return Vec::new();
         };
-        let step_m = self.scene.lattice.cell().min_element().max(lines.em_m * 0.25);
+        let step_m = self.analysis.ground.cell().min_element().max(lines.em_m * 0.25);
         let count = ((to_m - from_m) / step_m).floor() as usize;
         let at = |number: usize| start + lines.along * (from_m + number as f64 * step_m);
         let mut stretches: Vec<Stretch> = Vec::new();
@@ -129,12 +139,13 @@ impl HatchedRaster<'_> {
 
     /// The class of the nearest post; `None` off the land, and where it has none.
     fn class_at(&self, at: DVec2) -> Option<usize> {
-        let grid = self.scene.lattice.grid_at(at).round();
-        let last = self.scene.lattice.last_grid();
+        let ground = &*self.analysis.ground;
+        let grid = ground.grid_from_map(at + self.scene.lattice.origin()).round();
+        let last = ground.last_grid();
         if grid.cmplt(DVec2::ZERO).any() || grid.cmpgt(last).any() {
             return None;
         }
-        let index = self.scene.lattice.index(Post::at_grid(grid));
+        let index = ground.index(Post::at_grid(grid));
         class_of(self.classes, self.raster.values.value(index))
     }
 }

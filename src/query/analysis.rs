@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use crate::analysis_extent::{LandExtent, ground_part, land_part, raster_part};
+use crate::analysis_extent;
 use crate::dataset::{Dataset, DatasetOptions, OpenError, QueryError};
 use crate::ground::GroundError;
 use crate::positions::{PositionArgument, position_list};
@@ -13,15 +13,15 @@ use crate::post_raster::post_header;
 use crate::windowed_elevation::GroundReach;
 use sandtable_analysis::arguments::{AnalysisArguments, ArgumentValue};
 use sandtable_analysis::error::AnalysisError;
+use sandtable_analysis::extent::{LandExtent, ground_part, run_within};
 use sandtable_analysis::land::Land;
 use sandtable_analysis::outcome::{Outcome, OutcomeRaster, PostValues};
-use sandtable_analysis::run::{raster_figures, run};
 use sandtable_base::message::suggest::{quoted, remedy};
 use sandtable_catalog::kind::AnalysisKind;
 use sandtable_catalog::parameter::{AnalysisParameter, EXTENT, ParameterDefault, ParameterForm};
 use sandtable_geom::crs::{Crs, CrsError};
 use sandtable_raster::raster::{Raster, Samples};
-use sandtable_terrain::lattice::{Lattice, LatticeError, Post};
+use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::query::{Interpolation, Surface};
 use sandtable_terrain::stop_flag::StopFlag;
@@ -103,7 +103,9 @@ fn extent(
     land_crs: &Crs,
 ) -> Result<Option<LandExtent>, AnalyzeError> {
     let written = arguments.iter().find(|argument| argument.name == EXTENT.name);
-    written.map(|argument| LandExtent::parse(&argument.text, crs, land_crs).map_err(of_extent)).transpose()
+    written
+        .map(|argument| analysis_extent::parse(&argument.text, crs, land_crs).map_err(of_extent))
+        .transpose()
 }
 
 fn of_extent(problem: String) -> AnalyzeError {
@@ -124,50 +126,18 @@ pub fn analyze(
 ) -> Result<Analyzed, AnalyzeError> {
     let extent = extent(arguments, crs, &land.crs)?;
     let arguments = read(kind, arguments, crs, &land.crs)?;
-    let Some(extent) = extent else { return analyze_all(dataset, land, &arguments, stop) };
-    let is_beyond = extent.is_beyond(&land.ground);
-    let lattice = |error: LatticeError| AnalyzeError::Ground(error.into());
-    let needed = extent.needed_posts(&arguments, &land.ground).map_err(of_extent)?;
-    let mut land = land_part(land, needed).map_err(lattice)?;
-    let is_cut = arguments.reach_posts(land.ground.cell()).is_none();
-    if is_cut {
-        land = extent.masked(land).map_err(of_extent)?;
-    }
-    let mut analyzed = analyze_all(dataset, land, &arguments, stop)?;
-    if !is_cut {
-        let posts = extent.posts(&analyzed.ground).map_err(of_extent)?;
-        let ground = ground_part(&analyzed.ground, posts).map_err(lattice)?;
-        let raster = analyzed.outcome.raster.take();
-        analyzed.outcome.raster = raster.map(|raster| {
-            let mut raster = raster_part(raster, &analyzed.ground, posts);
-            extent.mask(&mut raster, &ground);
-            analyzed.outcome.figures = raster_figures(kind, &raster, &ground);
-            raster
-        });
-        analyzed.ground = ground;
-    }
-    if is_beyond {
-        analyzed.outcome.notes.push("`extent` reaches beyond the land; nothing is known there".into());
-    }
-    Ok(analyzed)
-}
-
-/// Analyzes all of the land.
-fn analyze_all(
-    dataset: &Dataset,
-    mut land: Land,
-    arguments: &AnalysisArguments,
-    stop: &StopFlag,
-) -> Result<Analyzed, AnalyzeError> {
-    let kind = arguments.kind();
-    for parameter in kind.parameters.iter().filter(|parameter| parameter.form == ParameterForm::Ground) {
+    let land_crs = land.crs.clone();
+    let compared = |land: &Land| {
+        let of_ground = |parameter: &&AnalysisParameter| parameter.form == ParameterForm::Ground;
+        let Some(parameter) = kind.parameters.iter().find(of_ground) else { return Ok(None) };
         let file = arguments.word(parameter.name);
-        if !file.is_empty() {
-            land.other_ground = Some(other_ground(parameter.name, &file, dataset, &land)?);
+        if file.is_empty() {
+            return Ok(None);
         }
-    }
-    let outcome = run(&land, arguments, stop)?;
-    Ok(Analyzed { ground: land.ground, crs: land.crs, outcome })
+        other_ground(parameter.name, &file, dataset, land).map(Some)
+    };
+    let placed = run_within(land, &arguments, extent.as_ref(), compared, stop)?;
+    Ok(Analyzed { ground: placed.ground, crs: land_crs, outcome: placed.outcome })
 }
 
 /// The word for the elevation of a dataset before its scene's earthworks.
@@ -314,6 +284,14 @@ pub fn raster(outcome: &OutcomeRaster, ground: &Lattice, crs: &Crs) -> Raster {
         .flat_map(|row| (row * columns..(row + 1) * columns).map(|index| outcome.values.value(index)));
     let header = post_header(ground, crs, (outcome.name, data_type), nodata);
     Raster { samples: Samples::F32(samples.collect()), ..header }
+}
+
+/// The raster of the heights of a ground, north up.
+pub fn ground_raster(ground: &Lattice, crs: &Crs) -> Raster {
+    let columns = ground.columns() as usize;
+    let rows = ground.heights().chunks_exact(columns).rev();
+    let header = post_header(ground, crs, ("ground", "Float32"), -9999.0);
+    Raster { samples: Samples::F32(rows.flatten().copied().collect()), ..header }
 }
 
 #[cfg(test)]

@@ -1,147 +1,53 @@
-//! The part of the land that an analysis is limited to: its argument `extent`.
-//!
-//! A kind whose values depend on the land within a reach sees that much around the extent, so that its values there have the
-//! bits of those on the whole land. For a kind that reaches everywhere the land ends at the extent.
-//!
-//! ```text
-//!   land ──► extent grown by the reach ──► run ──► cut to the extent, no data outside an area
-//!        └─► extent, no ground outside an area ──► run                    (a kind that reaches everywhere)
-//! ```
-
-use std::sync::Arc;
+//! The argument `extent` of an analysis as users write it.
 
 use glam::DVec2;
 
-use sandtable_analysis::arguments::AnalysisArguments;
-use sandtable_analysis::land::Land;
-use sandtable_analysis::outcome::{OutcomeRaster, PostValues};
+use sandtable_analysis::extent::LandExtent;
 use sandtable_geom::crs::Crs;
-use sandtable_geom::polygon::crossings;
-use sandtable_geom::rect::Rect;
-use sandtable_terrain::lattice::{Lattice, LatticeError, Post};
-use sandtable_terrain::post_rect::PostRect;
 
 use crate::positions::position_list;
-
-/// The share of a cell by which a post may lie outside an extent and is in it: corners written in decimals name posts.
-const SNAP: f64 = 1e-6;
 
 /// Positions along each side of a rectangle that is brought to another system, where its sides are curved.
 const SIDE_STEPS: u32 = 16;
 
-/// The part of the land that an analysis is limited to.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LandExtent {
-    /// In map coordinates of the land.
-    bounds: Rect,
-    /// The ring of an area in map coordinates of the land; `None` of a rectangle.
-    ring: Option<Vec<DVec2>>,
+/// The extent that a text states. Numbers are coordinates of `crs`; the extent of a rectangle in another system than the
+/// land's is the smallest one of the land around it.
+///
+/// # Errors
+/// What is wrong with the text, and what to write.
+pub(crate) fn parse(text: &str, crs: &Crs, land_crs: &Crs) -> Result<LandExtent, String> {
+    if let Some([x0, y0, x1, y1]) = four_numbers(text) {
+        return rectangle([DVec2::new(x0, y0), DVec2::new(x1, y1)], crs, land_crs);
+    }
+    let (mut numbers, mut on_land) = (Vec::new(), Vec::new());
+    for position in position_list(text)? {
+        let written = position.written(crs).map_err(|error| error.to_string())?;
+        numbers.extend((!written.is_brought).then_some(written.at));
+        on_land.push(crs.transform(land_crs, written.at).map_err(|error| error.to_string())?);
+    }
+    match (&on_land[..], &numbers[..]) {
+        ([_], _) => {
+            Err("states one position; write x0,y0,x1,y1, two positions at opposite corners, or an area \
+                 of three positions or more"
+                .into())
+        }
+        ([_, _], &[first, last]) => rectangle([first, last], crs, land_crs),
+        (&[first, last], _) => rectangle([first, last], land_crs, land_crs),
+        _ => Ok(LandExtent::area(on_land)),
+    }
 }
 
-impl LandExtent {
-    /// The extent that a text states. Numbers are coordinates of `crs`; the extent of a rectangle in another system than the
-    /// land's is the smallest one of the land around it.
-    ///
-    /// # Errors
-    /// What is wrong with the text, and what to write.
-    pub fn parse(text: &str, crs: &Crs, land_crs: &Crs) -> Result<Self, String> {
-        if let Some([x0, y0, x1, y1]) = four_numbers(text) {
-            return Self::rectangle([DVec2::new(x0, y0), DVec2::new(x1, y1)], crs, land_crs);
-        }
-        let (mut numbers, mut on_land) = (Vec::new(), Vec::new());
-        for position in position_list(text)? {
-            let written = position.written(crs).map_err(|error| error.to_string())?;
-            numbers.extend((!written.is_brought).then_some(written.at));
-            on_land.push(crs.transform(land_crs, written.at).map_err(|error| error.to_string())?);
-        }
-        match (&on_land[..], &numbers[..]) {
-            ([_], _) => {
-                Err("states one position; write x0,y0,x1,y1, two positions at opposite corners, or an area \
-                     of three positions or more"
-                    .into())
-            }
-            ([_, _], &[first, last]) => Self::rectangle([first, last], crs, land_crs),
-            (&[first, last], _) => Self::rectangle([first, last], land_crs, land_crs),
-            _ => Ok(Self { bounds: Rect::around(on_land.iter().copied()), ring: Some(on_land) }),
-        }
+fn rectangle([a, b]: [DVec2; 2], crs: &Crs, land_crs: &Crs) -> Result<LandExtent, String> {
+    let (low, high) = (a.min(b), a.max(b));
+    if crs == land_crs {
+        return Ok(LandExtent::rectangle([low, high]));
     }
-
-    fn rectangle([a, b]: [DVec2; 2], crs: &Crs, land_crs: &Crs) -> Result<Self, String> {
-        let (low, high) = (a.min(b), a.max(b));
-        if crs == land_crs {
-            return Ok(Self { bounds: Rect { min: low, max: high }, ring: None });
-        }
-        let sides = (0..=SIDE_STEPS).flat_map(|step| {
-            let at = low + (high - low) * (f64::from(step) / f64::from(SIDE_STEPS));
-            [(at.x, low.y), (at.x, high.y), (low.x, at.y), (high.x, at.y)].map(DVec2::from)
-        });
-        let outline: Result<Vec<DVec2>, _> = sides.map(|at| crs.transform(land_crs, at)).collect();
-        Ok(Self { bounds: Rect::around(outline.map_err(|error| error.to_string())?), ring: None })
-    }
-
-    /// The posts of the land within its bounds.
-    ///
-    /// # Errors
-    /// It lies off the land, or holds fewer than two posts a side.
-    pub fn posts(&self, land: &Lattice) -> Result<PostRect, String> {
-        let (of_land, bounds) = (land.map_extent(), &self.bounds);
-        if !of_land.meets(bounds) {
-            let Rect { min, max } = of_land;
-            return Err(format!(
-                "{},{} to {},{} lies off the land, which reaches from {},{} to {},{}",
-                bounds.min.x, bounds.min.y, bounds.max.x, bounds.max.y, min.x, min.y, max.x, max.y
-            ));
-        }
-        let (low, high) = (land.grid_from_map(bounds.min) - SNAP, land.grid_from_map(bounds.max) + SNAP);
-        let posts =
-            PostRect::between(land, low, high).filter(|posts| posts.width() > 1 && posts.height() > 1);
-        posts.ok_or_else(|| {
-            let cell = land.cell();
-            format!("holds fewer than two posts a side; they lie {} by {} m apart", cell.x, cell.y)
-        })
-    }
-
-    /// The posts of the land that an analysis must know for the values within: those with its reach around them.
-    ///
-    /// # Errors
-    /// As [`LandExtent::posts`].
-    pub fn needed_posts(&self, arguments: &AnalysisArguments, land: &Lattice) -> Result<PostRect, String> {
-        let reach = arguments.reach_posts(land.cell()).unwrap_or(0);
-        Ok(self.posts(land)?.grown((reach, reach), land))
-    }
-
-    /// Whether it reaches a cell or more beyond the land.
-    pub fn is_beyond(&self, land: &Lattice) -> bool {
-        let (low, high) = (land.grid_from_map(self.bounds.min), land.grid_from_map(self.bounds.max));
-        low.cmple(DVec2::NEG_ONE).any() || high.cmpge(land.last_grid() + 1.0).any()
-    }
-
-    /// The land without ground outside the area; the whole of it where the extent is a rectangle.
-    ///
-    /// # Errors
-    /// There is no ground inside.
-    pub fn masked(&self, land: Land) -> Result<Land, String> {
-        let Some(ring) = &self.ring else { return Ok(land) };
-        let ground = &land.ground;
-        let mut heights = ground.heights().to_vec();
-        outside(ring, ground, |index| heights[index] = f32::NAN);
-        if heights.iter().all(|height| height.is_nan()) {
-            return Err("holds no post with an elevation".into());
-        }
-        let frame = (ground.origin(), ground.cell());
-        let masked = Lattice::part(frame, ground.first(), ground.columns(), heights);
-        let masked = masked.map_err(|error| error.to_string())?;
-        Ok(Land { ground: Arc::new(masked), ..land })
-    }
-
-    /// Takes the values outside the area from a raster on the posts of `ground`.
-    pub fn mask(&self, raster: &mut OutcomeRaster, ground: &Lattice) {
-        let Some(ring) = &self.ring else { return };
-        match &mut raster.values {
-            PostValues::Numbers(values) => outside(ring, ground, |index| values[index] = f32::NAN),
-            PostValues::Codes(codes) => outside(ring, ground, |index| codes[index] = PostValues::NO_CODE),
-        }
-    }
+    let sides = (0..=SIDE_STEPS).flat_map(|step| {
+        let at = low + (high - low) * (f64::from(step) / f64::from(SIDE_STEPS));
+        [(at.x, low.y), (at.x, high.y), (low.x, at.y), (high.x, at.y)].map(DVec2::from)
+    });
+    let outline: Result<Vec<DVec2>, _> = sides.map(|at| crs.transform(land_crs, at)).collect();
+    Ok(LandExtent::rectangle(outline.map_err(|error| error.to_string())?))
 }
 
 /// Four finite numbers with commas between.
@@ -151,71 +57,6 @@ fn four_numbers(text: &str) -> Option<[f64; 4]> {
     numbers.try_into().ok().filter(|numbers: &[f64; 4]| numbers.iter().all(|number| number.is_finite()))
 }
 
-/// Calls `visit` with the index of each post outside a ring.
-fn outside(ring: &[DVec2], ground: &Lattice, mut visit: impl FnMut(usize)) {
-    for row in 0..ground.rows() {
-        let start = Post { column: 0, row };
-        let inside = crossings([ring], ground.map_position(start).y);
-        for column in 0..ground.columns() {
-            let post = Post { column, ..start };
-            let x = ground.map_position(post).x;
-            if inside.partition_point(|&crossing| crossing <= x) % 2 == 0 {
-                visit(ground.index(post));
-            }
-        }
-    }
-}
-
-/// The posts of a lattice that holds all of its own, as a lattice.
-///
-/// # Errors
-/// As [`Lattice::cut_to_held`].
-pub(crate) fn ground_part(ground: &Arc<Lattice>, posts: PostRect) -> Result<Arc<Lattice>, LatticeError> {
-    match posts == PostRect::all(ground) && ground.holds_all() {
-        true => Ok(Arc::clone(ground)),
-        false => Ok(Arc::new(ground.holding_only(posts).cut_to_held()?)),
-    }
-}
-
-/// The land of these posts; lines that leave it stay whole.
-///
-/// # Errors
-/// As [`Lattice::cut_to_held`].
-pub(crate) fn land_part(land: Land, posts: PostRect) -> Result<Land, LatticeError> {
-    if posts == PostRect::all(&land.ground) {
-        return Ok(land);
-    }
-    let ground = ground_part(&land.ground, posts)?;
-    let columns = land.ground.columns() as usize;
-    Ok(Land {
-        ground,
-        cover: land.cover.map(|values| values_part(&values, columns, posts)),
-        water: land.water.map(|values| values_part(&values, columns, posts)),
-        woods: land.woods.map(|values| values_part(&values, columns, posts)),
-        obstacles_m: land.obstacles_m.map(|values| values_part(&values, columns, posts)),
-        ..land
-    })
-}
-
-/// The raster of these posts of `ground`.
-pub(crate) fn raster_part(raster: OutcomeRaster, ground: &Lattice, posts: PostRect) -> OutcomeRaster {
-    let columns = ground.columns() as usize;
-    let values = match raster.values {
-        PostValues::Numbers(values) => PostValues::Numbers(values_part(&values, columns, posts)),
-        PostValues::Codes(codes) => PostValues::Codes(values_part(&codes, columns, posts)),
-    };
-    OutcomeRaster { values, ..raster }
-}
-
-/// The values of a rectangle of posts among those of rows of `columns`.
-fn values_part<T: Copy>(values: &[T], columns: usize, posts: PostRect) -> Vec<T> {
-    let row = |row: u32| {
-        let first = row as usize * columns + posts.first.column as usize;
-        &values[first..first + posts.width()]
-    };
-    (posts.first.row..=posts.last.row).map(row).collect::<Vec<_>>().concat()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -223,7 +64,9 @@ mod tests {
     use crate::dataset::Dataset;
     use crate::windowed_elevation::WindowedElevation;
     use sandtable_raster::raster::{Raster, Samples, north_up_nodes};
+    use sandtable_terrain::lattice::Post;
     use sandtable_terrain::stop_flag::StopFlag;
+    use std::sync::Arc;
 
     const COLUMNS: u32 = 60;
     const ROWS: u32 = 50;
@@ -349,13 +192,12 @@ mod tests {
     #[test]
     fn grid_references_and_degrees_state_an_extent_of_land_in_meters() {
         let zone = Crs::from_epsg(32616).expect("known");
-        let by_grid =
-            LandExtent::parse("16S GF 50000 18000; 16S GF 51000 18500", &zone, &zone).expect("sound");
-        assert_eq!(by_grid.bounds.size(), DVec2::new(1000.0, 500.0));
-        let degrees = LandExtent::parse("-84.2,36.3,-84.1,36.35", &Crs::wgs84(), &zone).expect("sound");
+        let by_grid = parse("16S GF 50000 18000; 16S GF 51000 18500", &zone, &zone).expect("sound");
+        assert_eq!(by_grid.bounds().size(), DVec2::new(1000.0, 500.0));
+        let degrees = parse("-84.2,36.3,-84.1,36.35", &Crs::wgs84(), &zone).expect("sound");
         for corner in [[-84.2, 36.3], [-84.1, 36.35], [-84.2, 36.35], [-84.1, 36.3]] {
             let on_land = Crs::wgs84().transform(&zone, DVec2::from(corner)).expect("in the zone");
-            assert!(degrees.bounds.grown(1e-6).contains(on_land), "{corner:?}");
+            assert!(degrees.bounds().grown(1e-6).contains(on_land), "{corner:?}");
         }
     }
 }

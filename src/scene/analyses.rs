@@ -13,7 +13,7 @@ use crate::build::build_ground;
 use crate::build_errors::{BuildErrorSink, BuildErrors};
 use crate::builder::SceneBuilder;
 use crate::exact_ground::ExactGround;
-use crate::feature::FeatureKind;
+use crate::feature::{FeatureKind, SceneFeature};
 use crate::feature_origin::FeatureOrigin;
 use crate::land::land_of;
 use crate::scene_file::{OpenSceneError, is_scene_file, open_scene_ground};
@@ -21,11 +21,12 @@ use crate::scene_findings::SceneFindings;
 use crate::scene_model::SceneModel;
 use sandtable_analysis::arguments::{AnalysisArguments, ArgumentValue};
 use sandtable_analysis::error::AnalysisError;
+use sandtable_analysis::extent::{LandExtent, PlacedOutcome, run_within};
 use sandtable_analysis::land::Land;
 use sandtable_analysis::movement::vehicle::Vehicle;
 use sandtable_analysis::outcome::Outcome;
-use sandtable_analysis::run::run;
 use sandtable_base::message::choice::Choice as _;
+use sandtable_catalog::kind::AnalysisKind;
 use sandtable_catalog::parameter::ParameterForm;
 use sandtable_description::analyses::{AnalysisTable, DescribedValue, VehicleTable};
 use sandtable_description::diagnostic::Diagnostic;
@@ -48,12 +49,14 @@ const SOURCE: &str = "source";
 pub struct SceneAnalysis {
     /// Its name in the legend.
     pub name: String,
-    /// Its kind and what it was asked, positions in map coordinates.
-    pub arguments: AnalysisArguments,
+    /// What it is.
+    pub kind: &'static AnalysisKind,
     /// Its number among the scene's, from 0.
     pub number: usize,
     /// The feature that it is.
     pub feature: FeatureId,
+    /// The ground on whose posts the values of its raster are.
+    pub ground: Arc<Lattice>,
     /// What it gives.
     pub outcome: Outcome,
 }
@@ -61,10 +64,27 @@ pub struct SceneAnalysis {
 /// An analysis whose arguments have their places.
 pub(super) struct PlacedAnalysis {
     arguments: AnalysisArguments,
+    extent: Option<LandExtent>,
     feature: FeatureId,
     name: String,
     /// Its number among the document's.
     table: usize,
+}
+
+impl SceneModel {
+    /// Adds an analysis that was made on `ground`, in map coordinates of the scene.
+    pub fn add_analysis(
+        &mut self,
+        (kind, name): (&'static AnalysisKind, String),
+        ground: Arc<Lattice>,
+        outcome: Outcome,
+    ) {
+        let origin = FeatureOrigin::default();
+        self.features.push(SceneFeature { kind: FeatureKind::Analysis, name: name.clone(), origin });
+        let feature = FeatureId(FeatureId::GROUND.0 + self.features.len() as u32);
+        let number = self.analyses.len();
+        self.analyses.push(SceneAnalysis { name, kind, number, feature, ground, outcome });
+    }
 }
 
 /// Places the arguments of the document's analyses. `collected` keeps an error for each position without ground.
@@ -80,7 +100,7 @@ fn placed(
     collected: &mut SceneBuilder,
 ) -> Option<PlacedAnalysis> {
     let kind = *table.kind;
-    let mut arguments = Some(AnalysisArguments::new(kind));
+    let (mut arguments, mut extent) = (Some(AnalysisArguments::new(kind)), None);
     for argument in &table.arguments.0 {
         let value = match &*argument.value {
             DescribedValue::Number(number) => Some(ArgumentValue::Number(*number)),
@@ -88,7 +108,8 @@ fn placed(
             DescribedValue::Word(word) => Some(ArgumentValue::Word(word.clone())),
             DescribedValue::Places(places) => {
                 // A corner of an area may lie where there is no ground.
-                let needs_ground = argument.parameter.form != ParameterForm::Area;
+                let needs_ground =
+                    !matches!(argument.parameter.form, ParameterForm::Area | ParameterForm::Extent);
                 let placed = places
                     .iter()
                     .map(|at| collected.errors.keep(map_position(exact, table, at, needs_ground)));
@@ -96,12 +117,21 @@ fn placed(
                 placed.into_iter().collect::<Option<Vec<DVec2>>>().map(ArgumentValue::Points)
             }
         };
+        if let (ParameterForm::Extent, Some(ArgumentValue::Points(points))) =
+            (argument.parameter.form, &value)
+        {
+            extent = Some(match points.len() {
+                2 => LandExtent::rectangle(points.iter().copied()),
+                _ => LandExtent::area(points.clone()),
+            });
+            continue;
+        }
         arguments = arguments.zip(value).map(|(all, value)| all.with(argument.parameter.name, value));
     }
     let name = table.name.clone().unwrap_or_else(|| kind.title.to_owned());
     let origin = FeatureOrigin::stated(table.kind.span());
     let feature = collected.add(FeatureKind::Analysis, name.clone(), origin);
-    Some(PlacedAnalysis { arguments: arguments?, feature, name, table: number })
+    Some(PlacedAnalysis { arguments: arguments?, extent, feature, name, table: number })
 }
 
 /// The map coordinates of a stated position.
@@ -167,32 +197,49 @@ pub(super) fn analyze(
     let mut land: Option<Land> = None;
     let mut layers: &[_] = &[];
     let mut analyses = Vec::with_capacity(placed.len());
-    for PlacedAnalysis { arguments, feature, name, table } in placed {
+    let mut placed = placed.into_iter().peekable();
+    while let Some(PlacedAnalysis { arguments, extent, feature, name, table }) = placed.next() {
         let (kind, table) = (arguments.kind(), &document.analyses[table]);
         progress(kind.title);
-        let mut of_kind = match land.take().filter(|_| layers == kind.layers) {
+        let of_kind = match land.take().filter(|_| layers == kind.layers) {
             Some(land) => land,
             None => land_of(scene, kind.layers),
         };
         layers = kind.layers;
-        let compared = other_ground(table, &of_kind, scene, assets, document);
-        let Some(other) = errors.keep(compared) else { continue };
-        of_kind.other_ground = other;
-        let outcome = run(&of_kind, &arguments, &StopFlag::default());
-        land = Some(of_kind);
-        let Some(outcome) = errors.keep(outcome.map_err(|error| failed(document, table, error))) else {
-            continue;
-        };
+        // The land is kept for the next analysis where that is of the same layers.
+        let is_next = |next: &PlacedAnalysis| next.arguments.kind().layers == layers;
+        land = placed.peek().is_some_and(is_next).then(|| of_kind.clone());
+        let compared =
+            |land: &Land| other_ground(table, land, scene, assets, document).map_err(AnalysisFault::Ground);
+        let made = run_within(of_kind, &arguments, extent.as_ref(), compared, &StopFlag::default());
+        let made = made.map_err(|fault| match fault {
+            AnalysisFault::Ground(error) => error,
+            AnalysisFault::Analysis(error) => failed(document, table, error),
+        });
+        let Some(PlacedOutcome { ground, outcome }) = errors.keep(made) else { continue };
         for note in &outcome.notes {
             let span = table.kind.span().unwrap_or_default();
             findings.add(FindingCode::AnalysisLimited, span, format!("{name}: {note}"));
         }
-        analyses.push(SceneAnalysis { name, arguments, number: analyses.len(), feature, outcome });
+        analyses.push(SceneAnalysis { name, kind, number: analyses.len(), feature, ground, outcome });
     }
     errors.finish()?;
     scene.findings.extend(findings.into_vec());
     scene.analyses = analyses;
     Ok(())
+}
+
+/// Why an analysis has no outcome.
+enum AnalysisFault {
+    /// The ground to compare with cannot be had.
+    Ground(Diagnostic),
+    Analysis(AnalysisError),
+}
+
+impl From<AnalysisError> for AnalysisFault {
+    fn from(error: AnalysisError) -> Self {
+        Self::Analysis(error)
+    }
 }
 
 /// The error of an analysis at the argument that is at fault, or else at its kind.

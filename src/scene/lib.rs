@@ -9,6 +9,7 @@
 
 mod all_samples;
 pub mod analyses;
+pub mod analysis_map;
 pub mod areas;
 pub mod assets;
 pub mod attributes;

@@ -229,7 +229,7 @@ fn argument(form: &ParameterForm) -> Value {
         ParameterForm::Points { .. } => {
             json!({ "anyOf": [reference("point"), list(reference("point"), 1, INLINE_POINTS.count())] })
         }
-        ParameterForm::Line => list(reference("point"), 2, INLINE_POINTS.count()),
+        ParameterForm::Line | ParameterForm::Extent => list(reference("point"), 2, INLINE_POINTS.count()),
         ParameterForm::Area => list(reference("point"), 3, INLINE_POINTS.count()),
     }
 }

@@ -123,6 +123,7 @@ fn form_and_range(form: &ParameterForm) -> (String, String) {
         ParameterForm::Points { .. } => any("point or list of points"),
         ParameterForm::Line => any("list of points, a line"),
         ParameterForm::Area => any("list of points, a ring"),
+        ParameterForm::Extent => any("list of points: two corners, or a ring"),
         ParameterForm::Vehicle => any("name of a vehicle"),
         ParameterForm::Ground => any("file, or `source`"),
     }

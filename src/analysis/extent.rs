@@ -1,0 +1,237 @@
+//! The part of the land that an analysis is limited to.
+//!
+//! A kind whose values depend on the land within a reach sees that much around the extent, so that its values there have the
+//! bits of those on the whole land. For a kind that reaches everywhere the land ends at the extent.
+//!
+//! ```text
+//!   land ──► extent grown by the reach ──► run ──► cut to the extent, no data outside an area
+//!        └─► extent, no ground outside an area ──► run                    (a kind that reaches everywhere)
+//! ```
+
+use std::sync::Arc;
+
+use glam::DVec2;
+
+use crate::arguments::AnalysisArguments;
+use crate::error::AnalysisError;
+use crate::land::Land;
+use crate::outcome::{Outcome, OutcomeRaster, PostValues};
+use crate::run::{raster_figures, run};
+use sandtable_catalog::parameter::EXTENT;
+use sandtable_geom::polygon::crossings;
+use sandtable_geom::rect::Rect;
+use sandtable_terrain::lattice::{Lattice, LatticeError, Post};
+use sandtable_terrain::post_rect::PostRect;
+use sandtable_terrain::stop_flag::StopFlag;
+
+/// The share of a cell by which a post may lie outside an extent and is in it: corners written in decimals name posts.
+const SNAP: f64 = 1e-6;
+
+/// The part of the land that an analysis is limited to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LandExtent {
+    /// In map coordinates of the land.
+    bounds: Rect,
+    /// The ring of an area in map coordinates of the land; `None` of a rectangle.
+    ring: Option<Vec<DVec2>>,
+}
+
+/// What an analysis gives of the land or of an extent.
+pub struct PlacedOutcome {
+    /// The ground on whose posts the values of a raster are.
+    pub ground: Arc<Lattice>,
+    /// What the analysis gives.
+    pub outcome: Outcome,
+}
+
+/// Runs an analysis on an extent of the land; on all of it without one. `compared` gives the ground to compare with on the posts of
+/// a part of the land.
+///
+/// # Errors
+/// As [`run`]; those of `compared`; [`AnalysisError::Argument`] of an extent off the land.
+pub fn run_within<E: From<AnalysisError>>(
+    land: Land,
+    arguments: &AnalysisArguments,
+    extent: Option<&LandExtent>,
+    compared: impl FnOnce(&Land) -> Result<Option<Arc<Lattice>>, E>,
+    stop: &StopFlag,
+) -> Result<PlacedOutcome, E> {
+    let wrong = |problem: String| AnalysisError::argument(EXTENT.name, problem);
+    let Some(extent) = extent else {
+        let land = Land { other_ground: compared(&land)?, ..land };
+        let outcome = run(&land, arguments, stop)?;
+        return Ok(PlacedOutcome { ground: land.ground, outcome });
+    };
+    let lattice = |error: LatticeError| wrong(error.to_string());
+    let is_beyond = extent.is_beyond(&land.ground);
+    let needed = extent.needed_posts(arguments, &land.ground).map_err(wrong)?;
+    let mut land = land_part(land, needed).map_err(lattice)?;
+    let is_cut = arguments.reach_posts(land.ground.cell()).is_none();
+    if is_cut {
+        land = extent.masked(land).map_err(wrong)?;
+    }
+    land.other_ground = compared(&land)?;
+    let mut outcome = run(&land, arguments, stop)?;
+    let mut ground = land.ground;
+    if !is_cut {
+        let posts = extent.posts(&ground).map_err(wrong)?;
+        let part = ground_part(&ground, posts).map_err(lattice)?;
+        outcome.raster = outcome.raster.take().map(|raster| {
+            let mut raster = raster_part(raster, &ground, posts);
+            extent.mask(&mut raster, &part);
+            outcome.figures = raster_figures(arguments.kind(), &raster, &part);
+            raster
+        });
+        ground = part;
+    }
+    if is_beyond {
+        outcome.notes.push("`extent` reaches beyond the land; nothing is known there".into());
+    }
+    Ok(PlacedOutcome { ground, outcome })
+}
+
+impl LandExtent {
+    /// The smallest rectangle around positions, in map coordinates of the land.
+    pub fn rectangle(around: impl IntoIterator<Item = DVec2>) -> Self {
+        Self { bounds: Rect::around(around), ring: None }
+    }
+
+    /// An area within a ring of three positions or more, in map coordinates of the land.
+    pub fn area(ring: Vec<DVec2>) -> Self {
+        Self { bounds: Rect::around(ring.iter().copied()), ring: Some(ring) }
+    }
+
+    /// Its bounds, in map coordinates of the land.
+    pub fn bounds(&self) -> Rect {
+        self.bounds
+    }
+
+    /// The posts of the land within its bounds.
+    ///
+    /// # Errors
+    /// It lies off the land, or holds fewer than two posts a side.
+    pub fn posts(&self, land: &Lattice) -> Result<PostRect, String> {
+        let (of_land, bounds) = (land.map_extent(), &self.bounds);
+        if !of_land.meets(bounds) {
+            let Rect { min, max } = of_land;
+            return Err(format!(
+                "{},{} to {},{} lies off the land, which reaches from {},{} to {},{}",
+                bounds.min.x, bounds.min.y, bounds.max.x, bounds.max.y, min.x, min.y, max.x, max.y
+            ));
+        }
+        let (low, high) = (land.grid_from_map(bounds.min) - SNAP, land.grid_from_map(bounds.max) + SNAP);
+        let posts =
+            PostRect::between(land, low, high).filter(|posts| posts.width() > 1 && posts.height() > 1);
+        posts.ok_or_else(|| {
+            let cell = land.cell();
+            format!("holds fewer than two posts a side; they lie {} by {} m apart", cell.x, cell.y)
+        })
+    }
+
+    /// The posts of the land that an analysis must know for the values within: those with its reach around them.
+    ///
+    /// # Errors
+    /// As [`LandExtent::posts`].
+    pub fn needed_posts(&self, arguments: &AnalysisArguments, land: &Lattice) -> Result<PostRect, String> {
+        let reach = arguments.reach_posts(land.cell()).unwrap_or(0);
+        Ok(self.posts(land)?.grown((reach, reach), land))
+    }
+
+    /// Whether it reaches a cell or more beyond the land.
+    pub fn is_beyond(&self, land: &Lattice) -> bool {
+        let (low, high) = (land.grid_from_map(self.bounds.min), land.grid_from_map(self.bounds.max));
+        low.cmple(DVec2::NEG_ONE).any() || high.cmpge(land.last_grid() + 1.0).any()
+    }
+
+    /// The land without ground outside the area; the whole of it where the extent is a rectangle.
+    ///
+    /// # Errors
+    /// There is no ground inside.
+    pub fn masked(&self, land: Land) -> Result<Land, String> {
+        let Some(ring) = &self.ring else { return Ok(land) };
+        let ground = &land.ground;
+        let mut heights = ground.heights().to_vec();
+        outside(ring, ground, |index| heights[index] = f32::NAN);
+        if heights.iter().all(|height| height.is_nan()) {
+            return Err("holds no post with an elevation".into());
+        }
+        let frame = (ground.origin(), ground.cell());
+        let masked = Lattice::part(frame, ground.first(), ground.columns(), heights);
+        let masked = masked.map_err(|error| error.to_string())?;
+        Ok(Land { ground: Arc::new(masked), ..land })
+    }
+
+    /// Takes the values outside the area from a raster on the posts of `ground`.
+    pub fn mask(&self, raster: &mut OutcomeRaster, ground: &Lattice) {
+        let Some(ring) = &self.ring else { return };
+        match &mut raster.values {
+            PostValues::Numbers(values) => outside(ring, ground, |index| values[index] = f32::NAN),
+            PostValues::Codes(codes) => outside(ring, ground, |index| codes[index] = PostValues::NO_CODE),
+        }
+    }
+}
+
+/// Calls `visit` with the index of each post outside a ring.
+fn outside(ring: &[DVec2], ground: &Lattice, mut visit: impl FnMut(usize)) {
+    for row in 0..ground.rows() {
+        let start = Post { column: 0, row };
+        let inside = crossings([ring], ground.map_position(start).y);
+        for column in 0..ground.columns() {
+            let post = Post { column, ..start };
+            let x = ground.map_position(post).x;
+            if inside.partition_point(|&crossing| crossing <= x) % 2 == 0 {
+                visit(ground.index(post));
+            }
+        }
+    }
+}
+
+/// The posts of a lattice that holds all of its own, as a lattice.
+///
+/// # Errors
+/// As [`Lattice::cut_to_held`].
+pub fn ground_part(ground: &Arc<Lattice>, posts: PostRect) -> Result<Arc<Lattice>, LatticeError> {
+    match posts == PostRect::all(ground) && ground.holds_all() {
+        true => Ok(Arc::clone(ground)),
+        false => Ok(Arc::new(ground.holding_only(posts).cut_to_held()?)),
+    }
+}
+
+/// The land of these posts; lines that leave it stay whole.
+///
+/// # Errors
+/// As [`Lattice::cut_to_held`].
+fn land_part(land: Land, posts: PostRect) -> Result<Land, LatticeError> {
+    if posts == PostRect::all(&land.ground) {
+        return Ok(land);
+    }
+    let ground = ground_part(&land.ground, posts)?;
+    let columns = land.ground.columns() as usize;
+    Ok(Land {
+        ground,
+        cover: land.cover.map(|values| values_part(&values, columns, posts)),
+        water: land.water.map(|values| values_part(&values, columns, posts)),
+        woods: land.woods.map(|values| values_part(&values, columns, posts)),
+        obstacles_m: land.obstacles_m.map(|values| values_part(&values, columns, posts)),
+        ..land
+    })
+}
+
+/// The raster of these posts of `ground`.
+fn raster_part(raster: OutcomeRaster, ground: &Lattice, posts: PostRect) -> OutcomeRaster {
+    let columns = ground.columns() as usize;
+    let values = match raster.values {
+        PostValues::Numbers(values) => PostValues::Numbers(values_part(&values, columns, posts)),
+        PostValues::Codes(codes) => PostValues::Codes(values_part(&codes, columns, posts)),
+    };
+    OutcomeRaster { values, ..raster }
+}
+
+/// The values of a rectangle of posts among those of rows of `columns`.
+fn values_part<T: Copy>(values: &[T], columns: usize, posts: PostRect) -> Vec<T> {
+    let row = |row: u32| {
+        let first = row as usize * columns + posts.first.column as usize;
+        &values[first..first + posts.width()]
+    };
+    (posts.first.row..=posts.last.row).map(row).collect::<Vec<_>>().concat()
+}
