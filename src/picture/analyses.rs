@@ -8,7 +8,7 @@ use crate::graphic_lines::{GraphicPen, GraphicView, LineLook};
 use crate::placed_text::{PlacedCourse, PlacedText};
 use crate::post_tint::{PostTint, TintPlan};
 use crate::sight::{circle, level_text};
-use sandtable_analysis::outcome::{FeatureRole, OutcomeFeature, OutcomeShape, PropertyValue};
+use sandtable_analysis::outcome::{FeatureRole, Hatching, OutcomeFeature, OutcomeShape, PropertyValue};
 use sandtable_description::words::StylePreset;
 use sandtable_draw::color::Srgba;
 use sandtable_geom::polygon::doubled_area;
@@ -35,6 +35,9 @@ pub(super) fn tints(scene: &SceneModel) -> Vec<TintPlan> {
 fn tint(analysis: &SceneAnalysis, scene: &SceneModel) -> Option<TintPlan> {
     let raster = analysis.outcome.raster.as_ref()?;
     let (classes, lattice) = (shown_classes(raster), &*analysis.ground);
+    if is_print(scene) && classes.iter().any(|class| class.look.hatching != Hatching::None) {
+        return None;
+    }
     let colors: Vec<Option<Srgba>> = classes
         .iter()
         .map(|class| Some(Srgba(class.look.tint)).filter(|Srgba([.., alpha])| *alpha > 0))
@@ -64,7 +67,12 @@ pub(super) fn colors(scene: &SceneModel) -> impl Iterator<Item = Srgba> {
 
 /// The color of lines on a picture: black on one in black on white.
 pub(super) fn printed(scene: &SceneModel, color: Srgba) -> Srgba {
-    if scene.preset == Some(StylePreset::Print) { Srgba::opaque(0, 0, 0) } else { color }
+    if is_print(scene) { Srgba::opaque(0, 0, 0) } else { color }
+}
+
+/// Whether pictures are black on white, where classes are told by their hatching alone.
+pub(super) fn is_print(scene: &SceneModel) -> bool {
+    scene.preset == Some(StylePreset::Print)
 }
 
 /// The fill of a site with lines of this color.

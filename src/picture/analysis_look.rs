@@ -34,6 +34,12 @@ const RAMP: [[u8; 3]; CLASSES] = [
     [253, 231, 37],
 ];
 
+/// Square meters in a square kilometer.
+const KM2: f32 = 1e6;
+
+/// The share of light that the tint of a class by powers of ten stops, of 255.
+const WATER_ALPHA: u8 = 215;
+
 /// The tints of classes by powers of ten, the lowest of which is none: more water is darker.
 const WATERS: [[u8; 3]; CLASSES] = [
     [255, 255, 255],
@@ -94,16 +100,23 @@ fn round_classes(raster: &OutcomeRaster) -> Vec<ValueClass> {
         true => (powers(middle, greatest), WATERS),
         false => (steps(low, high), RAMP),
     };
-    let unit = if raster.unit.is_empty() { String::new() } else { format!(" {}", raster.unit) };
+    let is_large = raster.unit == "m²" && froms.iter().any(|from| *from >= KM2 / 10.0);
+    let (unit, scale) = if is_large { ("km²", 1.0 / KM2) } else { (raster.unit, 1.0) };
+    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+    let written = |from: f32| short(from * scale);
     let class = |(index, &from): (usize, &f32)| {
         let label = match froms.get(index + 1) {
-            Some(&to) => format!("{} to {}{unit}", short(from), short(to)),
-            None => format!("{}{unit} and more", short(from)),
+            Some(&to) => format!("{} to {}{unit}", written(from), written(to)),
+            None => format!("{}{unit} and more", written(from)),
         };
         let place = index * (CLASSES - 1) / (froms.len() - 1).max(1);
         let [red, green, blue] = tints[place];
-        let is_none = tints == WATERS && index == 0;
-        let tint = if is_none { [0; 4] } else { [red, green, blue, TINT_ALPHA] };
+        let alpha = match tints == WATERS {
+            true if index == 0 => 0,
+            true => WATER_ALPHA,
+            false => TINT_ALPHA,
+        };
+        let tint = if alpha == 0 { [0; 4] } else { [red, green, blue, alpha] };
         ValueClass::new(if index == 0 { f32::NEG_INFINITY } else { from }, label, tint, Hatching::None)
     };
     froms.iter().enumerate().map(class).collect()

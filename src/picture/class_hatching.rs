@@ -8,7 +8,7 @@ use std::f64::consts::FRAC_PI_4;
 use glam::DVec2;
 use rayon::prelude::*;
 
-use crate::analyses::printed;
+use crate::analyses::{is_print, printed};
 use crate::analysis_look::{class_of, hatch_color};
 use crate::graphic_lines::{GraphicPen, GraphicView, LineLook};
 use sandtable_analysis::outcome::{Hatching, OutcomeRaster, ValueClass};
@@ -20,6 +20,8 @@ use sandtable_terrain::lattice::Post;
 /// The distance of lines in text heights, and the width of a line in pixels of a picture 1080 lines high.
 const APART_EM: f64 = 0.8;
 const WIDTH_PX: f64 = 1.1;
+/// The same in black on white, which a copier keeps.
+const PRINT_WIDTH_PX: f64 = 1.8;
 
 /// The length of a dot in text heights: it is as long as wide.
 const DOT_EM: f64 = 0.09;
@@ -92,7 +94,11 @@ impl HatchedRaster<'_> {
     ) {
         let look = self.classes[class].look;
         let color = printed(self.scene, hatch_color(look.tint));
-        let width_px = if look.hatching == Hatching::Dots { DOT_WIDTH_PX } else { WIDTH_PX };
+        let width_px = match look.hatching {
+            Hatching::Dots => DOT_WIDTH_PX,
+            _ if is_print(self.scene) => PRINT_WIDTH_PX,
+            _ => WIDTH_PX,
+        };
         view.draw_bare(
             pen,
             &[from, to],

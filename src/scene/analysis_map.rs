@@ -9,16 +9,15 @@ use crate::scene_file::{OpenSceneError, open_document};
 use crate::scene_model::SceneModel;
 use sandtable_description::document::Document;
 use sandtable_description::parse::parse;
-use sandtable_description::words::SheetLayout;
+use sandtable_description::words::{GridName, SheetLayout};
 use sandtable_raster::raster::Raster;
 
-/// How ground alone is drawn: in grays, on which every tint is told.
+/// How ground alone is drawn: pale, so that every tint is told.
 const GROUND: &str = "
 [style]
-preset = \"relief\"
+preset = \"military\"
 [furniture]
 legend = false
-grid = \"metric\"
 ";
 
 /// What every map has.
@@ -54,7 +53,7 @@ pub fn ground_map(
     let text = format!("{MAP}{GROUND}").replace("\"ground\"", &serde_json::Value::from(name).to_string());
     let mut document = parse("map", &text)?;
     if ground.crs.is_none() {
-        document.furniture.grid = None;
+        document.furniture.grid = Some(GridName::Metric);
     }
     titled(&mut document, texts);
     let assets = Assets::new(file, &[])?.with_elevation(Arc::new(ground));

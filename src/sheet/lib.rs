@@ -10,7 +10,7 @@ pub mod graphic_texts;
 pub mod grid;
 pub mod labels;
 pub mod legend;
-mod legend_overlay;
+pub mod legend_overlay;
 mod legend_symbols;
 mod line_end;
 mod line_labels;

@@ -23,7 +23,7 @@ use sandtable_view::camera::Camera;
 /// The darkest gray of the relief, 0..=1: lighter than what a copier turns black.
 const DARKEST: f32 = 0.66;
 /// The luminance below which what an analysis shows is one of its lines, which are black, and not its tint.
-const MARK: f32 = 0.012;
+const MARK: f32 = 0.12;
 /// Gray of the walls of the block.
 const WALL: u8 = 225;
 /// The brightest red of the scene in the night look, and of letters and lines on it, of full red: the scene must not

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod analyses;
 mod assets;
 mod buffers;
 mod clearance;
