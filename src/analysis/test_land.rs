@@ -52,3 +52,14 @@ pub(crate) fn values_of(raster: &OutcomeRaster) -> Vec<f32> {
 pub(crate) fn on_pool<T: Send>(threads: usize, task: impl FnOnce() -> T + Send) -> T {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads").install(task)
 }
+
+/// Heights from 0 to below `steps` without any form, the same for the same seed; where `is_holed`, one in 29 is missing.
+pub(crate) fn noise(count: usize, mut seed: u32, steps: u32, is_holed: bool) -> Vec<f32> {
+    let mut next = || {
+        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        seed >> 8
+    };
+    (0..count)
+        .map(|_| if is_holed && next() % 29 == 0 { f32::NAN } else { (next() % steps) as f32 })
+        .collect()
+}

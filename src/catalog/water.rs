@@ -14,23 +14,63 @@ const LIMITS: &[&str] = &[
 /// The layers that water needs: what lets it through embankments.
 const CROSSINGS: &[LandPart] = &[LandPart::Crossings];
 
+/// What is done about depressions.
+const DEPRESSIONS: AnalysisParameter = AnalysisParameter::word(
+    "depressions",
+    &["fill", "breach"],
+    "fill",
+    "What is done about depressions: they are filled to their lowest rim, or a way out is cut where that takes away least.",
+);
+
+/// The greatest depth of a breach.
+const BREACH_DEPTH: AnalysisParameter = AnalysisParameter::number(
+    "breach_depth_m",
+    (0.0, 1000.0),
+    "m",
+    ParameterDefault::Value("10"),
+    "The greatest depth of a cut below the ground; a depression that needs a deeper one is filled.",
+);
+
+/// The greatest length of a breach.
+const BREACH_LENGTH: AnalysisParameter = AnalysisParameter::number(
+    "breach_length_m",
+    (1.0, 100_000.0),
+    "m",
+    ParameterDefault::Value("500"),
+    "The greatest distance of a way out from its pit, by column or row, and at most 1000 posts.",
+);
+
+/// The least area of a stream.
+const STREAM_AREA: AnalysisParameter = AnalysisParameter::number(
+    "area_m2",
+    (1.0, 1e12),
+    "m²",
+    ParameterDefault::Value("500000"),
+    "The least area that drains through a stream.",
+);
+
 /// The kinds.
 pub(crate) const KINDS: &[AnalysisKind] = &[
     AnalysisKind {
         name: "fill",
         family: AnalysisFamily::Water,
         title: "Depressions",
-        summary: "The depressions of the ground: their depth, or the ground with them filled to their lowest rim.",
-        parameters: &[AnalysisParameter::word(
-            "show",
-            &["depth", "filled"],
-            "depth",
-            "What the values are: the depth below the rim, or the filled ground.",
-        )],
+        summary: "The depressions of the ground: their depth, or the ground with them filled or breached.",
+        parameters: &[
+            AnalysisParameter::word(
+                "show",
+                &["depth", "filled"],
+                "depth",
+                "What the values are: the depth below the rim, below 0 where a way out is cut; or the ground without depressions.",
+            ),
+            DEPRESSIONS,
+            BREACH_DEPTH,
+            BREACH_LENGTH,
+        ],
         yields: AnalysisYield::Raster,
         reach: AnalysisReach::Whole,
         layers: CROSSINGS,
-        source: "Barnes, Lehman and Mulla 2014 (Priority-Flood)",
+        source: "Barnes, Lehman and Mulla 2014 (the surface of Priority-Flood); Cordonnier, Bovy and Braun 2019 (by the graph of basins); Lindsay 2016 (breaching)",
         limits: LIMITS,
     },
     AnalysisKind {
@@ -38,34 +78,50 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
         family: AnalysisFamily::Water,
         title: "Flow",
         summary: "The area that drains through each post, or the direction in which it drains.",
-        parameters: &[AnalysisParameter::word(
-            "show",
-            &["accumulation", "direction"],
-            "accumulation",
-            "What the values are: the drained area in m², or directions from 1 east counter-clockwise to 8 south-east, 0 off the land.",
-        )],
+        parameters: &[
+            AnalysisParameter::word(
+                "show",
+                &["accumulation", "direction"],
+                "accumulation",
+                "What the values are: the drained area in m², or directions: of `d8` from 1 east counter-clockwise to 8 south-east, 0 off the land; of `dinf` in degrees from the east counter-clockwise.",
+            ),
+            AnalysisParameter::word(
+                "method",
+                &["d8", "dinf"],
+                "d8",
+                "In eight directions, or in any, water between two neighbors going to both.",
+            ),
+            DEPRESSIONS,
+            BREACH_DEPTH,
+            BREACH_LENGTH,
+        ],
         yields: AnalysisYield::Raster,
         reach: AnalysisReach::Whole,
         layers: CROSSINGS,
-        source: "O'Callaghan and Mark 1984 (D8) on ground filled after Barnes, Lehman and Mulla 2014",
+        source: "O'Callaghan and Mark 1984 (D8), Tarboton 1997 (D-infinity); Barnes, Lehman and Mulla 2014 (depressions) and 2014b (flats); Lindsay 2016 (breaching)",
         limits: LIMITS,
     },
     AnalysisKind {
         name: "streams",
         family: AnalysisFamily::Water,
         title: "Streams",
-        summary: "The ways of water that drain at least an area, as lines with Strahler's order.",
-        parameters: &[AnalysisParameter::number(
-            "area_m2",
-            (1.0, 1e12),
-            "m²",
-            ParameterDefault::Value("500000"),
-            "The least area that drains through a stream.",
-        )],
+        summary: "The ways of water that drain at least an area, as lines with Strahler's order and Shreve's magnitude.",
+        parameters: &[
+            STREAM_AREA,
+            AnalysisParameter::word(
+                "order",
+                &["strahler", "shreve"],
+                "strahler",
+                "The order of a stream, which gives its width on pictures: Strahler's, or Shreve's magnitude, the number of sources above it. Both are properties.",
+            ),
+            DEPRESSIONS,
+            BREACH_DEPTH,
+            BREACH_LENGTH,
+        ],
         yields: AnalysisYield::Features,
         reach: AnalysisReach::Whole,
         layers: CROSSINGS,
-        source: "O'Callaghan and Mark 1984; Strahler 1957",
+        source: "O'Callaghan and Mark 1984; Strahler 1957; Shreve 1966; Lindsay 2016 (breaching)",
         limits: LIMITS,
     },
 ];

@@ -219,7 +219,7 @@ fn spread(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_land::{bare, on_pool};
+    use crate::test_land::{bare, noise, on_pool};
     use crate::water::fill::filled;
     use std::collections::BTreeMap;
 
@@ -227,14 +227,6 @@ mod tests {
         let land = bare((DVec2::ZERO, DVec2::splat(10.0)), columns, heights.to_vec());
         let filled_m = filled(heights, columns as usize, &StopFlag::default()).expect("filled");
         directions(&land.ground, &filled_m, &StopFlag::default()).expect("drained")
-    }
-
-    fn noise(count: usize, mut seed: u32, steps: u32) -> Vec<f32> {
-        let mut next = || {
-            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            seed >> 8
-        };
-        (0..count).map(|_| if next() % 61 == 0 { f32::NAN } else { (next() % steps) as f32 }).collect()
     }
 
     #[test]
@@ -320,7 +312,7 @@ mod tests {
     fn flats_drain_down_the_mask_that_was_published() {
         for (seed, steps) in [(3, 2), (4, 3), (5, 6)] {
             let (columns, rows) = (31, 27);
-            let raw = noise(columns * rows, seed, steps);
+            let raw = noise(columns * rows, seed, steps, true);
             let heights = filled(&raw, columns, &StopFlag::default()).expect("filled");
             let mut first = vec![NO_DIRECTION; heights.len()];
             let flats = fall_lines(DVec2::splat(10.0), &heights, columns, &mut first);
@@ -347,7 +339,7 @@ mod tests {
 
     #[test]
     fn one_thread_finds_the_directions_of_three() {
-        let heights = noise(200 * 150, 8, 4);
+        let heights = noise(200 * 150, 8, 4, true);
         assert_eq!(on_pool(1, || drained(200, &heights)), on_pool(3, || drained(200, &heights)));
     }
 }

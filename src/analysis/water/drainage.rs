@@ -139,16 +139,11 @@ impl Drainage {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_land::{bare, on_pool};
+    use crate::test_land::{bare, noise, on_pool};
     use glam::DVec2;
 
-    fn drained(columns: u32, count: usize, mut seed: u32, steps: u32) -> Drainage {
-        let heights: Vec<f32> = (0..count)
-            .map(|_| {
-                seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                if seed >> 27 == 0 { f32::NAN } else { ((seed >> 12) % steps) as f32 }
-            })
-            .collect();
+    fn drained(columns: u32, count: usize, seed: u32, steps: u32) -> Drainage {
+        let heights = noise(count, seed, steps, true);
         let land = bare((DVec2::ZERO, DVec2::new(10.0, 14.0)), columns, heights);
         drain(&land.ground, land.ground.heights(), &StopFlag::default()).expect("drained")
     }

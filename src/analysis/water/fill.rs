@@ -257,7 +257,7 @@ mod tests {
     use std::cmp::Reverse;
     use std::collections::BinaryHeap;
 
-    use crate::test_land::on_pool;
+    use crate::test_land::{noise, on_pool};
     use sandtable_terrain::neighbors::neighbors;
 
     /// Priority-Flood as it is published, with one queue.
@@ -281,17 +281,6 @@ mod tests {
             }
         }
         filled
-    }
-
-    pub(crate) fn noise(count: usize, seed: u32, steps: u32, holes: bool) -> Vec<f32> {
-        let mut seed = seed;
-        let mut next = || {
-            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            seed >> 8
-        };
-        (0..count)
-            .map(|_| if holes && next() % 29 == 0 { f32::NAN } else { (next() % steps) as f32 - 3.5 })
-            .collect()
     }
 
     #[test]
