@@ -60,11 +60,12 @@ pub(crate) fn speed(
     _stop: &StopFlag,
 ) -> Result<Outcome, AnalysisError> {
     let vehicle = Vehicle::named(land, &arguments.word("vehicle"))?;
-    let Going { codes, speed_kmh: mut values, is_way, notes } = Going::new(land, &vehicle)?;
+    let Going { codes, speed_kmh: mut values, is_way, closed, notes } = Going::new(land, &vehicle)?;
+    let ground = closed.as_ref().unwrap_or(&land.ground);
     let grades = GradeTable::new(&vehicle, arguments.word("method") == "langmuir");
     let columns = land.ground.columns() as usize;
     values.par_chunks_mut(columns).enumerate().for_each(|(row, values)| {
-        let slopes = land.ground.slopes_of_row(row as u32);
+        let slopes = ground.slopes_of_row(row as u32);
         for ((column, value), slopes) in values.iter_mut().enumerate().zip(slopes) {
             let index = row * columns + column;
             if codes[index] != PostValues::NO_CODE && !is_way[index] {
@@ -72,9 +73,9 @@ pub(crate) fn speed(
             }
         }
     });
-    let ground: Vec<f64> =
+    let moving: Vec<f64> =
         values.iter().filter(|&&speed| speed > 0.0).map(|&speed| f64::from(speed)).collect();
-    let mean = if ground.is_empty() { 0.0 } else { ground.iter().sum::<f64>() / ground.len() as f64 };
+    let mean = if moving.is_empty() { 0.0 } else { moving.iter().sum::<f64>() / moving.len() as f64 };
     let figures = vec![Figure::new("mean speed where it can go", mean, "km/h")];
     let raster = OutcomeRaster {
         name: "speed",
