@@ -33,6 +33,8 @@ pub struct Land {
     pub knows_crossings: bool,
     /// Walls, fences, banks and cliffs that a vehicle must climb.
     pub steps: Vec<Step>,
+    /// Ditches and other gaps that a vehicle must cross.
+    pub gaps: Vec<Gap>,
     /// The vehicles that the scene describes.
     pub vehicles: Vec<Vehicle>,
     /// The ground to compare with, on the same posts.
@@ -170,6 +172,15 @@ pub struct Step {
     pub height_m: f64,
 }
 
+/// A gap in the ground: a ditch or a trench.
+#[derive(Clone, Debug)]
+pub struct Gap {
+    /// Map coordinates, two or more, along it.
+    pub line: Vec<DVec2>,
+    /// Its width from rim to rim, meters.
+    pub width_m: f64,
+}
+
 impl Land {
     /// The land of bare ground: nothing is known of what lies on it.
     pub fn bare(ground: Arc<Lattice>, crs: Crs) -> Self {
@@ -184,6 +195,7 @@ impl Land {
             crossings: Vec::new(),
             knows_crossings: false,
             steps: Vec::new(),
+            gaps: Vec::new(),
             vehicles: Vec::new(),
             other_ground: None,
         }

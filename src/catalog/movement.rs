@@ -28,8 +28,9 @@ const NO_SOIL: &str = "No soil and no weather: trafficability follows from slope
      program's defaults for covers.";
 
 /// What water does where its depth is unknown.
-const UNKNOWN_DEPTH: &str = "Water of unknown depth counts as not fordable; `gap_m` has no effect, since widths of ditches are \
-     not known; posts are no finer than the model, so that smaller obstacles are missed.";
+const UNKNOWN_DEPTH: &str = "Water of unknown depth counts as not fordable; ditches of the ground are crossed by `gap_m` where \
+     posts lie closer than half of it, up to eight posts from rim to rim, and by their slopes elsewhere; posts are no finer \
+     than the model, so that smaller obstacles are missed.";
 
 /// What is wrong with ways on a lattice.
 const METRICATION: &str = "Ways go to sixteen neighbors: they are up to 2.75 % too long where the ground is alike in all \
@@ -103,7 +104,7 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
         summary: "Ground that is unrestricted (0), restricted (1) or severely restricted (2) for a vehicle, with the area of each.",
         parameters: &[VEHICLE],
         yields: AnalysisYield::Raster,
-        reach: AnalysisReach::Posts(2),
+        reach: AnalysisReach::Posts(10),
         layers: GOING_LAYERS,
         source: "FM 34-130 (1994), appendix B; ATP 2-01.3",
         limits: &[
@@ -119,7 +120,7 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
         summary: "The speed of a vehicle at each post straight up its slope, 0 where it cannot go.",
         parameters: &[VEHICLE, METHOD],
         yields: AnalysisYield::Raster,
-        reach: AnalysisReach::Posts(2),
+        reach: AnalysisReach::Posts(10),
         layers: GOING_LAYERS,
         source: "Tobler 1993; Naismith 1892 with Langmuir 1984; classes of movement after FM 34-130",
         limits: &[

@@ -7,9 +7,11 @@ use rayon::prelude::*;
 
 use crate::land::{Crossing, CrossingKind, Land, LandCover, RoadClass, Stand, WaterKind, WaterPost};
 use crate::line_posts::along_line;
+use crate::movement::gaps::closed;
 use crate::movement::vehicle::{Drive, Vehicle};
 use crate::outcome::PostValues;
 use sandtable_base::limits::memory::{MemoryRefused, check_memory};
+use sandtable_terrain::lattice::Lattice;
 
 /// Ground on which movement is unrestricted.
 pub(crate) const UNRESTRICTED: u8 = 0;
@@ -26,6 +28,8 @@ pub(crate) struct Going {
     pub speed_kmh: Vec<f32>,
     /// Whether a road, a track, a bridge or a ford is there that the vehicle takes.
     pub is_way: Vec<bool>,
+    /// The ground with the gaps closed that the vehicle crosses; `None` where it is the land's.
+    pub closed: Option<Lattice>,
     /// What was left out, a sentence each.
     pub notes: Vec<String>,
 }
@@ -49,11 +53,14 @@ impl Going {
     pub fn new(land: &Land, vehicle: &Vehicle) -> Result<Self, MemoryRefused> {
         let ground = &*land.ground;
         let (columns, posts) = (ground.columns() as usize, ground.heights().len());
-        check_memory(posts as u64 * 24, "the analysis", "name a smaller `extent`")?;
+        check_memory(posts as u64 * 30, "the analysis", "name a smaller `extent`")?;
+        let closed = closed(ground, vehicle.gap_m);
+        let ground = closed.as_ref().unwrap_or(ground);
         let mut going = Self {
             codes: vec![PostValues::NO_CODE; posts],
             speed_kmh: vec![f32::NAN; posts],
             is_way: vec![false; posts],
+            closed: None,
             notes: Vec::new(),
         };
         let codes = going.codes.par_chunks_mut(columns).zip(going.speed_kmh.par_chunks_mut(columns));
@@ -69,23 +76,43 @@ impl Going {
                 speeds[column] = (vehicle.speed_kmh * rule.share) as f32;
             }
         });
+        going.closed = closed;
+        going.slow_over_gaps(land, vehicle);
         going.place_steps(land, vehicle);
         going.place_ways(land, vehicle);
         Ok(going)
     }
 
-    /// Walls and banks: what the vehicle does not climb is severely restricted, what it climbs is restricted.
+    /// Gaps of the ground itself that are closed for the vehicle restrict it where they are deeper than it steps.
+    fn slow_over_gaps(&mut self, land: &Land, vehicle: &Vehicle) {
+        let Some(closed) = self.closed.take() else { return };
+        let heights = closed.heights().iter().zip(land.ground.heights());
+        for (index, (&closed_m, &ground_m)) in heights.enumerate() {
+            if f64::from(closed_m - ground_m) > vehicle.step_m {
+                self.hinder(index, vehicle, true);
+            }
+        }
+        self.closed = Some(closed);
+    }
+
+    /// Walls, banks and ditches: what the vehicle does not climb or cross is severely restricted, what it does is restricted.
     fn place_steps(&mut self, land: &Land, vehicle: &Vehicle) {
         for step in &land.steps {
             let is_climbed = step.height_m <= vehicle.step_m;
-            along_line(&land.ground, &step.line, 0.0, |index| {
-                if self.codes[index] != PostValues::NO_CODE {
-                    let code = if is_climbed { RESTRICTED } else { SEVERELY_RESTRICTED };
-                    self.codes[index] = self.codes[index].max(code);
-                    let share = if is_climbed { 0.3 } else { 0.0 };
-                    self.speed_kmh[index] = self.speed_kmh[index].min((vehicle.speed_kmh * share) as f32);
-                }
-            });
+            along_line(&land.ground, &step.line, 0.0, |index| self.hinder(index, vehicle, is_climbed));
+        }
+        for gap in &land.gaps {
+            let is_crossed = gap.width_m <= vehicle.gap_m;
+            along_line(&land.ground, &gap.line, gap.width_m, |index| self.hinder(index, vehicle, is_crossed));
+        }
+    }
+
+    fn hinder(&mut self, index: usize, vehicle: &Vehicle, is_passable: bool) {
+        if self.codes[index] != PostValues::NO_CODE {
+            let code = if is_passable { RESTRICTED } else { SEVERELY_RESTRICTED };
+            self.codes[index] = self.codes[index].max(code);
+            let share = if is_passable { 0.3 } else { 0.0 };
+            self.speed_kmh[index] = self.speed_kmh[index].min((vehicle.speed_kmh * share) as f32);
         }
     }
 
@@ -174,7 +201,7 @@ fn ground_rule(land: &Land, vehicle: &Vehicle, index: usize) -> GroundRule {
     if stand.spacing_m > 0.0 && !is_clear {
         return stand_rule(vehicle, stand);
     }
-    cover_rule(vehicle.drive, cover)
+    cover_rule(vehicle, cover)
 }
 
 /// Trees: a vehicle goes between them where the gap is as wide as itself and half a meter more, and over stems that it
@@ -197,7 +224,7 @@ fn stand_rule(vehicle: &Vehicle, stand: Stand) -> GroundRule {
 }
 
 /// The rule of a cover: on foot, on wheels, on tracks.
-fn cover_rule(drive: Drive, cover: LandCover) -> GroundRule {
+fn cover_rule(vehicle: &Vehicle, cover: LandCover) -> GroundRule {
     const FREE: u8 = UNRESTRICTED;
     const SLOW: u8 = RESTRICTED;
     const NOT: u8 = SEVERELY_RESTRICTED;
@@ -210,10 +237,10 @@ fn cover_rule(drive: Drive, cover: LandCover) -> GroundRule {
         LandCover::Wetland => [(SLOW, 0.3), (NOT, 0.0), (NOT, 0.0)],
         LandCover::Sand => [(FREE, 0.6), (SLOW, 0.4), (FREE, 0.7)],
         LandCover::Rock => [(SLOW, 0.5), (NOT, 0.0), (SLOW, 0.3)],
-        LandCover::BuiltUp => [(FREE, 0.9), (SLOW, 0.5), (SLOW, 0.4)],
+        LandCover::BuiltUp => return built_up_rule(vehicle),
         LandCover::Building => [(NOT, 0.0), (NOT, 0.0), (NOT, 0.0)],
     };
-    let (code, share) = match drive {
+    let (code, share) = match vehicle.drive {
         Drive::Foot => rules[0],
         Drive::Wheels => rules[1],
         Drive::Tracks => rules[2],
@@ -221,10 +248,20 @@ fn cover_rule(drive: Drive, cover: LandCover) -> GroundRule {
     rule(code, share)
 }
 
+/// The rule of built-up ground: by the share of its speed that the vehicle has there.
+fn built_up_rule(vehicle: &Vehicle) -> GroundRule {
+    let share = vehicle.built_up_kmh / vehicle.speed_kmh;
+    match share {
+        0.0 => rule(SEVERELY_RESTRICTED, 0.0),
+        share if share < 0.7 => rule(RESTRICTED, share),
+        share => rule(UNRESTRICTED, share),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::land::{RoadLine, Step};
+    use crate::land::{Gap, RoadLine, Step};
     use crate::test_land::{flat, shaped};
     use glam::DVec2;
 
@@ -297,5 +334,57 @@ mod tests {
         };
         assert_eq!((codes("tracked")[5], codes("truck")[5]), (RESTRICTED, SEVERELY_RESTRICTED));
         assert_eq!((codes("truck")[0], codes("truck")[1]), (PostValues::NO_CODE, UNRESTRICTED));
+    }
+
+    #[test]
+    fn a_ditch_stops_what_does_not_cross_its_width() {
+        let mut land = flat(4, 4, 10.0);
+        land.gaps = vec![Gap { line: vec![DVec2::new(0.0, 10.0), DVec2::new(30.0, 10.0)], width_m: 2.0 }];
+        let found = |name: &str| {
+            let going = Going::new(&land, &Vehicle::built_in(name).expect("built in")).expect("memory");
+            (going.codes[5], going.speed_kmh[5], going.codes[9])
+        };
+        // A tank crosses 2.5 m, a truck 0.5 m.
+        assert_eq!(found("tracked"), (RESTRICTED, 9.0, UNRESTRICTED));
+        assert_eq!(found("truck"), (SEVERELY_RESTRICTED, 0.0, UNRESTRICTED));
+    }
+
+    #[test]
+    fn built_up_ground_is_as_fast_as_the_vehicle_is_there_and_stops_one_that_may_not_enter() {
+        let mut land = flat(3, 3, 10.0);
+        land.cover = Some(vec![LandCover::BuiltUp; 9]);
+        for (built_up_kmh, code) in [(0.0, SEVERELY_RESTRICTED), (12.0, RESTRICTED), (24.0, UNRESTRICTED)] {
+            let going = Going::new(&land, &Vehicle { built_up_kmh, ..tracked() }).expect("memory");
+            assert_eq!((going.codes[4], going.speed_kmh[4]), (code, built_up_kmh as f32));
+        }
+        let fault = Vehicle { built_up_kmh: -1.0, ..tracked() }.check().expect_err("below 0");
+        assert_eq!(fault.key, "built_up_kmh");
+    }
+
+    #[test]
+    fn spacing_stems_and_width_decide_each_by_itself_among_trees() {
+        let mut land = flat(2, 2, 10.0);
+        let mut code = |spacing_m: f32, stem_m: f32, vehicle: Vehicle| {
+            land.woods = Some(vec![Stand { spacing_m, stem_m }; 4]);
+            let going = Going::new(&land, &vehicle).expect("memory");
+            (going.codes[0], going.speed_kmh[0])
+        };
+        // 3.6 m wide: the gap between stems must be 4.1 m, or 10.8 m to be wide.
+        assert_eq!(code(11.3, 0.4, tracked()), (RESTRICTED, 18.0));
+        assert_eq!(code(4.6, 0.4, tracked()), (RESTRICTED, 12.0));
+        assert_eq!(code(4.4, 0.4, tracked()), (SEVERELY_RESTRICTED, 0.0));
+        assert_eq!(code(4.4, 0.4, Vehicle { width_m: 3.5, ..tracked() }), (RESTRICTED, 12.0));
+        assert_eq!(code(4.4, 0.4, Vehicle { stem_m: 0.5, ..tracked() }), (RESTRICTED, 9.0));
+    }
+
+    #[test]
+    fn the_height_of_a_step_decides_who_climbs_it() {
+        let mut land = flat(4, 4, 10.0);
+        land.steps = vec![Step { line: vec![DVec2::new(10.0, 0.0), DVec2::new(10.0, 30.0)], height_m: 0.9 }];
+        let found = |step_m: f64| {
+            let going = Going::new(&land, &Vehicle { step_m, ..tracked() }).expect("memory");
+            (going.codes[5], going.speed_kmh[5])
+        };
+        assert_eq!((found(0.9), found(0.8)), ((RESTRICTED, 9.0), (SEVERELY_RESTRICTED, 0.0)));
     }
 }

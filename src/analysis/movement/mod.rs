@@ -2,6 +2,7 @@
 
 mod avenues;
 mod corridors;
+mod gaps;
 mod going;
 mod grade;
 mod isochrones;

@@ -67,11 +67,12 @@ pub(crate) fn speed(
     _stop: &StopFlag,
 ) -> Result<Outcome, AnalysisError> {
     let vehicle = Vehicle::named(land, &arguments.word("vehicle"))?;
-    let Going { codes, speed_kmh: mut values, is_way, notes } = Going::new(land, &vehicle)?;
+    let Going { codes, speed_kmh: mut values, is_way, closed, notes } = Going::new(land, &vehicle)?;
+    let ground = closed.as_ref().unwrap_or(&land.ground);
     let grades = GradeTable::new(&vehicle, arguments.word("method") == "langmuir");
     let columns = land.ground.columns() as usize;
     values.par_chunks_mut(columns).enumerate().for_each(|(row, values)| {
-        let slopes = land.ground.slopes_of_row(row as u32);
+        let slopes = ground.slopes_of_row(row as u32);
         for ((column, value), slopes) in values.iter_mut().enumerate().zip(slopes) {
             let index = row * columns + column;
             if codes[index] != PostValues::NO_CODE && !is_way[index] {

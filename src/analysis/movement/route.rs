@@ -33,7 +33,7 @@ impl RouteMeasures {
         for ends in way.windows(2) {
             let [from, to] = [ends[0], ends[1]].map(|index| lattice.map_position(lattice.post_at(index)));
             measures.length_m += from.distance(to);
-            let rise = f64::from(lattice.heights()[ends[1]]) - f64::from(lattice.heights()[ends[0]]);
+            let rise = f64::from(ground.height_m(ends[1])) - f64::from(ground.height_m(ends[0]));
             measures.climb_m += rise.max(0.0);
             measures.descent_m += (-rise).max(0.0);
         }

@@ -45,15 +45,35 @@ const POSTS_PER_LOOK: u32 = 1 << 16;
 /// The ground as a vehicle travels it.
 pub(crate) struct TravelGround<'a> {
     ground: &'a Lattice,
-    /// Seconds per meter on the level; infinite where the vehicle cannot go.
-    paces: Vec<f32>,
-    is_way: Vec<bool>,
+    posts: Vec<TravelPost>,
     grades: GradeTable,
     steps: [TravelStep; 16],
     least_pace: f32,
     greatest_pace: f32,
-    /// Posts that are slowed, each with its pace before, in the order in which they were slowed.
+    /// Posts that are slowed, each with its signed pace before, in the order in which they were slowed.
     slowed: Vec<(u32, f32)>,
+}
+
+/// A post as a vehicle travels it; what a step needs lies together.
+#[derive(Clone, Copy)]
+struct TravelPost {
+    /// Its height in meters, gaps closed that the vehicle crosses.
+    height_m: f32,
+    /// Seconds per meter on the level; infinite where the vehicle cannot go, below 0 on a road, a bridge or a ford.
+    pace_or_way: f32,
+}
+
+impl TravelPost {
+    /// Seconds per meter on the level; infinite where the vehicle cannot go.
+    #[inline]
+    fn pace(self) -> f32 {
+        self.pace_or_way.abs()
+    }
+
+    #[inline]
+    fn is_way(self) -> bool {
+        self.pace_or_way < 0.0
+    }
 }
 
 /// A step to a neighbor.
@@ -88,17 +108,23 @@ impl<'a> TravelGround<'a> {
         is_langmuir: bool,
     ) -> Result<Self, AnalysisError> {
         let ground = &*land.ground;
-        let posts = ground.heights().len();
-        check_memory(posts as u64 * 28, "the analysis", "name a smaller `extent`")?;
-        if u32::try_from(posts).is_err() {
+        let count = ground.heights().len();
+        check_memory(count as u64 * 28, "the analysis", "name a smaller `extent`")?;
+        if u32::try_from(count).is_err() {
             return Err(AnalysisError::argument(
                 "extent",
                 "has more posts than ways are found on; name a smaller one",
             ));
         }
         let pace = |speed: f32| if speed > 0.0 { 3.6 / speed } else { f32::INFINITY };
-        let paces: Vec<f32> = going.speed_kmh.iter().map(|&speed| pace(speed)).collect();
-        let finite = || paces.iter().copied().filter(|pace| pace.is_finite());
+        let heights = going.closed.as_ref().unwrap_or(ground).heights();
+        let of_way = going.speed_kmh.iter().zip(&going.is_way);
+        let post = |(&height_m, (&speed, &is_way)): (&f32, (&f32, &bool))| TravelPost {
+            height_m,
+            pace_or_way: if is_way { -pace(speed) } else { pace(speed) },
+        };
+        let posts: Vec<TravelPost> = heights.iter().zip(of_way).map(post).collect();
+        let finite = || posts.iter().map(|post| post.pace()).filter(|pace| pace.is_finite());
         let (least_pace, greatest_pace) =
             (finite().fold(f32::INFINITY, f32::min), finite().fold(0.0, f32::max));
         let grades = GradeTable::new(vehicle, is_langmuir);
@@ -113,25 +139,17 @@ impl<'a> TravelGround<'a> {
             let length_m = (ground.cell() * DVec2::new(f64::from(east), f64::from(north))).length() as f32;
             TravelStep { columns: east, rows: north, offset: offset(east, north), flanks, length_m }
         });
-        Ok(Self {
-            ground,
-            paces,
-            is_way: going.is_way,
-            grades,
-            steps,
-            least_pace,
-            greatest_pace,
-            slowed: Vec::new(),
-        })
+        Ok(Self { ground, posts, grades, steps, least_pace, greatest_pace, slowed: Vec::new() })
     }
 
     /// Multiplies the pace of posts, to keep a later way off them.
     pub fn slow_down(&mut self, posts: impl IntoIterator<Item = usize>, factor: f32) {
         for index in posts {
-            self.slowed.push((index as u32, self.paces[index]));
-            self.paces[index] *= factor;
-            if self.paces[index].is_finite() {
-                self.greatest_pace = self.greatest_pace.max(self.paces[index]);
+            let post = &mut self.posts[index];
+            self.slowed.push((index as u32, post.pace_or_way));
+            post.pace_or_way *= factor;
+            if post.pace().is_finite() {
+                self.greatest_pace = self.greatest_pace.max(post.pace());
             }
         }
     }
@@ -139,14 +157,14 @@ impl<'a> TravelGround<'a> {
     /// Gives all posts their paces from before [`TravelGround::slow_down`].
     pub fn undo_slowing(&mut self) {
         while let Some((index, pace)) = self.slowed.pop() {
-            self.paces[index as usize] = pace;
+            self.posts[index as usize].pace_or_way = pace;
         }
     }
 
     /// Whether the vehicle can be at a post.
     #[inline]
     pub fn is_open(&self, index: usize) -> bool {
-        self.paces[index].is_finite()
+        self.posts[index].pace_or_way.is_finite()
     }
 
     /// The post nearest to map coordinates.
@@ -174,12 +192,12 @@ impl<'a> TravelGround<'a> {
     #[inline]
     fn seconds(&self, from: usize, column: i32, row: i32, step: &TravelStep) -> f32 {
         let to = from.wrapping_add_signed(step.offset);
-        let (here, there) = (self.paces[from], self.paces[to]);
-        let is_along_way = self.is_way[from] && self.is_way[to];
-        let mut pace = (here + there) * 0.5;
+        let (here, there) = (self.posts[from], self.posts[to]);
+        let is_along_way = here.is_way() && there.is_way();
+        let mut pace = (here.pace() + there.pace()) * 0.5;
         let reach = step.columns.abs() + step.rows.abs();
         if reach > 1 {
-            let flanks = step.flanks.map(|offset| self.paces[from.wrapping_add_signed(offset)]);
+            let flanks = step.flanks.map(|offset| self.posts[from.wrapping_add_signed(offset)].pace());
             match reach {
                 2 if !is_along_way && flanks[0].is_infinite() && flanks[1].is_infinite() => {
                     return f32::INFINITY;
@@ -191,8 +209,7 @@ impl<'a> TravelGround<'a> {
         if pace.is_infinite() {
             return pace;
         }
-        let heights = self.ground.heights();
-        let grade = (heights[to] - heights[from]) / step.length_m;
+        let grade = (there.height_m - here.height_m) / step.length_m;
         let factor = match is_along_way {
             true => self.grades.on_way(grade),
             false => self.grades.open(grade) * self.across_factor(from, column, row, step),
@@ -207,12 +224,12 @@ impl<'a> TravelGround<'a> {
             return 1.0;
         }
         let (columns, rows) = (self.ground.columns() as i32, self.ground.rows() as i32);
-        let heights = self.ground.heights();
-        let own = heights[from];
+        let own = self.posts[from].height_m;
         let height = |sign: i32| {
             let (east, north) = (column - sign * step.rows, row + sign * step.columns);
             let is_within = east >= 0 && north >= 0 && east < columns && north < rows;
-            let height = if is_within { heights[(north * columns + east) as usize] } else { f32::NAN };
+            let height =
+                if is_within { self.posts[(north * columns + east) as usize].height_m } else { f32::NAN };
             if height.is_nan() { None } else { Some(height) }
         };
         let cell = self.ground.cell().as_vec2();
@@ -227,7 +244,7 @@ impl<'a> TravelGround<'a> {
 
     /// Seconds from the nearest in time of the starts to each post; infinite where none is reached.
     pub fn times(&self, starts: &[usize], goal: TravelGoal<'_>, stop: &StopFlag) -> Vec<f32> {
-        let mut times = vec![f32::INFINITY; self.paces.len()];
+        let mut times = vec![f32::INFINITY; self.posts.len()];
         let length =
             |of: fn(f32, f32) -> f32, first: f32| self.steps.iter().map(|step| step.length_m).fold(first, of);
         let shortest = length(f32::min, f32::INFINITY) * self.grades.least();
@@ -323,6 +340,11 @@ impl<'a> TravelGround<'a> {
             sums.push(sum);
         }
         sums
+    }
+
+    /// The height of a post as the vehicle travels it, meters.
+    pub fn height_m(&self, index: usize) -> f32 {
+        self.posts[index].height_m
     }
 
     /// The ground.

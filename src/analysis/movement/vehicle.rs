@@ -32,6 +32,8 @@ pub struct Vehicle {
     pub slope_across_percent: [f64; 2],
     /// Its speed on level open ground, km/h.
     pub speed_kmh: f64,
+    /// Its speed in built-up ground off the roads, km/h; 0 where it cannot go.
+    pub built_up_kmh: f64,
     /// Its greatest speed on each surface of road, km/h, from [`RoadClass::Path`] to [`RoadClass::Motorway`].
     pub road_speed_kmh: [f64; 5],
     /// The depth of water that it wades, meters.
@@ -78,6 +80,11 @@ impl Vehicle {
             slope_down_percent: slopes[1],
             slope_across_percent: slopes[2],
             speed_kmh,
+            built_up_kmh: match drive {
+                Drive::Foot => 0.9,
+                Drive::Wheels => 0.5,
+                Drive::Tracks => 0.4,
+            } * speed_kmh,
             road_speed_kmh,
             ford_m: 0.8,
             gap_m: 0.5,
@@ -181,6 +188,12 @@ impl Vehicle {
         }
         if !(self.speed_kmh >= 0.1 && self.speed_kmh <= 300.0) {
             return fault("speed_kmh", format!("must be from 0.1 to 300 and is {}", self.speed_kmh));
+        }
+        if !(self.built_up_kmh == 0.0 || (0.1..=300.0).contains(&self.built_up_kmh)) {
+            return fault(
+                "built_up_kmh",
+                format!("must be 0 or from 0.1 to 300 and is {}", self.built_up_kmh),
+            );
         }
         let is_road_speed = |speed: &f64| *speed == 0.0 || (0.1..=300.0).contains(speed);
         if let Some(speed) = self.road_speed_kmh.iter().find(|speed| !is_road_speed(speed)) {
