@@ -23,7 +23,8 @@ use sandtable_dem::formats::WRITTEN_EXTENSIONS;
 use sandtable_export::features::FeatureFormat;
 use sandtable_export::features::outcome::{OutcomeFrame, export_outcome, json_value};
 use sandtable_files::raster_file;
-use sandtable_query::analysis::{Analyzed, WrittenArgument, analyze, bare_land, raster};
+use sandtable_query::analysis::{AnalyzeError, Analyzed, WrittenArgument, analyze, bare_land, raster};
+use sandtable_query::analysis_bands::{AnalysisBands, OutcomeWindows, analysis_bands};
 use sandtable_scene::land::land_of;
 use sandtable_scene::scene_file::open_scene_true_to_scale;
 use sandtable_terrain::stop_flag::StopFlag;
@@ -134,21 +135,38 @@ pub fn run(command: &AnalyzeCommand) -> Result<(), CliError> {
         .map(|path| Ok::<_, CliError>((path, format(command.kind, path, input)?)))
         .transpose()?;
     let steps = StepTimer::default();
-    let analyzed = analyzed(command, &steps)?;
-    if let Some((path, format)) = output {
-        steps.begin("writing");
-        write(command, &analyzed, path, format)?;
-    }
+    let outcome = match analyzed(command, output, &steps)? {
+        AnalysisMade::Written(outcome) => outcome,
+        AnalysisMade::InMemory(analyzed) => {
+            if let Some((path, format)) = output {
+                steps.begin("writing");
+                write(command, &analyzed, path, format)?;
+            }
+            analyzed.outcome
+        }
+    };
     steps.finish();
-    analyzed.outcome.notes.iter().for_each(|note| warn(&format!("note: {note}")));
+    outcome.notes.iter().for_each(|note| warn(&format!("note: {note}")));
     if command.dataset.json {
-        return print(&format!("{:#}\n", json(command, &analyzed.outcome)));
+        return print(&format!("{:#}\n", json(command, &outcome)));
     }
-    print_lines(&text(command, &analyzed.outcome))
+    print_lines(&text(command, &outcome))
+}
+
+/// An analysis that was made.
+enum AnalysisMade {
+    /// Its raster was written band by band; the rest of what it gives.
+    Written(Outcome),
+    /// All of it.
+    InMemory(Analyzed),
 }
 
 /// The analysis; a scene is built only for a kind that uses what lies on its ground.
-fn analyzed(command: &AnalyzeCommand, steps: &StepTimer) -> Result<Analyzed, CliError> {
+fn analyzed(
+    command: &AnalyzeCommand,
+    output: Option<(&Path, AnalysisFormat)>,
+    steps: &StepTimer,
+) -> Result<AnalysisMade, CliError> {
     let AnalyzeCommand { kind, dataset: of_dataset, arguments, .. } = command;
     steps.begin("reading the ground");
     let scene = match kind.layers.is_empty() || !of_dataset.is_scene() {
@@ -165,11 +183,35 @@ fn analyzed(command: &AnalyzeCommand, steps: &StepTimer) -> Result<Analyzed, Cli
     let crs = of_dataset.crs(&dataset);
     of_dataset.note_ground(&dataset)?;
     steps.begin("analyzing");
+    let stop = StopFlag::default();
+    if let Some((path, AnalysisFormat::Raster(format))) = output
+        && format.windows_writer.is_some()
+        && let Some(bands) = analysis_bands(&dataset, (*kind, arguments), &crs, &stop)?
+    {
+        return write_bands(command, bands, path, format).map(AnalysisMade::Written);
+    }
     let land = match &scene {
         Some(scene) => land_of(scene, kind.layers),
         None => bare_land(&dataset)?,
     };
-    Ok(analyze(&dataset, land, (*kind, arguments), &crs, &StopFlag::default())?)
+    Ok(AnalysisMade::InMemory(analyze(&dataset, land, (*kind, arguments), &crs, &stop)?))
+}
+
+/// Writes a raster while it is computed; the rest of what the analysis gives.
+fn write_bands(
+    command: &AnalyzeCommand,
+    mut bands: AnalysisBands,
+    path: &Path,
+    format: &DemFormat,
+) -> Result<Outcome, CliError> {
+    let written = raster_file::write_windows(&mut bands, format, path, &command.dataset.file);
+    match bands.problem() {
+        Some(problem) => Err(AnalyzeError::from(problem).into()),
+        None => {
+            written?;
+            Ok(bands.outcome().clone())
+        }
+    }
 }
 
 /// The format of a file; refuses a raster of a kind that gives none before anything is computed.
@@ -205,7 +247,10 @@ fn write(
         AnalysisFormat::Raster(format) => {
             let values = outcome.raster.as_ref();
             let values = values.unwrap_or_else(|| panic!("{} gives a raster", command.kind.name));
-            raster_file::write(&raster(values, ground, crs), format, path, inputs)?;
+            let mut windows = OutcomeWindows::new(values, ground, crs);
+            if raster_file::write_windows(&mut windows, format, path, &command.dataset.file)?.is_none() {
+                raster_file::write(&raster(values, ground, crs), format, path, inputs)?;
+            }
         }
         AnalysisFormat::Features(format) => {
             let frame = OutcomeFrame { ground, crs };
