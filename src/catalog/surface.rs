@@ -53,7 +53,11 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
         reach: AnalysisReach::Posts(1),
         layers: &[],
         source: "Horn 1981; Zevenbergen and Thorne 1987",
-        limits: &["Level ground has no aspect and no data.", BORDER],
+        limits: &[
+            "gdaldem aspect rounds sums of heights and differs on nearly level ground.",
+            "Level ground has no aspect and no data.",
+            BORDER,
+        ],
     },
     AnalysisKind {
         name: "hillshade",
@@ -61,6 +65,13 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
         title: "Hillshade",
         summary: "How directly the ground faces the sun at each post, from 1 to 255.",
         parameters: &[
+            AnalysisParameter::word(
+                "light",
+                &["sun", "multidirectional"],
+                "sun",
+                "Where light comes from: `sun` from its azimuth, `multidirectional` from 225°, 270°, 315° and 360°, each the \
+                 more the more the ground slopes along it; `azimuth` then has no effect.",
+            ),
             AnalysisParameter::number(
                 "azimuth",
                 (0.0, 360.0),
@@ -87,7 +98,7 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
         yields: AnalysisYield::Raster,
         reach: AnalysisReach::Posts(1),
         layers: &[],
-        source: "Horn 1981, as gdaldem hillshade",
+        source: "Horn 1981; Mark 1992 (multidirectional); as gdaldem hillshade",
         limits: &["Ground casts no shadow on other ground.", BORDER],
     },
     AnalysisKind {
@@ -182,6 +193,7 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
         limits: &[
             "Forms wider than the radius are not seen, and sight ends at the border.",
             "Posts at the border have no data.",
+            "r.geomorphon never reads the southernmost row: within the radius of it forms differ, here it counts.",
         ],
     },
     AnalysisKind {

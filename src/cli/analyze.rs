@@ -24,7 +24,10 @@ use sandtable_dem::formats::WRITTEN_EXTENSIONS;
 use sandtable_export::features::FeatureFormat;
 use sandtable_export::features::outcome::{OutcomeFrame, export_outcome, json_value};
 use sandtable_files::{disk, raster_file};
-use sandtable_query::analysis::{Analyzed, WrittenArgument, analyze, bare_land, ground_raster, raster};
+use sandtable_query::analysis::{
+    AnalyzeError, Analyzed, WrittenArgument, analyze, bare_land, ground_raster, raster,
+};
+use sandtable_query::analysis_bands::{AnalysisBands, OutcomeWindows, analysis_bands};
 use sandtable_render::RenderBackend;
 use sandtable_scene::analysis_map::{MapTexts, ground_map, scene_map};
 use sandtable_scene::land::land_of;
@@ -142,30 +145,43 @@ pub fn run(command: &AnalyzeCommand) -> Result<(), CliError> {
         .map(|path| Ok::<_, CliError>((path, format(command.kind, path, input)?)))
         .transpose()?;
     let steps = StepTimer::default();
-    let is_map = matches!(output, Some((_, AnalysisFormat::Map)));
-    let (analyzed, scene) = analyzed(command, is_map, &steps)?;
-    match output {
-        Some((path, AnalysisFormat::Map)) => write_map(command, &analyzed, scene, path, &steps)?,
-        Some((path, format)) => {
-            steps.begin("writing");
-            write(command, &analyzed, path, format)?;
+    let outcome = match analyzed(command, output, &steps)? {
+        AnalysisMade::Written(outcome) => outcome,
+        AnalysisMade::InMemory(analyzed, scene) => {
+            match output {
+                Some((path, AnalysisFormat::Map)) => write_map(command, &analyzed, scene, path, &steps)?,
+                Some((path, format)) => {
+                    steps.begin("writing");
+                    write(command, &analyzed, path, format)?;
+                }
+                None => {}
+            }
+            analyzed.outcome
         }
-        None => {}
-    }
+    };
     steps.finish();
-    analyzed.outcome.notes.iter().for_each(|note| warn(&format!("note: {note}")));
+    outcome.notes.iter().for_each(|note| warn(&format!("note: {note}")));
     if command.dataset.json {
-        return print(&format!("{:#}\n", json(command, &analyzed.outcome)));
+        return print(&format!("{:#}\n", json(command, &outcome)));
     }
-    print_lines(&text(command, &analyzed.outcome))
+    print_lines(&text(command, &outcome))
+}
+
+/// An analysis that was made.
+enum AnalysisMade {
+    /// Its raster was written band by band; the rest of what it gives.
+    Written(Outcome),
+    /// All of it, and the scene that it is of where that was built.
+    InMemory(Analyzed, Option<Box<SceneModel>>),
 }
 
 /// The analysis; a scene is built only for a map, and for a kind that uses what lies on its ground.
 fn analyzed(
     command: &AnalyzeCommand,
-    is_map: bool,
+    output: Option<(&Path, AnalysisFormat)>,
     steps: &StepTimer,
-) -> Result<(Analyzed, Option<SceneModel>), CliError> {
+) -> Result<AnalysisMade, CliError> {
+    let is_map = matches!(output, Some((_, AnalysisFormat::Map)));
     let AnalyzeCommand { kind, dataset: of_dataset, arguments, .. } = command;
     steps.begin("reading the ground");
     let progress = |step| steps.begin(step);
@@ -182,12 +198,19 @@ fn analyzed(
     let crs = of_dataset.crs(&dataset);
     of_dataset.note_ground(&dataset)?;
     steps.begin("analyzing");
+    let stop = StopFlag::default();
+    if let Some((path, AnalysisFormat::Raster(format))) = output
+        && format.windows_writer.is_some()
+        && let Some(bands) = analysis_bands(&dataset, (*kind, arguments), &crs, &stop)?
+    {
+        return write_bands(command, bands, path, format).map(AnalysisMade::Written);
+    }
     let land = match &scene {
         Some(scene) => land_of(scene, kind.layers),
         None => bare_land(&dataset, (kind, arguments), &crs)?,
     };
-    let analyzed = analyze(&dataset, land, (*kind, arguments), &crs, &StopFlag::default())?;
-    Ok((analyzed, scene))
+    let analyzed = analyze(&dataset, land, (*kind, arguments), &crs, &stop)?;
+    Ok(AnalysisMade::InMemory(analyzed, scene.map(Box::new)))
 }
 
 /// The texts of a map: what it is, of what, by whom, and what it does not know.
@@ -208,14 +231,14 @@ fn map_texts(command: &AnalyzeCommand) -> MapTexts {
 fn write_map(
     command: &AnalyzeCommand,
     analyzed: &Analyzed,
-    scene: Option<SceneModel>,
+    scene: Option<Box<SceneModel>>,
     path: &Path,
     steps: &StepTimer,
 ) -> Result<(), CliError> {
     let progress = |step| steps.begin(step);
     let Analyzed { ground, crs, outcome } = analyzed;
     let mut scene = match scene {
-        Some(scene) => scene,
+        Some(scene) => *scene,
         None => {
             let raster = ground_raster(ground, crs);
             ground_map(&command.dataset.file, raster, map_texts(command), &progress)?
@@ -229,6 +252,23 @@ fn write_map(
     let picture = render_view(&scene, view, size, RenderBackend::Cpu, &progress)?;
     progress("writing");
     Ok(disk::write_picture(path, &picture.pixels)?)
+}
+
+/// Writes a raster while it is computed; the rest of what the analysis gives.
+fn write_bands(
+    command: &AnalyzeCommand,
+    mut bands: AnalysisBands,
+    path: &Path,
+    format: &DemFormat,
+) -> Result<Outcome, CliError> {
+    let written = raster_file::write_windows(&mut bands, format, path, &command.dataset.file);
+    match bands.problem() {
+        Some(problem) => Err(AnalyzeError::from(problem).into()),
+        None => {
+            written?;
+            Ok(bands.outcome().clone())
+        }
+    }
 }
 
 /// The format of a file; refuses a raster of a kind that gives none before anything is computed.
@@ -272,7 +312,10 @@ fn write(
         AnalysisFormat::Raster(format) => {
             let values = outcome.raster.as_ref();
             let values = values.unwrap_or_else(|| panic!("{} gives a raster", command.kind.name));
-            raster_file::write(&raster(values, ground, crs), format, path, inputs)?;
+            let mut windows = OutcomeWindows::new(values, ground, crs);
+            if raster_file::write_windows(&mut windows, format, path, &command.dataset.file)?.is_none() {
+                raster_file::write(&raster(values, ground, crs), format, path, inputs)?;
+            }
         }
         AnalysisFormat::Features(format) => {
             let frame = OutcomeFrame { ground, crs };

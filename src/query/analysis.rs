@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
+use crate::analysis_bands::described;
 use crate::analysis_extent;
 use crate::dataset::{Dataset, DatasetOptions, OpenError, QueryError};
 use crate::ground::GroundError;
@@ -15,7 +16,7 @@ use sandtable_analysis::arguments::{AnalysisArguments, ArgumentValue};
 use sandtable_analysis::error::AnalysisError;
 use sandtable_analysis::extent::{LandExtent, ground_part, run_within};
 use sandtable_analysis::land::Land;
-use sandtable_analysis::outcome::{Outcome, OutcomeRaster, PostValues};
+use sandtable_analysis::outcome::{Outcome, OutcomeRaster};
 use sandtable_base::message::suggest::{quoted, remedy};
 use sandtable_catalog::kind::AnalysisKind;
 use sandtable_catalog::parameter::{AnalysisParameter, EXTENT, ParameterDefault, ParameterForm};
@@ -274,15 +275,12 @@ fn points(text: &str, least: usize, crs: &Crs, land_crs: &Crs) -> Result<Argumen
 
 /// The raster of an outcome, north up, its samples at the posts of `ground`.
 pub fn raster(outcome: &OutcomeRaster, ground: &Lattice, crs: &Crs) -> Raster {
-    let (data_type, nodata) = match outcome.values {
-        PostValues::Numbers(_) => ("Float32", -9999.0),
-        PostValues::Codes(_) => ("Byte", f64::from(PostValues::NO_CODE)),
-    };
+    let (name, data_type, nodata) = described(outcome);
     let columns = ground.columns() as usize;
     let samples = (0..ground.rows() as usize)
         .rev()
         .flat_map(|row| (row * columns..(row + 1) * columns).map(|index| outcome.values.value(index)));
-    let header = post_header(ground, crs, (outcome.name, data_type), nodata);
+    let header = post_header(ground, crs, (name, data_type), nodata);
     Raster { samples: Samples::F32(samples.collect()), ..header }
 }
 

@@ -279,6 +279,19 @@ impl Dataset {
         }
     }
 
+    /// The elevation that stays on disk; `None` of a dataset that is kept in memory.
+    pub(crate) fn windowed(&self) -> Option<&WindowedElevation> {
+        match &self.content {
+            DatasetContent::Windows(elevation) => Some(elevation),
+            _ => None,
+        }
+    }
+
+    /// [`QueryError::Ground`] of this dataset.
+    pub(crate) fn without_ground(&self, error: Arc<GroundError>) -> QueryError {
+        self.no_ground()(error)
+    }
+
     /// Makes what queries for the ground in meters need beforehand.
     ///
     /// # Errors

@@ -9,6 +9,7 @@
 //! No step reads arguments or the clock, and none prints: a step returns values, notes for the user and typed errors.
 
 pub mod analysis;
+pub mod analysis_bands;
 pub mod analysis_extent;
 pub mod bounded_mesh;
 pub mod convert;

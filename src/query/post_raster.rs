@@ -1,5 +1,6 @@
 //! Rasters of values computed for the posts of a lattice: bytes, with one of them for no data.
 
+use glam::DVec2;
 use rayon::prelude::*;
 
 use sandtable_geom::crs::Crs;
@@ -41,8 +42,22 @@ pub(crate) fn post_header(
     (name, data_type): (&'static str, &'static str),
     nodata: f64,
 ) -> Raster {
-    let (columns, rows) = (lattice.columns(), lattice.rows());
-    let north_west = lattice.map_position(Post { column: 0, row: rows - 1 });
+    let north_west = lattice.map_position(Post { column: 0, row: lattice.rows() - 1 });
+    node_header(
+        (north_west, lattice.cell()),
+        (lattice.columns(), lattice.rows()),
+        crs,
+        (name, data_type, nodata),
+    )
+}
+
+/// [`post_header`] of posts from the north-western one on, given by its map position, and their distances.
+pub(crate) fn node_header(
+    (north_west, cell): (DVec2, DVec2),
+    (columns, rows): (u32, u32),
+    crs: &Crs,
+    (name, data_type, nodata): (&'static str, &'static str, f64),
+) -> Raster {
     let header = Raster {
         driver: name,
         data_type,
@@ -50,7 +65,7 @@ pub(crate) fn post_header(
         nodata: Some(nodata),
         ..Raster::without_place(columns, rows)
     };
-    header.placed(north_up_nodes(north_west, lattice.cell()))
+    header.placed(north_up_nodes(north_west, cell))
 }
 
 /// A raster of [`PostBytes`] that is made window by window.
@@ -107,7 +122,6 @@ pub fn hillshade_raster(lattice: &Lattice, options: &HillshadeOptions, crs: &Crs
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec2;
     use sandtable_dem::dem_format::DemFormat;
     use sandtable_dem::write::write;
     use std::io::Cursor;

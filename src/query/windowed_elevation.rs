@@ -21,7 +21,9 @@ use sandtable_raster::warp::metric_windows::{MetricPlan, MetricWindows};
 use sandtable_raster::windows::{RasterWindow, Windows};
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::post_rect::PostRect;
-use sandtable_terrain::query::windowed::{lattice_part, windowed_ground_heights, windowed_source_heights};
+use sandtable_terrain::query::windowed::{
+    lattice_part, post_heights, windowed_ground_heights, windowed_source_heights,
+};
 use sandtable_terrain::query::{Interpolation, Surface};
 
 /// Posts around the positions of a query: those of the cells that these lie in, and a few for rounding.
@@ -41,7 +43,8 @@ pub struct WindowedElevation {
 pub struct GroundReach<'a> {
     /// The system of the positions.
     pub crs: &'a Crs,
-    /// The positions: between two neighbors, the ground under the straight line.
+    /// The positions: between two neighbors, the ground under the straight line. None, and an infinite distance around them, for
+    /// all of the ground.
     pub at: &'a [DVec2],
     /// Meters around them; may be infinite.
     pub around_m: f64,
@@ -174,6 +177,23 @@ impl WindowedElevation {
         lattice_part(&mut metric, held).map_err(|error| Arc::new(error.into()))
     }
 
+    /// These posts as a lattice of their own, a part of the whole one.
+    ///
+    /// # Errors
+    /// As [`WindowedElevation::ground_part`], and fewer than two columns or rows.
+    ///
+    /// # Panics
+    /// Where the posts reach beyond the ground.
+    pub fn ground_cut(&self, posts: PostRect) -> Result<Lattice, Arc<GroundError>> {
+        let plan = self.plan()?;
+        let mut source = self.source();
+        let mut metric = MetricWindows::new(&mut **source, plan);
+        let frame = Lattice::frame(plan.header()).map_err(|error| Arc::new(error.into()))?;
+        let heights = post_heights(&mut metric, posts).map_err(|error| Arc::new(error.into()))?;
+        let part = Lattice::part(frame, posts.first, posts.width() as u32, heights);
+        part.map_err(|error| Arc::new(error.into()))
+    }
+
     fn source(&self) -> MutexGuard<'_, Box<dyn Windows + Send>> {
         // A reader that panicked left whole blocks in its cache, and nothing else.
         self.source.lock().unwrap_or_else(PoisonError::into_inner)
@@ -188,6 +208,10 @@ fn posts_within(ground: &Raster, crs: &Crs, reach: &GroundReach) -> Result<PostR
     let on_ground = reach.at.par_iter().map(to_ground).filter(|at| at.is_finite()).collect::<Vec<_>>();
     let around = Rect::around(on_ground);
     let (low, high) = match around.is_empty() {
+        // All of it, whatever the positions.
+        true if reach.at.is_empty() && reach.around_m.is_infinite() => {
+            (DVec2::ZERO, DVec2::new(ground.width.into(), ground.height.into()))
+        }
         true => (DVec2::ZERO, DVec2::ONE),
         false => {
             let margin = HALO + reach.around_m / cell;

@@ -187,6 +187,12 @@ pub trait Windows {
         None
     }
 
+    /// How many rows are best taken together, if the samples are computed as they are read: a file then stores them in one pass,
+    /// band by band, as bytes or f32 by the metadata's `data_type`. `None` for others.
+    fn computed_rows(&self) -> Option<u32> {
+        None
+    }
+
     /// Announces windows that are read next, so that they can be read together: on all threads, what they share once.
     /// Has no effect on what they hold; errors wait for the reading.
     fn announce(&mut self, _windows: &[RasterWindow]) {}

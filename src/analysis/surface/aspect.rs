@@ -1,4 +1,7 @@
 //! The aspect of the ground: the azimuth toward which a post's ground falls, as `gdaldem aspect` gives it.
+//!
+//! Differences of heights are added up without rounding. `gdaldem` rounds their sums to f32 and is off by more than 1e-5° where
+//! the ground is nearly level: by up to a degree where heights have many digits.
 
 use super::window::{GradientMethod, WindowGradient, by_window};
 use crate::arguments::AnalysisArguments;
@@ -18,19 +21,19 @@ pub(crate) fn aspect(
     stop: &StopFlag,
 ) -> Result<Outcome, AnalysisError> {
     let gradient = WindowGradient::new(&land.ground, GradientMethod::of(&arguments.word("method")));
-    let values = by_window(&land.ground, stop, |window| azimuth(gradient.of(window)))?;
+    let values = by_window(&land.ground, stop, |window| azimuth(gradient.exact(window)))?;
     let raster =
         OutcomeRaster { name: "aspect", unit: "°", values: PostValues::Numbers(values), classes: classes() };
     Ok(Outcome { raster: Some(raster), ..Outcome::default() })
 }
 
 /// The azimuth of the fall in degrees, 0 to below 360; NaN for level ground.
-fn azimuth([east, north]: [f32; 2]) -> f32 {
+fn azimuth([east, north]: [f64; 2]) -> f32 {
     if east == 0.0 && north == 0.0 {
         return f32::NAN;
     }
-    let degrees = libm::atan2f(-east, -north).to_degrees();
-    let turned = if degrees < 0.0 { degrees + 360.0 } else { degrees };
+    let degrees = libm::atan2(-east, -north).to_degrees();
+    let turned = (if degrees < 0.0 { degrees + 360.0 } else { degrees }) as f32;
     // An azimuth just west of north may round to 360, and due north may be −0.
     if turned >= 360.0 { 0.0 } else { turned + 0.0 }
 }
@@ -70,5 +73,18 @@ mod tests {
             assert_eq!(plane(east, north), azimuth, "{east} {north}");
         }
         assert!(plane(0.0, 0.0).is_nan());
+    }
+
+    #[test]
+    fn on_nearly_level_ground_high_above_the_sea_no_digit_of_the_fall_is_lost() {
+        // The last digits of f32 at 3 km: the sums of three such heights have none of them.
+        let step = 3000.0_f32.next_up() - 3000.0;
+        let falls: [u8; 9] = [3, 1, 2, 5, 4, 7, 6, 9, 8];
+        let heights = falls.map(|steps| 3000.0 + f32::from(steps) * step).to_vec();
+        let (east, north) =
+            (2.0 + 2.0 * 7.0 + 8.0 - (3.0 + 2.0 * 5.0 + 6.0), 6.0 + 18.0 + 8.0 - (3.0 + 2.0 + 2.0));
+        let wanted = libm::atan2(-east, -north).to_degrees() + 360.0;
+        let found = f64::from(values(&land(DVec2::splat(10.0), 3, heights), "aspect", &[], &[])[4]);
+        assert!((found - wanted).abs() < 2e-5, "{found} {wanted}");
     }
 }

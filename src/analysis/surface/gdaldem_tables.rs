@@ -55,6 +55,16 @@ fn light_is_that_of_gdaldem_to_its_rounding() {
 }
 
 #[test]
+fn multidirectional_light_is_that_of_gdaldem_to_its_rounding() {
+    let low = [("altitude", 30.0), ("exaggeration", 2.0)];
+    let words = [("light", "multidirectional"), ("method", "zevenbergen-thorne")];
+    agrees("hillshade", &words[..1], &[], tables::MULTI_HORN, 0.51);
+    agrees("hillshade", &words[..1], &low, tables::MULTI_LOW_HORN, 0.51);
+    agrees("hillshade", &words, &[], tables::MULTI_ZT, 0.51);
+    agrees("hillshade", &words, &low, tables::MULTI_LOW_ZT, 0.51);
+}
+
+#[test]
 fn ruggedness_in_windows_of_three_posts_is_that_of_gdaldem() {
     agrees("ruggedness", &[("measure", "tri")], &[], tables::RILEY, 0.0);
     agrees("ruggedness", &[("measure", "tpi")], &[], tables::TPI, 1e-5);
@@ -112,6 +122,34 @@ mod tables {
         159.0, 117.0, 54.0, 1.0, f64::NAN,
         216.0, 212.0, 210.0, 1.0, 1.0,
         248.0, 255.0, 192.0, 39.0, 1.0,
+    ];
+    /// `gdaldem hillshade -multidirectional`.
+    pub(super) const MULTI_HORN: [f64; 20] = [
+        199.0, 187.0, 160.0, 101.0, f64::NAN,
+        215.0, 199.0, 160.0, 73.0, f64::NAN,
+        234.0, 237.0, 225.0, 77.0, 34.0,
+        233.0, 237.0, 224.0, 93.0, 58.0,
+    ];
+    /// `gdaldem hillshade -multidirectional -alt 30 -z 2`.
+    pub(super) const MULTI_LOW_HORN: [f64; 20] = [
+        168.0, 164.0, 139.0, 56.0, f64::NAN,
+        196.0, 184.0, 142.0, 8.0, f64::NAN,
+        225.0, 226.0, 217.0, 5.0, 5.0,
+        225.0, 227.0, 209.0, 68.0, 21.0,
+    ];
+    /// `gdaldem hillshade -multidirectional -alg ZevenbergenThorne`.
+    pub(super) const MULTI_ZT: [f64; 20] = [
+        195.0, 188.0, 153.0, 93.0, f64::NAN,
+        219.0, 198.0, 146.0, 77.0, f64::NAN,
+        236.0, 235.0, 226.0, 44.0, 17.0,
+        233.0, 236.0, 217.0, 91.0, 59.0,
+    ];
+    /// `gdaldem hillshade -multidirectional -alt 30 -z 2 -alg ZevenbergenThorne`.
+    pub(super) const MULTI_LOW_ZT: [f64; 20] = [
+        162.0, 164.0, 134.0, 59.0, f64::NAN,
+        202.0, 182.0, 135.0, 19.0, f64::NAN,
+        227.0, 224.0, 219.0, 4.0, 5.0,
+        225.0, 227.0, 202.0, 73.0, 17.0,
     ];
     /// `gdaldem TRI -alg Riley`.
     pub(super) const RILEY: [f64; 20] = [

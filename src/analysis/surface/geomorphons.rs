@@ -6,6 +6,9 @@
 //!
 //! Slopes along a direction are compared per step, not per meter: equal slopes then are equal to the last bit.
 //!
+//! `r.geomorphon` 8.2.1 never reads the southernmost row (its buffer of rows is not shifted for it), so that forms within the
+//! radius of that row differ; without data in the row all forms are equal.
+//!
 //! A row is done at once: for each step of each direction, one pass over the row that the compiler can vectorize.
 
 use rayon::prelude::*;

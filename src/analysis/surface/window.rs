@@ -9,6 +9,7 @@
 //! A post at the border, or with one of the nine heights missing, has no data, as `gdaldem` leaves it without
 //! `-compute_edges`. The loop over a row is written for the compiler to vectorize.
 
+use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::error::AnalysisError;
@@ -40,6 +41,7 @@ pub(super) struct WindowGradient {
     method: GradientMethod,
     per_east: f32,
     per_north: f32,
+    cell: DVec2,
 }
 
 impl WindowGradient {
@@ -47,7 +49,21 @@ impl WindowGradient {
     pub(super) fn new(lattice: &Lattice, method: GradientMethod) -> Self {
         let cells = if method == GradientMethod::Horn { 8.0 } else { 2.0 };
         let cell = lattice.cell() * cells;
-        Self { method, per_east: (1.0 / cell.x) as f32, per_north: (1.0 / cell.y) as f32 }
+        Self { method, per_east: (1.0 / cell.x) as f32, per_north: (1.0 / cell.y) as f32, cell }
+    }
+
+    /// [`WindowGradient::of`] with sums that are exact.
+    #[inline(always)]
+    pub(super) fn exact(&self, w: &WindowHeights) -> [f64; 2] {
+        let w = w.map(f64::from);
+        let [east, north] = match self.method {
+            GradientMethod::Horn => [
+                (w[2] - w[0]) + 2.0 * (w[5] - w[3]) + (w[8] - w[6]),
+                (w[6] - w[0]) + 2.0 * (w[7] - w[1]) + (w[8] - w[2]),
+            ],
+            GradientMethod::ZevenbergenThorne => [w[5] - w[3], w[7] - w[1]],
+        };
+        [east / self.cell.x, north / self.cell.y]
     }
 
     /// The rise per meter eastward and northward.
@@ -94,8 +110,6 @@ pub(super) fn by_window(
 
 #[cfg(test)]
 pub(super) mod tests {
-    use glam::DVec2;
-
     use super::*;
     use crate::arguments::ArgumentValue;
     use crate::land::Land;

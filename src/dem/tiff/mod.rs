@@ -19,5 +19,6 @@ pub(crate) mod storage;
 pub(crate) mod unpack;
 pub mod windows;
 pub mod write;
+mod write_computed;
 mod write_geokeys;
 mod xz;

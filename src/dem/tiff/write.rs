@@ -18,6 +18,7 @@ use flate2::write::ZlibEncoder;
 use rayon::prelude::*;
 
 use crate::tiff::gdal_metadata::GDAL_METADATA;
+use crate::tiff::write_computed::write_computed;
 use crate::tiff::write_geokeys::GeoKeyTags;
 use crate::written::{WriteError, WriteWindowsError, WrittenDem, WrittenWindows};
 use sandtable_geom::length_unit::name_of_length;
@@ -66,6 +67,9 @@ pub(crate) fn write_windows(
     out: &mut dyn WrittenContent,
 ) -> Result<WrittenWindows, WriteWindowsError> {
     let own = source.metadata().without_samples();
+    if let Some(rows) = source.computed_rows() {
+        return write_computed(source, rows, out);
+    }
     if let Some(bytes) = source.bytes() {
         return write_bytes(&own, bytes, out);
     }
@@ -158,7 +162,7 @@ fn notes(is_named: bool) -> Vec<String> {
 }
 
 /// How hard bytes are packed: grays and classes, of which a longer search finds a tenth more for twice the time.
-const BYTES_LEVEL: Compression = Compression::new(4);
+pub(super) const BYTES_LEVEL: Compression = Compression::new(4);
 
 /// One packed tile; beyond the raster its last samples are repeated, which packs to almost nothing.
 fn tile(raster: &Raster, stored: StoredSamples, column: u32, row: u32) -> Vec<u8> {
@@ -247,7 +251,7 @@ fn byte_row(raster: &Raster, nodata: u8, (column, row): (u32, u32), bytes: &mut 
     }
 }
 
-fn packed(bytes: &[u8], level: Compression) -> Vec<u8> {
+pub(super) fn packed(bytes: &[u8], level: Compression) -> Vec<u8> {
     let mut packer = ZlibEncoder::new(Vec::new(), level);
     packer.write_all(bytes).expect("memory takes what is written");
     packer.finish().expect("memory takes what is written")
@@ -298,7 +302,7 @@ fn float_bytes(line: &[u8], size: usize) -> Vec<u8> {
 }
 
 /// The value of a tag.
-struct TiffField {
+pub(super) struct TiffField {
     /// TIFF's number of the type.
     kind: u16,
     /// The number of values.
@@ -316,11 +320,11 @@ impl TiffField {
         Self::new(2, &[text.as_bytes(), &[0]].concat(), u8::to_le_bytes)
     }
 
-    fn shorts(values: &[u16]) -> Self {
+    pub(super) fn shorts(values: &[u16]) -> Self {
         Self::new(3, values, u16::to_le_bytes)
     }
 
-    fn longs(values: &[u32]) -> Self {
+    pub(super) fn longs(values: &[u32]) -> Self {
         Self::new(4, values, u32::to_le_bytes)
     }
 
@@ -331,6 +335,19 @@ impl TiffField {
 
 /// All tags but those that list the tiles.
 fn tags(raster: &Raster, stored: StoredSamples) -> Vec<(u16, TiffField)> {
+    let short = |value: u16| TiffField::shorts(&[value]);
+    let mut tags = described(raster, stored);
+    tags.extend([
+        (259, short(8)),
+        (317, short(if stored.sample.is_float() { 3 } else { 2 })),
+        (322, short(TILE as u16)),
+        (323, short(TILE as u16)),
+    ]);
+    tags
+}
+
+/// The tags of the size, the type, the place and the unit of samples, whatever blocks they are in.
+pub(super) fn described(raster: &Raster, stored: StoredSamples) -> Vec<(u16, TiffField)> {
     let sample = stored.sample;
     let format = match sample.kind() {
         NumberKind::Unsigned => 1,
@@ -342,13 +359,9 @@ fn tags(raster: &Raster, stored: StoredSamples) -> Vec<(u16, TiffField)> {
         (256, TiffField::longs(&[raster.width])),
         (257, TiffField::longs(&[raster.height])),
         (258, short(sample.bytes() as u16 * 8)),
-        (259, short(8)),
         (262, short(1)),
         (277, short(1)),
         (284, short(1)),
-        (317, short(if sample.is_float() { 3 } else { 2 })),
-        (322, short(TILE as u16)),
-        (323, short(TILE as u16)),
         (339, short(format)),
     ];
     tags.extend(place(raster));
@@ -392,11 +405,23 @@ fn place(raster: &Raster) -> Vec<(u16, TiffField)> {
     }
 }
 
+/// The tags that list where tiles are and how long.
+const TILES: (u16, u16) = (324, 325);
+
 /// Header, directory and long values, before tiles of these lengths. At most 2²⁸ samples of eight bytes fit the 4 GiB of a
 /// classic TIFF.
-fn head(mut tags: Vec<(u16, TiffField)>, lengths: &[u32]) -> Vec<u8> {
-    tags.push((324, TiffField::longs(lengths)));
-    tags.push((325, TiffField::longs(lengths)));
+fn head(tags: Vec<(u16, TiffField)>, lengths: &[u32]) -> Vec<u8> {
+    head_before(tags, TILES, lengths)
+}
+
+/// [`head`] before blocks that the tags `offsets` and `counts` list.
+pub(super) fn head_before(
+    mut tags: Vec<(u16, TiffField)>,
+    (offsets, counts): (u16, u16),
+    lengths: &[u32],
+) -> Vec<u8> {
+    tags.push((offsets, TiffField::longs(lengths)));
+    tags.push((counts, TiffField::longs(lengths)));
     tags.sort_by_key(|(tag, _)| *tag);
     let first_tile = 8 + directory(&tags, 8).len() as u32;
     let next = |start: &mut u32, length: &u32| {
@@ -404,7 +429,9 @@ fn head(mut tags: Vec<(u16, TiffField)>, lengths: &[u32]) -> Vec<u8> {
         Some(*start - length)
     };
     let starts: Vec<u32> = lengths.iter().scan(first_tile, next).collect();
-    tags.iter_mut().filter(|(tag, _)| *tag == 324).for_each(|(_, field)| *field = TiffField::longs(&starts));
+    tags.iter_mut()
+        .filter(|(tag, _)| *tag == offsets)
+        .for_each(|(_, field)| *field = TiffField::longs(&starts));
     let mut bytes = b"II*\0\x08\0\0\0".to_vec();
     bytes.extend(directory(&tags, 8));
     bytes

@@ -1,0 +1,326 @@
+//! Rasters of analyses that are made band by band while a file is written, so that elevation larger than the memory can be
+//! analyzed.
+//!
+//! ```text
+//!  elevation file                       a band of rows and, on both sides, as many more as the kind reaches
+//!  ┌────────────┐   ┌────────────┐
+//!  │····halo····│   │            │      read ─► analyzed on its own ─► the rows of the band ─► written
+//!  ├────────────┤ ─►├────────────┤
+//!  │    band    │   │    band    │      A value depends on no post farther away, so that the file has the bytes of one
+//!  ├────────────┤   ├────────────┤      that is written from the whole.
+//!  │····halo····│   │            │
+//!  └────────────┘   └────────────┘
+//! ```
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::analysis::{AnalyzeError, WrittenArgument, read};
+use crate::dataset::Dataset;
+use crate::ground::GroundError;
+use crate::post_raster::{node_header, post_header};
+use crate::windowed_elevation::WindowedElevation;
+use sandtable_analysis::arguments::AnalysisArguments;
+use sandtable_analysis::error::AnalysisError;
+use sandtable_analysis::land::Land;
+use sandtable_analysis::outcome::{Outcome, OutcomeRaster, PostValues};
+use sandtable_analysis::run::run;
+use sandtable_catalog::kind::{AnalysisKind, AnalysisYield};
+use sandtable_catalog::parameter::EXTENT;
+use sandtable_geom::crs::Crs;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::raster::{Raster, Samples};
+use sandtable_raster::windows::{RasterWindow, Windows};
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::post_rect::PostRect;
+use sandtable_terrain::stop_flag::StopFlag;
+
+/// Posts of a band: some megabytes, which caches hold, and enough for all threads.
+const BAND_POSTS: u32 = 1 << 20;
+
+/// Rows of a band for each row of its halo: those are analyzed twice.
+const ROWS_PER_HALO: u32 = 32;
+
+/// The most posts of a band with its halo. A post takes some 25 bytes while two bands are at work, so these are 400 MB.
+const MOST_POSTS: u32 = 1 << 24;
+
+/// The raster of an analysis, computed where it is read.
+pub struct AnalysisBands<'a> {
+    elevation: &'a WindowedElevation,
+    arguments: AnalysisArguments,
+    reach: u32,
+    crs: Crs,
+    header: Raster,
+    stop: &'a StopFlag,
+    /// What the analysis says besides its raster.
+    outcome: Outcome,
+    /// Why a band could not be analyzed.
+    problem: Option<AnalysisError>,
+}
+
+/// The raster of an analysis of a dataset, to be made band by band; `None` where the elevation is kept in memory, or the kind
+/// looks farther than some posts, at what lies on the ground, or gives more than a raster.
+///
+/// # Errors
+/// As [`analyze`](crate::analysis::analyze).
+pub fn analysis_bands<'a>(
+    dataset: &'a Dataset,
+    (kind, written): (&'static AnalysisKind, &[WrittenArgument]),
+    crs: &Crs,
+    stop: &'a StopFlag,
+) -> Result<Option<AnalysisBands<'a>>, AnalyzeError> {
+    let Some(elevation) = dataset.windowed() else { return Ok(None) };
+    let is_part = written.iter().any(|argument| argument.name == EXTENT.name);
+    if is_part || !kind.layers.is_empty() || kind.yields != AnalysisYield::Raster {
+        return Ok(None);
+    }
+    let failed = |error| AnalyzeError::Query(dataset.without_ground(error));
+    let ground_crs = elevation.ground_crs().map_err(failed)?;
+    let arguments = read(kind, written, crs, &ground_crs)?;
+    let header = elevation.plan().map_err(failed)?.header();
+    let (origin, cell) = Lattice::frame(header).map_err(|error| failed(Arc::new(error.into())))?;
+    let Some(reach) = arguments.reach_posts(cell) else { return Ok(None) };
+    // A few posts say what the raster is, and what is wrong with the arguments.
+    let last =
+        Post { column: (2 * reach + 2).min(header.width - 1), row: (2 * reach + 2).min(header.height - 1) };
+    let corner = PostRect { first: Post { column: 0, row: 0 }, last };
+    let ground = Arc::new(elevation.ground_cut(corner).map_err(failed)?);
+    let mut outcome = run(&Land::bare(ground, ground_crs.clone()), &arguments, stop)?;
+    let raster = outcome.raster.take();
+    let Some(raster) = raster
+        .filter(|_| outcome.figures.is_empty() && outcome.tables.is_empty() && outcome.features.is_empty())
+    else {
+        return Ok(None);
+    };
+    let north_west = origin + DVec2::new(0.0, f64::from(header.height - 1)) * cell;
+    let size = (header.width, header.height);
+    let header = node_header((north_west, cell), size, &ground_crs, described(&raster));
+    Ok(Some(AnalysisBands {
+        elevation,
+        arguments,
+        reach,
+        crs: ground_crs,
+        header,
+        stop,
+        outcome,
+        problem: None,
+    }))
+}
+
+/// The name, the type and the value for no data of an outcome's raster.
+pub(crate) fn described(raster: &OutcomeRaster) -> (&'static str, &'static str, f64) {
+    match raster.values {
+        PostValues::Numbers(_) => (raster.name, "Float32", -9999.0),
+        PostValues::Codes(_) => (raster.name, "Byte", f64::from(PostValues::NO_CODE)),
+    }
+}
+
+impl AnalysisBands<'_> {
+    /// What the analysis says besides its raster.
+    pub fn outcome(&self) -> &Outcome {
+        &self.outcome
+    }
+
+    /// Why the last window could not be analyzed, where it could be read.
+    pub fn problem(&mut self) -> Option<AnalysisError> {
+        self.problem.take()
+    }
+
+    /// The values of the posts of a window.
+    fn values(&self, window: RasterWindow) -> Result<Result<Vec<f32>, AnalysisError>, DemErrorKind> {
+        let (width, height) = (self.header.width, self.header.height);
+        // Rows of the raster run from the north, those of posts from the south.
+        let (first, last) = (height - window.row - window.height, height - 1 - window.row);
+        let south = first.saturating_sub(self.reach);
+        let north = (last + self.reach).min(height - 1);
+        // A lattice has two rows at least.
+        let (south, north) =
+            if south < north { (south, north) } else { (south.saturating_sub(1), north.max(1)) };
+        let posts =
+            PostRect { first: Post { column: 0, row: south }, last: Post { column: width - 1, row: north } };
+        let ground = self.elevation.ground_cut(posts).map_err(|error| match Arc::try_unwrap(error) {
+            Ok(GroundError::Read(error)) => error,
+            _ => DemErrorKind::Changed,
+        })?;
+        let land = Land::bare(Arc::new(ground), self.crs.clone());
+        let outcome = match run(&land, &self.arguments, self.stop) {
+            Ok(outcome) => outcome,
+            Err(error) => return Ok(Err(error)),
+        };
+        let Some(raster) = outcome.raster else { return Err(DemErrorKind::Changed) };
+        let columns = window.column as usize..(window.column + window.width) as usize;
+        Ok(Ok(from_north(&raster.values, width as usize, columns, (first - south..=last - south).rev())))
+    }
+}
+
+/// The values of some rows and columns, in the order of the rows.
+fn from_north(
+    values: &PostValues,
+    width: usize,
+    columns: Range<usize>,
+    rows: impl Iterator<Item = u32>,
+) -> Vec<f32> {
+    let rows: Vec<usize> = rows.map(|row| row as usize).collect();
+    let mut out = vec![0.0; rows.len() * columns.len()];
+    out.par_chunks_mut(columns.len()).zip(rows).for_each(|(out, row)| {
+        let place = row * width + columns.start..row * width + columns.end;
+        match values {
+            PostValues::Numbers(numbers) => out.copy_from_slice(&numbers[place]),
+            PostValues::Codes(_) => {
+                out.iter_mut().zip(place).for_each(|(out, index)| *out = values.value(index));
+            }
+        }
+    });
+    out
+}
+
+impl Windows for AnalysisBands<'_> {
+    fn metadata(&self) -> &Raster {
+        &self.header
+    }
+
+    fn samples(&mut self, window: RasterWindow) -> Result<Samples, DemErrorKind> {
+        window.assert_within(self.size());
+        match self.values(window)? {
+            Ok(values) => Ok(Samples::F32(values)),
+            Err(problem) => {
+                self.problem = Some(problem);
+                Err(DemErrorKind::Changed)
+            }
+        }
+    }
+
+    fn computed_rows(&self) -> Option<u32> {
+        let most = (MOST_POSTS / self.header.width).saturating_sub(2 * self.reach);
+        let wanted = (BAND_POSTS / self.header.width).max(ROWS_PER_HALO * self.reach);
+        Some(wanted.min(most).max(1))
+    }
+}
+
+/// The raster of an outcome in memory, as [`AnalysisBands`] gives it.
+pub struct OutcomeWindows<'a> {
+    header: Raster,
+    values: &'a PostValues,
+}
+
+impl<'a> OutcomeWindows<'a> {
+    /// Of an analysis of `ground`.
+    pub fn new(outcome: &'a OutcomeRaster, ground: &Lattice, crs: &Crs) -> Self {
+        let (name, data_type, nodata) = described(outcome);
+        let header = post_header(ground, crs, (name, data_type), nodata);
+        Self { header, values: &outcome.values }
+    }
+}
+
+impl Windows for OutcomeWindows<'_> {
+    fn metadata(&self) -> &Raster {
+        &self.header
+    }
+
+    fn samples(&mut self, window: RasterWindow) -> Result<Samples, DemErrorKind> {
+        window.assert_within(self.size());
+        let height = self.header.height;
+        let columns = window.column as usize..(window.column + window.width) as usize;
+        let rows = (height - window.row - window.height..height - window.row).rev();
+        Ok(Samples::F32(from_north(self.values, self.header.width as usize, columns, rows)))
+    }
+
+    fn computed_rows(&self) -> Option<u32> {
+        Some((BAND_POSTS / self.header.width).max(1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::analysis::{analyze, bare_land};
+    use crate::dataset::DatasetOptions;
+    use sandtable_dem::dem_format::DemFormat;
+
+    fn dataset(most_kept: u64) -> Dataset {
+        let path = concat!(env!("SANDTABLE_ROOT"), "assets/jacksboro/dem.tif");
+        let options = DatasetOptions { most_kept, ..DatasetOptions::default() };
+        Dataset::open(Path::new(path), &options).expect("the demo's ground")
+    }
+
+    fn file_of(windows: &mut (dyn Windows + Send)) -> Vec<u8> {
+        let mut out = std::io::Cursor::new(Vec::new());
+        let writer = DemFormat::to_write("tif").and_then(|format| format.windows_writer);
+        writer.expect("a GeoTIFF is written in windows")(windows, &mut out).expect("memory");
+        out.into_inner()
+    }
+
+    #[test]
+    fn bands_give_the_bytes_of_the_whole_and_any_windows_its_bits() {
+        let (on_disk, kept) = (dataset(0), dataset(u64::MAX));
+        let stop = StopFlag::default();
+        let mut kinds = 0;
+        for kind in sandtable_catalog::kinds() {
+            let Ok(Some(mut bands)) = analysis_bands(&on_disk, (kind, &[]), &on_disk.crs(), &stop) else {
+                continue;
+            };
+            kinds += 1;
+            let land = bare_land(&kept).expect("ground");
+            let whole = analyze(&kept, land, (kind, &[]), &kept.crs(), &stop).expect(kind.name);
+            let raster = whole.outcome.raster.as_ref().expect(kind.name);
+            let mut of_whole = OutcomeWindows::new(raster, &whole.ground, &whole.crs);
+            let size = bands.size();
+            assert_eq!(size, of_whole.size());
+            for window in RasterWindow::all(size).bands(37 * size.0) {
+                let wanted = of_whole.samples(window).expect("memory");
+                let found = bands.samples(window).expect("a file");
+                let bits = |samples: &Samples| samples.iter().map(f64::to_bits).collect::<Vec<_>>();
+                assert!(bits(&found) == bits(&wanted), "{} at row {}", kind.name, window.row);
+            }
+            assert!(file_of(&mut bands) == file_of(&mut of_whole), "{}", kind.name);
+            assert!(whole.outcome.figures.is_empty() && whole.outcome.notes == bands.outcome().notes);
+        }
+        assert!(kinds >= 5, "{kinds} kinds");
+    }
+
+    #[test]
+    fn all_of_elevation_on_disk_is_the_land_of_an_analysis() {
+        let [on_disk, kept] = [0, u64::MAX].map(|most_kept| bare_land(&dataset(most_kept)).expect("ground"));
+        assert_eq!(on_disk.ground.heights().len(), kept.ground.heights().len());
+        assert!(
+            on_disk
+                .ground
+                .heights()
+                .iter()
+                .zip(kept.ground.heights())
+                .all(|(a, b)| a.to_bits() == b.to_bits())
+        );
+    }
+
+    #[test]
+    fn wrong_arguments_are_errors_before_anything_is_written() {
+        let on_disk = dataset(0);
+        let kind = sandtable_catalog::kind("geomorphons").expect("a kind");
+        let written = [WrittenArgument { name: "radius".into(), text: "2.5".into() }];
+        let stop = StopFlag::default();
+        let bands = analysis_bands(&on_disk, (kind, &written), &on_disk.crs(), &stop);
+        assert!(bands.is_err_and(|error| error.to_string().contains("whole number")));
+    }
+
+    #[test]
+    fn bands_are_small_whatever_the_width_and_the_reach() {
+        let on_disk = dataset(0);
+        let kind = sandtable_catalog::kind("slope").expect("a kind");
+        let stop = StopFlag::default();
+        let bands = analysis_bands(&on_disk, (kind, &[]), &on_disk.crs(), &stop).ok().flatten();
+        let mut bands = bands.expect("bands");
+        for (width, reach) in [(1 << 14, 1), (1 << 14, 20), (1 << 14, 500), (1 << 20, 500)] {
+            (bands.header.width, bands.reach) = (width, reach);
+            let rows = bands.computed_rows().expect("computed");
+            assert!(
+                rows >= 1 && (rows == 1 || (rows + 2 * reach) * width <= MOST_POSTS),
+                "{width} {reach}: {rows}"
+            );
+        }
+    }
+}
