@@ -57,6 +57,7 @@ fn an_extent_limits_the_raster_and_one_off_the_land_is_refused() {
     run_in(scratch.folder(), &part).ok();
     let grid = fs::read_to_string(scratch.folder().join("part.asc")).expect("written");
     assert!(grid.starts_with("ncols 4\nnrows 4\n"), "{grid}");
-    let off = run_in(scratch.folder(), &["analyze", "slope", "tilt.asc", "--extent", "500,5,600,35"]).failed(1);
+    let off =
+        run_in(scratch.folder(), &["analyze", "slope", "tilt.asc", "--extent", "500,5,600,35"]).failed(1);
     assert!(off.contains("`extent`") && off.contains("off the land"), "{off}");
 }
