@@ -57,6 +57,7 @@ mod api;
 
 pub use glam::{DVec2, DVec3};
 
+pub use crate::api::analysis::{Analysis, AnalysisClass, AnalysisFailure, analysis_kinds};
 pub use crate::api::dem::Dem;
 pub use crate::api::elevation::Elevation;
 pub use crate::api::error::Error;

@@ -40,7 +40,7 @@ use sandtable_terrain::sight::viewshed::{ViewshedOptions, viewshed};
 /// # Ok::<(), sandtable::Error>(())
 /// ```
 pub struct Elevation {
-    dataset: Dataset,
+    pub(crate) dataset: Dataset,
 }
 
 impl Elevation {

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
+use crate::api::analysis::AnalysisFailure;
 use crate::api::dem::SamplesError;
 use sandtable_base::message::chain::error_text;
 use sandtable_dem::formats::WRITTEN_EXTENSIONS;
@@ -69,6 +70,9 @@ pub enum Error {
     /// A plan cannot be read, a shard cannot be done, or the product cannot be written.
     #[error(transparent)]
     Plan(Box<ShardError>),
+    /// An analysis has no outcome.
+    #[error(transparent)]
+    Analysis(Box<AnalysisFailure>),
     /// No raster format has this extension.
     #[error("{}: rasters are written as {WRITTEN_EXTENSIONS}; name a file that ends so", .0.display())]
     NoFormat(PathBuf),
@@ -83,6 +87,12 @@ pub enum Error {
 impl From<ShardError> for Error {
     fn from(error: ShardError) -> Self {
         Self::Plan(Box::new(error))
+    }
+}
+
+impl From<AnalysisFailure> for Error {
+    fn from(error: AnalysisFailure) -> Self {
+        Self::Analysis(Box::new(error))
     }
 }
 

@@ -1,5 +1,6 @@
 //! The types that `lib.rs` re-exports, for programs that use this crate as a library.
 
+pub mod analysis;
 pub mod dem;
 pub mod elevation;
 pub mod error;

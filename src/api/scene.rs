@@ -15,7 +15,10 @@ use sandtable_terrain::query::service::HeightService;
 
 /// A digital terrain model: the ground, the features on it and the views of it that its file describes.
 pub struct Scene {
-    model: scene::scene_model::SceneModel,
+    pub(crate) model: scene::scene_model::SceneModel,
+    /// Where it was opened, and the folders that it may read.
+    pub(crate) path: PathBuf,
+    pub(crate) allowed: Vec<PathBuf>,
 }
 
 /// The options for opening a scene.
@@ -70,7 +73,8 @@ impl Scene {
     /// # Errors
     /// [`Error::OpenScene`].
     pub fn open_with(path: impl AsRef<Path>, options: &SceneOptions<'_>) -> Result<Self, Error> {
-        Ok(Self { model: open_scene(path.as_ref(), options.allowed, options.progress)? })
+        let model = open_scene(path.as_ref(), options.allowed, options.progress)?;
+        Ok(Self::of(model, path.as_ref(), options))
     }
 
     /// [`Scene::open_with`], and the findings of the command `check` about the scene.
@@ -82,7 +86,11 @@ impl Scene {
         options: &SceneOptions<'_>,
     ) -> Result<(Self, Vec<Finding>), Error> {
         let (model, findings) = open_linted(path.as_ref(), options.allowed, options.progress)?;
-        Ok((Self { model }, findings))
+        Ok((Self::of(model, path.as_ref(), options), findings))
+    }
+
+    fn of(model: scene::scene_model::SceneModel, path: &Path, options: &SceneOptions<'_>) -> Self {
+        Self { model, path: path.to_owned(), allowed: options.allowed.to_vec() }
     }
 
     /// Notes for the user about the build: features off the model, missing textures, earth moved.

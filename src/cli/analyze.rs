@@ -7,7 +7,7 @@ use std::slice::from_ref;
 
 use clap::error::ErrorKind;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, Subcommand};
-use serde_json::{Map, Value, json};
+use serde_json::Value;
 
 use crate::error::CliError;
 use crate::options::DatasetArguments;
@@ -22,7 +22,8 @@ use sandtable_catalog::{kind, kinds};
 use sandtable_dem::dem_format::DemFormat;
 use sandtable_dem::formats::WRITTEN_EXTENSIONS;
 use sandtable_export::features::FeatureFormat;
-use sandtable_export::features::outcome::{OutcomeFrame, export_outcome, json_value};
+use sandtable_export::features::analysis_json::outcome_json;
+use sandtable_export::features::outcome::{OutcomeFrame, export_outcome};
 use sandtable_files::{disk, raster_file};
 use sandtable_query::analysis::{
     AnalyzeError, Analyzed, WrittenArgument, analyze, bare_land, ground_raster, raster,
@@ -326,33 +327,9 @@ fn write(
 }
 
 fn json(command: &AnalyzeCommand, outcome: &Outcome) -> Value {
-    let figures: Vec<Value> = outcome
-        .figures
-        .iter()
-        .map(|Figure { name, value, unit }| json!({ "name": name, "value": value, "unit": unit }))
-        .collect();
-    let table = |table: &OutcomeTable| {
-        let object = |row: &Vec<PropertyValue>| -> Map<String, Value> {
-            table
-                .columns
-                .iter()
-                .zip(row)
-                .map(|(column, cell)| (column.name.to_owned(), json_value(cell)))
-                .collect()
-        };
-        json!({ "title": table.title, "rows": table.rows.iter().map(object).collect::<Vec<_>>() })
-    };
-    json!({
-        "kind": command.kind.name,
-        "source": command.kind.source,
-        "limits": command.kind.limits,
-        "arguments": command.arguments.iter().map(|argument| (argument.name.clone(), Value::from(argument.text.as_str()))).collect::<Map<_, _>>(),
-        "figures": figures,
-        "tables": outcome.tables.iter().map(table).collect::<Vec<_>>(),
-        "features": outcome.features.len(),
-        "notes": outcome.notes,
-        "output": command.output.as_ref().map(|path| path.display().to_string()),
-    })
+    let mut object = outcome_json(command.kind, &command.arguments, outcome);
+    object["output"] = command.output.as_ref().map(|path| path.display().to_string()).into();
+    object
 }
 
 fn text(command: &AnalyzeCommand, outcome: &Outcome) -> Vec<String> {

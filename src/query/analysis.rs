@@ -8,7 +8,7 @@ use glam::DVec2;
 use crate::analysis_bands::described;
 use crate::analysis_extent;
 use crate::dataset::{Dataset, DatasetOptions, OpenError, QueryError};
-use crate::ground::GroundError;
+use crate::ground::{GroundError, QueriedGround};
 use crate::positions::{PositionArgument, position_list};
 use crate::post_raster::post_header;
 use crate::windowed_elevation::GroundReach;
@@ -60,6 +60,15 @@ impl AnalyzeError {
     }
 }
 
+/// The datasets that an argument may name as another ground.
+#[derive(Clone, Copy)]
+pub enum OtherGrounds<'a> {
+    /// Every file that can be opened.
+    Files,
+    /// Those that are known by name; none is opened.
+    Named(&'a (dyn Fn(&str) -> Option<&'a Dataset> + Sync)),
+}
+
 /// An analysis that was made: its land and what it gives.
 pub struct Analyzed {
     /// The ground of the land; values of rasters are those of its posts.
@@ -79,22 +88,43 @@ pub fn bare_land(
     (kind, arguments): (&'static AnalysisKind, &[WrittenArgument]),
     crs: &Crs,
 ) -> Result<Land, AnalyzeError> {
-    // A few posts, or all where they are in memory.
-    let frame = dataset.ground(&GroundReach { crs: &dataset.crs(), at: &[], around_m: 0.0 })?;
+    let frame = frame(dataset)?;
     if frame.lattice.holds_all() {
         return Ok(Land::bare(frame.lattice, frame.crs));
     }
-    let posts = match extent(arguments, crs, &frame.crs)? {
-        None => PostRect::all(&frame.lattice),
-        Some(extent) => {
-            let arguments = read(kind, arguments, crs, &frame.crs)?;
-            extent.needed_posts(&arguments, &frame.lattice).map_err(of_extent)?
-        }
-    };
+    let posts = posts_of((kind, arguments), crs, (&frame.lattice, &frame.crs))?;
     let corners = [posts.first, posts.last].map(|post| frame.lattice.map_position(post));
     let ground = dataset.ground(&GroundReach { crs: &frame.crs, at: &corners, around_m: 0.0 })?;
     let part = ground_part(&ground.lattice, posts).map_err(GroundError::from)?;
     Ok(Land::bare(part, ground.crs))
+}
+
+/// The posts of the ground of a dataset that the analysis needs.
+///
+/// # Errors
+/// As [`bare_land`].
+pub fn needed_posts(
+    dataset: &Dataset,
+    analysis: (&'static AnalysisKind, &[WrittenArgument]),
+    crs: &Crs,
+) -> Result<PostRect, AnalyzeError> {
+    let frame = frame(dataset)?;
+    posts_of(analysis, crs, (&frame.lattice, &frame.crs))
+}
+
+/// The ground with a few of its posts, or all where they are in memory.
+fn frame(dataset: &Dataset) -> Result<QueriedGround, QueryError> {
+    dataset.ground(&GroundReach { crs: &dataset.crs(), at: &[], around_m: 0.0 })
+}
+
+fn posts_of(
+    (kind, arguments): (&'static AnalysisKind, &[WrittenArgument]),
+    crs: &Crs,
+    (ground, land_crs): (&Lattice, &Crs),
+) -> Result<PostRect, AnalyzeError> {
+    let Some(extent) = extent(arguments, crs, land_crs)? else { return Ok(PostRect::all(ground)) };
+    let arguments = read(kind, arguments, crs, land_crs)?;
+    extent.needed_posts(&arguments, ground).map_err(of_extent)
 }
 
 /// The argument `extent`; `None` where it is not stated.
@@ -114,12 +144,26 @@ fn of_extent(problem: String) -> AnalyzeError {
 }
 
 /// Analyzes the land of a dataset, or the part of it that the argument `extent` states. Positions of `arguments` are in
-/// coordinates of `crs`.
+/// coordinates of `crs`, and another ground is a file.
 ///
 /// # Errors
 /// See [`AnalyzeError`].
 pub fn analyze(
     dataset: &Dataset,
+    land: Land,
+    analysis: (&'static AnalysisKind, &[WrittenArgument]),
+    crs: &Crs,
+    stop: &StopFlag,
+) -> Result<Analyzed, AnalyzeError> {
+    analyze_among((dataset, OtherGrounds::Files), land, analysis, crs, stop)
+}
+
+/// [`analyze`] with the datasets that may be another ground.
+///
+/// # Errors
+/// See [`AnalyzeError`].
+pub fn analyze_among(
+    grounds: (&Dataset, OtherGrounds<'_>),
     land: Land,
     (kind, arguments): (&'static AnalysisKind, &[WrittenArgument]),
     crs: &Crs,
@@ -135,7 +179,7 @@ pub fn analyze(
         if file.is_empty() {
             return Ok(None);
         }
-        other_ground(parameter.name, &file, dataset, land).map(Some)
+        other_ground((parameter.name, &file), grounds, land).map(Some)
     };
     let placed = run_within(land, &arguments, extent.as_ref(), compared, stop)?;
     Ok(Analyzed { ground: placed.ground, crs: land_crs, outcome: placed.outcome })
@@ -147,20 +191,23 @@ const SOURCE: &str = "source";
 /// The heights of an elevation file or scene at the posts of the land, NaN where it has none: of `file`, or of the dataset's
 /// own elevation before earthworks where that is `source`.
 fn other_ground(
-    name: &str,
-    file: &str,
-    dataset: &Dataset,
+    (name, file): (&str, &str),
+    (dataset, others): (&Dataset, OtherGrounds<'_>),
     land: &Land,
 ) -> Result<Arc<Lattice>, AnalyzeError> {
     let unreadable =
         |source: OpenError| AnalyzeError::Other { name: name.to_owned(), source: Box::new(source) };
-    let opened = match file {
-        SOURCE => None,
-        _ => Some(Dataset::open(Path::new(file), &DatasetOptions::default()).map_err(unreadable)?),
-    };
-    let (other, surface) = match &opened {
-        Some(other) => (other, Surface::Ground),
-        None => (dataset, Surface::Source),
+    let opened;
+    let (other, surface) = match others {
+        _ if file == SOURCE => (dataset, Surface::Source),
+        OtherGrounds::Files => {
+            opened = Dataset::open(Path::new(file), &DatasetOptions::default()).map_err(unreadable)?;
+            (&opened, Surface::Ground)
+        }
+        OtherGrounds::Named(find) => {
+            let unknown = || AnalyzeError::argument(name, format!("there is no dataset {}", quoted(file)));
+            (find(file).ok_or_else(unknown)?, Surface::Ground)
+        }
     };
     let (columns, rows) = (land.ground.columns(), land.ground.rows());
     let mut heights = Vec::with_capacity(columns as usize * rows as usize);

@@ -1,11 +1,18 @@
 //! The API of the service: every address with its parameters, as a table.
 //!
-//! The queries refuse what is not in it, and the page at `/` and the OpenAPI document are made of it.
+//! The queries refuse what is not in it, and the page at `/` and the OpenAPI document are made of it. The addresses of analyses
+//! follow from their catalog.
+
+use std::borrow::Cow;
+use std::sync::LazyLock;
 
 use crate::api::ApiNeed::{Optional, Required};
-use crate::api::ApiValue::{Count, Number, Text, Words};
-use crate::{health, ready};
+use crate::api::ApiValue::{Count, Listed, Number, Text, Words};
+use crate::{analyses, health, ready};
 use sandtable_base::message::choice::Choice;
+use sandtable_catalog::kind::{AnalysisKind, AnalysisYield};
+use sandtable_catalog::kinds;
+use sandtable_catalog::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
 use sandtable_geom::position::notation::PositionForm;
 use sandtable_query::service::{PathPrefix, ServiceLimits};
 use sandtable_raster::height_datum::HeightDatum;
@@ -14,12 +21,12 @@ use sandtable_terrain::query::Interpolation;
 /// An address of the service.
 #[derive(Debug)]
 pub struct ApiAddress {
-    pub path: &'static str,
+    pub path: Cow<'static, str>,
     pub methods: ApiMethods,
     pub summary: &'static str,
     /// Its media type where it is answered.
     pub answer: &'static str,
-    pub parameters: &'static [ApiParameter],
+    pub parameters: Cow<'static, [ApiParameter]>,
 }
 
 /// The methods of an address, besides `HEAD` and `OPTIONS`.
@@ -30,12 +37,12 @@ pub enum ApiMethods {
 }
 
 /// A parameter.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct ApiParameter {
     pub name: &'static str,
     pub value: ApiValue,
     pub need: ApiNeed,
-    pub text: &'static str,
+    pub text: Cow<'static, str>,
 }
 
 /// The need for a parameter: required or optional.
@@ -57,6 +64,8 @@ pub enum ApiValue {
     Count,
     /// One of these words.
     Words(fn() -> Vec<&'static str>),
+    /// One of these words, of an analysis.
+    Listed(&'static [&'static str]),
 }
 
 impl std::fmt::Debug for ApiValue {
@@ -74,6 +83,7 @@ impl ApiValue {
             Self::Number(least, most) => format!("a number from {least} to {most}"),
             Self::Count => format!("a number from 2 to {}", limits.max_points),
             Self::Words(words) => words().join("|"),
+            Self::Listed(words) => words.join("|"),
         }
     }
 }
@@ -90,7 +100,7 @@ fn choices<T: Choice>() -> Vec<&'static str> {
 }
 
 const fn parameter(name: &'static str, value: ApiValue, need: ApiNeed, text: &'static str) -> ApiParameter {
-    ApiParameter { name, value, need, text }
+    ApiParameter { name, value, need, text: Cow::Borrowed(text) }
 }
 
 const DATASET: ApiParameter =
@@ -133,11 +143,11 @@ const EARTH: ApiParameter =
     parameter("earth", Words(|| vec!["round", "flat"]), Optional("round"), "the Earth's shape");
 
 pub const HEIGHTS: ApiAddress = ApiAddress {
-    path: "/v1/DATASET",
+    path: Cow::Borrowed("/v1/DATASET"),
     methods: ApiMethods::GetOrPost,
     summary: "heights, as in the Open Topo Data API; of several datasets a,b the first that has one",
     answer: "application/json",
-    parameters: &[
+    parameters: Cow::Borrowed(&[
         parameter("locations", Text("LAT,LNG|LAT,LNG"), Required, "the positions; or an encoded polyline"),
         parameter(
             "interpolation",
@@ -172,28 +182,28 @@ pub const HEIGHTS: ApiAddress = ApiAddress {
         ),
         CRS,
         POSITIONS,
-    ],
+    ]),
 };
 
 pub const LOOKUP: ApiAddress = ApiAddress {
-    path: "/api/v1/lookup",
+    path: Cow::Borrowed("/api/v1/lookup"),
     methods: ApiMethods::GetOrPost,
     summary: "heights, as in the Open-Elevation API; of all datasets the first that has one",
     answer: "application/json",
-    parameters: &[parameter(
+    parameters: Cow::Borrowed(&[parameter(
         "locations",
         Text("LAT,LNG|LAT,LNG"),
         Required,
         "the positions; in JSON also [{\"latitude\": LAT, \"longitude\": LNG}]",
-    )],
+    )]),
 };
 
 pub const LOS: ApiAddress = ApiAddress {
-    path: "/v1/los",
+    path: Cow::Borrowed("/v1/los"),
     methods: ApiMethods::GetOrPost,
     summary: "whether one point can be seen from another",
     answer: "application/json",
-    parameters: &[
+    parameters: Cow::Borrowed(&[
         DATASET,
         parameter("from", Text("LAT,LNG"), Required, "the observer"),
         parameter("to", Text("LAT,LNG"), Required, "the target"),
@@ -203,15 +213,15 @@ pub const LOS: ApiAddress = ApiAddress {
         EARTH,
         CRS,
         POSITIONS,
-    ],
+    ]),
 };
 
 pub const PROFILE: ApiAddress = ApiAddress {
-    path: "/v1/profile",
+    path: Cow::Borrowed("/v1/profile"),
     methods: ApiMethods::GetOrPost,
     summary: "the ground along a line, at every place where it bends",
     answer: "application/json",
-    parameters: &[
+    parameters: Cow::Borrowed(&[
         DATASET,
         parameter(
             "locations",
@@ -221,15 +231,15 @@ pub const PROFILE: ApiAddress = ApiAddress {
         ),
         CRS,
         POSITIONS,
-    ],
+    ]),
 };
 
 pub const VIEWSHED: ApiAddress = ApiAddress {
-    path: "/v1/viewshed",
+    path: Cow::Borrowed("/v1/viewshed"),
     methods: ApiMethods::GetOrPost,
     summary: "what can be seen from a point",
     answer: "application/json",
-    parameters: &[
+    parameters: Cow::Borrowed(&[
         DATASET,
         parameter("observer", Text("LAT,LNG"), Required, "the observer"),
         OBSERVER_HEIGHT,
@@ -256,16 +266,17 @@ pub const VIEWSHED: ApiAddress = ApiAddress {
         ),
         CRS,
         POSITIONS,
-    ],
+    ]),
 };
 
-/// Every address.
-pub const ADDRESSES: [ApiAddress; 10] = [
+/// Every address but those of analyses.
+static ADDRESSES: [ApiAddress; 11] = [
     HEIGHTS,
     LOS,
     PROFILE,
     VIEWSHED,
     LOOKUP,
+    page(analyses::PATH, "the kinds of terrain analysis: parameters, source and limits", "application/json"),
     page("/datasets", "the datasets with their systems, extents and cells", "application/json"),
     page(health::PATH, "version, and whether the datasets are ready", "application/json"),
     page(ready::PATH, "whether requests should be sent here: 200, or 503", "application/json"),
@@ -273,13 +284,82 @@ pub const ADDRESSES: [ApiAddress; 10] = [
     page("/", "this list as text", "text/plain"),
 ];
 
+/// The addresses of the kinds of analysis.
+static ANALYSES: LazyLock<Vec<ApiAddress>> = LazyLock::new(|| kinds().map(analysis).collect());
+
+/// Every address.
+pub fn addresses() -> impl Iterator<Item = &'static ApiAddress> {
+    ADDRESSES.iter().chain(ANALYSES.iter())
+}
+
+/// The words of the parameter `format` of an analysis.
+pub const ANALYSIS_FORMATS: [&str; 4] = ["tif", "geojson", "gpkg", "json"];
+
+const FORMAT: ApiParameter = parameter(
+    "format",
+    Words(|| ANALYSIS_FORMATS.to_vec()),
+    Optional("tif of a raster, geojson of features, json of a table"),
+    "the raster, the features or the areas of its classes; json holds figures, tables and notes",
+);
+
+/// The address of a kind of analysis.
+fn analysis(kind: &'static AnalysisKind) -> ApiAddress {
+    let of_kind = kind.all_parameters().map(analysis_parameter);
+    ApiAddress {
+        path: format!("{}{}", analyses::QUERY_PATH, kind.name).into(),
+        methods: ApiMethods::GetOrPost,
+        summary: kind.summary.trim_end_matches('.'),
+        answer: match kind.yields {
+            AnalysisYield::Raster => "image/tiff",
+            AnalysisYield::Features | AnalysisYield::Both => "application/geo+json",
+            AnalysisYield::Table => "application/json",
+        },
+        parameters: [DATASET].into_iter().chain(of_kind).chain([FORMAT, CRS]).collect(),
+    }
+}
+
+fn analysis_parameter(parameter: &'static AnalysisParameter) -> ApiParameter {
+    let unit = if parameter.unit.is_empty() { String::new() } else { format!(", {}", parameter.unit) };
+    ApiParameter {
+        name: parameter.name,
+        value: match parameter.form {
+            ParameterForm::Number { least, greatest } => Number(least, greatest),
+            ParameterForm::Numbers { .. } => Text("NUMBER,NUMBER"),
+            ParameterForm::Word(words) => Listed(words),
+            ParameterForm::Points { .. } | ParameterForm::Line | ParameterForm::Area => {
+                Text("LAT,LNG|LAT,LNG")
+            }
+            ParameterForm::Vehicle => Text("VEHICLE"),
+            ParameterForm::Ground => Text("DATASET|source"),
+            ParameterForm::Extent => Text("LAT,LNG,LAT,LNG"),
+        },
+        need: match parameter.default {
+            ParameterDefault::Required => Required,
+            ParameterDefault::Value(text) | ParameterDefault::Otherwise(text) => Optional(text),
+        },
+        text: format!("{}{unit}", parameter.doc.trim_end_matches('.')).into(),
+    }
+}
+
 const fn page(path: &'static str, summary: &'static str, answer: &'static str) -> ApiAddress {
-    ApiAddress { path, methods: ApiMethods::Get, summary, answer, parameters: &[] }
+    ApiAddress {
+        path: Cow::Borrowed(path),
+        methods: ApiMethods::Get,
+        summary,
+        answer,
+        parameters: Cow::Borrowed(&[]),
+    }
 }
 
 /// The paths of all addresses below a prefix.
 pub fn paths(prefix: &PathPrefix) -> Vec<String> {
-    ADDRESSES.iter().map(|address| prefix.before(address.path)).collect()
+    let any_kind = format!("{}KIND", analyses::QUERY_PATH);
+    ADDRESSES
+        .iter()
+        .map(|address| &*address.path)
+        .chain([&*any_kind])
+        .map(|path| prefix.before(path))
+        .collect()
 }
 
 #[cfg(test)]

@@ -2,9 +2,14 @@
 //!
 //! They are opened when the service starts, so that no request reads from disk, but for elevation larger than a raster in
 //! memory may be: of that, a request reads what it needs. Their ground in meters, for which an
-//! elevation file in degrees must be warped, is made in the background; queries for it wait.
+//! elevation file in degrees must be warped, is made in the background; queries for it wait. What lies on the ground of a
+//! scene is built when the first analysis needs it.
+
+use std::path::PathBuf;
+use std::sync::OnceLock;
 
 use axum::Json;
+use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 
@@ -15,13 +20,41 @@ use sandtable_query::dataset::{Dataset, OpenError, QueryError};
 use sandtable_query::ground::QueriedGround;
 use sandtable_query::service::{NamedFile, ServiceOptions};
 use sandtable_query::windowed_elevation::GroundReach;
+use sandtable_scene::scene_file::open_scene_true_to_scale;
+use sandtable_scene::scene_model::SceneModel;
 
 pub struct ServedDataset {
     pub name: String,
     pub dataset: Dataset,
+    source: DatasetSource,
+    /// The scene with what lies on its ground, true to scale, once an analysis needs it.
+    scene: OnceLock<Result<Box<SceneModel>, String>>,
+}
+
+/// Where a dataset was opened.
+struct DatasetSource {
+    path: PathBuf,
+    allowed: Vec<PathBuf>,
 }
 
 impl ServedDataset {
+    /// The scene with what lies on its ground; `None` of an elevation file. Waits while it is being built.
+    pub fn scene(&self) -> Result<Option<&SceneModel>, HttpError> {
+        if self.dataset.scene_files().is_none() {
+            return Ok(None);
+        }
+        let DatasetSource { path, allowed } = &self.source;
+        let build = || open_scene_true_to_scale(path, allowed, &|_| ()).map(Box::new);
+        let built = self.scene.get_or_init(|| build().map_err(|error| error_text(&error)));
+        match built {
+            Ok(scene) => Ok(Some(scene)),
+            Err(reason) => {
+                let reason = format!("dataset {} cannot be built: {reason}", quoted(&self.name));
+                Err(HttpError::new(StatusCode::INTERNAL_SERVER_ERROR, reason))
+            }
+        }
+    }
+
     /// The facts about the dataset.
     pub fn facts(&self) -> DatasetFacts<'_> {
         let source = self.dataset.header();
@@ -98,7 +131,9 @@ impl Datasets {
             dataset.warning().into_iter().for_each(warn);
             dataset.reading_notes().iter().for_each(|note| (options.write_line)(&format!("note: {note}")));
             dataset.ground_note().iter().for_each(|note| (options.write_line)(&format!("note: {note}")));
-            Ok(ServedDataset { name: file.name().to_owned(), dataset })
+            let source =
+                DatasetSource { path: file.path().to_owned(), allowed: options.dataset.allowed.clone() };
+            Ok(ServedDataset { name: file.name().to_owned(), dataset, source, scene: OnceLock::new() })
         };
         options.datasets.iter().map(open).collect::<Result<_, _>>().map(Self)
     }
@@ -109,6 +144,11 @@ impl Datasets {
 
     pub fn at(&self, index: usize) -> &ServedDataset {
         &self.0[index]
+    }
+
+    /// The dataset of this name.
+    pub fn named(&self, name: &str) -> Option<&Dataset> {
+        self.0.iter().find(|served| served.name == name).map(|served| &served.dataset)
     }
 
     fn find(&self, name: &str) -> Result<usize, HttpError> {

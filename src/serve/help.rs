@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use axum::response::{IntoResponse, Response};
 
-use crate::api::{ADDRESSES, ApiAddress, ApiMethods, ApiNeed};
+use crate::api::{ApiAddress, ApiMethods, ApiNeed, addresses};
 use crate::service::Service;
 
 /// The columns before the second one of an address and of a parameter.
@@ -17,7 +17,7 @@ pub fn page(service: &Service) -> Response {
         env!("CARGO_PKG_VERSION"),
         service.datasets.names()
     );
-    ADDRESSES.iter().for_each(|address| describe(address, service, &mut text));
+    addresses().for_each(|address| describe(address, service, &mut text));
     let _ = write!(
         text,
         "\nA POST takes the same parameters as a form, in parts or not, or as a JSON object. Heights and distances are meters. At most {} \
@@ -37,10 +37,10 @@ fn describe(address: &ApiAddress, service: &Service, text: &mut String) {
     let _ = writeln!(
         text,
         "{:<WIDTH$}  {}",
-        format!("{methods} {}", service.prefix.before(address.path)),
+        format!("{methods} {}", service.prefix.before(&address.path)),
         address.summary
     );
-    for parameter in address.parameters {
+    for parameter in address.parameters.iter() {
         let form = format!("{}={}", parameter.name, parameter.value.form(&service.limits));
         let default = match parameter.need {
             ApiNeed::Required => "required".to_owned(),

@@ -5,7 +5,7 @@
 //!    └─ router  requests: their address, their limits, the thread that answers them
 //!         ├─ host, clients, answers                        who may ask, and for how much at once
 //!         ├─ parameters, coordinates, polyline, samples    reading
-//!         ├─ heights, los, profile, viewshed               the queries (`query` is what they share)
+//!         ├─ heights, los, profile, viewshed, analyses     the queries (`query` is what they share)
 //!         ├─ service, datasets                             the state of the service, and what it serves
 //!         ├─ api ─► help, openapi                          what may be asked, as a table and as pages
 //!         └─ reply, health, ready, etag                    writing
@@ -15,6 +15,7 @@
 //! read back to the same bits. Requests name no files and change no state: the datasets are fixed when the service
 //! starts.
 
+mod analyses;
 mod answers;
 mod api;
 mod clients;

@@ -4,7 +4,7 @@ use axum::Json;
 use axum::response::{IntoResponse, Response};
 use serde_json::{Map, Value, json};
 
-use crate::api::{ADDRESSES, ApiAddress, ApiMethods, ApiNeed, ApiParameter, ApiValue, HEIGHTS};
+use crate::api::{ApiAddress, ApiMethods, ApiNeed, ApiParameter, ApiValue, HEIGHTS, addresses};
 use crate::parameters::BODY_TYPES;
 use crate::ready;
 use crate::service::Service;
@@ -17,15 +17,14 @@ pub fn page(service: &Service) -> Response {
 }
 
 fn document(service: &Service) -> Value {
-    let paths: Map<String, Value> = ADDRESSES
-        .iter()
+    let paths: Map<String, Value> = addresses()
         .map(|address| (address.path.replace(DATASET.0, DATASET.1), path_item(address, service)))
         .collect();
     let mut document = json!({
         "openapi": "3.1.0",
         "info": {
             "title": "sandtable",
-            "summary": "Heights, profiles, lines of sight and viewsheds over HTTP",
+            "summary": "Heights, profiles, lines of sight, viewsheds and terrain analyses over HTTP",
             "version": env!("CARGO_PKG_VERSION"),
         },
         "paths": paths,
@@ -105,7 +104,7 @@ fn body(address: &ApiAddress, service: &Service) -> Value {
 
 fn described(parameter: &ApiParameter) -> String {
     match parameter.need {
-        ApiNeed::Required => parameter.text.to_owned(),
+        ApiNeed::Required => parameter.text.to_string(),
         ApiNeed::Optional(default) => format!("{}; default: {default}", parameter.text),
     }
 }
@@ -116,6 +115,7 @@ fn schema(parameter: &ApiParameter, service: &Service) -> Value {
         ApiValue::Number(least, most) => json!({"type": "number", "minimum": least, "maximum": most}),
         ApiValue::Count => json!({"type": "integer", "minimum": 2, "maximum": service.limits.max_points}),
         ApiValue::Words(words) => json!({"type": "string", "enum": words()}),
+        ApiValue::Listed(words) => json!({"type": "string", "enum": words}),
     }
 }
 

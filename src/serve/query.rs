@@ -33,8 +33,8 @@ pub enum QueryWeight {
 
 /// A query with an address of its own.
 pub trait Query: Sized + Send + 'static {
-    /// Parses the query. `datasets` is the part of the address after `/v1/`; empty unless it is a list of datasets.
-    fn read(service: &Service, datasets: &str, parameters: &Parameters) -> Result<Self, HttpError>;
+    /// Parses the query. `name` is the last part of an address that ends with a list of datasets or a kind; else empty.
+    fn read(service: &Service, name: &str, parameters: &Parameters) -> Result<Self, HttpError>;
 
     /// Heavy by default, since the ground may have to be made first.
     fn weight(&self, _: &Service) -> QueryWeight {

@@ -30,6 +30,7 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::{MethodRouter, get};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
+use crate::analyses::AnalysisQuery;
 use crate::clients::Connection;
 use crate::heights::HeightsQuery;
 use crate::listener::RequestConnection;
@@ -41,7 +42,7 @@ use crate::query::{Query, QueryWeight};
 use crate::reply::{HttpError, quoted};
 use crate::service::Service;
 use crate::viewshed::ViewshedQuery;
-use crate::{answers, api, datasets, etag, health, help, host, openapi, ready};
+use crate::{analyses, answers, api, datasets, etag, health, help, host, openapi, ready};
 use sandtable_query::service::RequestLog;
 use sandtable_terrain::stop_flag::StopFlag;
 
@@ -65,14 +66,13 @@ pub fn router(service: Arc<Service>) -> Router {
         .route(&at("/openapi.json"), page(openapi::page))
         .route(&at(health::PATH), page(health::page))
         .route(&at(ready::PATH), page(ready::page))
-        .route(&at(api::LOOKUP.path), query::<LookupQuery>())
+        .route(&at(&api::LOOKUP.path), query::<LookupQuery>())
         .route(&at("/v1/los"), query::<LosQuery>())
         .route(&at("/v1/profile"), query::<ProfileQuery>())
         .route(&at("/v1/viewshed"), query::<ViewshedQuery>())
-        .route(
-            &at("/v1/{datasets}"),
-            get(heights).post(heights).fallback(async |method| other(&method, QUERY_METHODS)),
-        )
+        .route(&at("/v1/{datasets}"), named::<HeightsQuery>())
+        .route(&at(analyses::PATH), page(analyses::page))
+        .route(&at("/v1/analyze/{kind}"), named::<AnalysisQuery>())
         .fallback(async |State(service): Shared, uri: Uri| not_found(&service, &uri));
     let router = match service.prefix.as_str() {
         "" => router,
@@ -103,16 +103,20 @@ fn query<Q: Query>() -> MethodRouter<Arc<Service>> {
     get(handle::<Q>).post(handle::<Q>).fallback(async |method| other(&method, QUERY_METHODS))
 }
 
-async fn heights(
-    State(service): Shared,
-    ConnectInfo(RequestConnection(connection)): ConnectInfo<RequestConnection>,
-    datasets: Result<Path<String>, PathRejection>,
-    request: Request,
-) -> Result<Response, HttpError> {
-    match datasets {
-        Ok(Path(datasets)) => answer::<HeightsQuery>(&service, &connection, &datasets, request).await,
-        Err(_) => Err(not_found(&service, request.uri())),
+/// A query whose address ends with a name: of datasets, or of a kind of analysis.
+fn named<Q: Query>() -> MethodRouter<Arc<Service>> {
+    async fn handle<Q: Query>(
+        State(service): Shared,
+        ConnectInfo(RequestConnection(connection)): ConnectInfo<RequestConnection>,
+        name: Result<Path<String>, PathRejection>,
+        request: Request,
+    ) -> Result<Response, HttpError> {
+        match name {
+            Ok(Path(name)) => answer::<Q>(&service, &connection, &name, request).await,
+            Err(_) => Err(not_found(&service, request.uri())),
+        }
     }
+    get(handle::<Q>).post(handle::<Q>).fallback(async |method| other(&method, QUERY_METHODS))
 }
 
 /// The response to `OPTIONS` and to unsupported methods.
@@ -154,7 +158,7 @@ impl Drop for StopOnDrop {
 async fn answer<Q: Query>(
     service: &Arc<Service>,
     connection: &Arc<Connection>,
-    datasets: &str,
+    name: &str,
     request: Request,
 ) -> Result<Response, HttpError> {
     let parameters = Parameters::receive(request, service, connection).await?;
@@ -163,7 +167,7 @@ async fn answer<Q: Query>(
         HttpError::busy(1, format!("{most} of your requests are being answered; try again"))
     })?;
     let stop = StopOnDrop::default();
-    let work = work::<Q>(service, connection, datasets.to_owned(), parameters, &stop.0);
+    let work = work::<Q>(service, connection, name.to_owned(), parameters, &stop.0);
     let seconds = service.limits.timeout_s;
     tokio::time::timeout(Duration::from_secs(seconds.into()), work).await.unwrap_or_else(|_| {
         let reason = format!("no answer within {seconds} s; ask for less at a time, or later");
@@ -174,13 +178,13 @@ async fn answer<Q: Query>(
 async fn work<Q: Query>(
     service: &Arc<Service>,
     connection: &Arc<Connection>,
-    datasets: String,
+    name: String,
     parameters: Parameters,
     stop: &Arc<StopFlag>,
 ) -> Result<Response, HttpError> {
     let query = match parameters.len() > LIGHT_BYTES {
-        true => on_another_thread(service, move |service| Q::read(service, &datasets, &parameters)).await?,
-        false => Q::read(service, &datasets, &parameters)?,
+        true => on_another_thread(service, move |service| Q::read(service, &name, &parameters)).await?,
+        false => Q::read(service, &name, &parameters)?,
     };
     let (own, all) = match query.weight(service) {
         QueryWeight::Light => return query.answer(service, stop),

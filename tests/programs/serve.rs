@@ -1,5 +1,6 @@
 //! The height query service as its clients meet it: the program is started, and asked over sockets.
 
+mod analyses;
 mod bits;
 pub mod client;
 #[cfg(unix)]

@@ -9,6 +9,7 @@
 //!                   └─► nvg          points, lines and polygons with codes and styles
 //! ```
 
+pub mod analysis_json;
 mod features_of;
 mod geopackage;
 mod json;

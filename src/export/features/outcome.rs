@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 
 use super::{
     ExportFeature, ExportKind, ExportLayer, ExportShape, ExportedFeatures, FeatureExportError, FeatureFormat,
-    LayerLook, bring_to, geopackage, json,
+    LayerLook, MadeFile, bring_to, geopackage, json,
 };
 use sandtable_analysis::outcome::{
     ClassLook, FeatureRole, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, PropertyValue, ValueClass,
@@ -45,6 +45,37 @@ pub fn export_outcome(
     inputs: &[PathBuf],
 ) -> Result<ExportedFeatures, FeatureExportError> {
     disk::check_output(path, inputs)?;
+    let made = made(outcome, frame, format, title)?;
+    let mut outputs = OutputFiles::default();
+    outputs.write(path, &made.bytes)?;
+    outputs.publish()?;
+    Ok(made.told)
+}
+
+/// The bytes of the file that [`export_outcome`] writes.
+///
+/// # Errors
+/// [`FeatureExportError::Make`] and those of the system.
+pub fn outcome_bytes(
+    outcome: &Outcome,
+    frame: OutcomeFrame<'_>,
+    format: FeatureFormat,
+    title: &str,
+) -> Result<Vec<u8>, FeatureExportError> {
+    made(outcome, frame, format, title).map(|made| made.bytes)
+}
+
+/// The features of an outcome as GeoJSON in their own system.
+pub fn outcome_geojson(outcome: &Outcome, title: &str) -> String {
+    String::from_utf8_lossy(&json::file(&role_layers(&outcome.features), title).bytes).into_owned()
+}
+
+fn made(
+    outcome: &Outcome,
+    frame: OutcomeFrame<'_>,
+    format: FeatureFormat,
+    title: &str,
+) -> Result<MadeFile, FeatureExportError> {
     let mut layers = match (&outcome.raster, outcome.features.is_empty()) {
         (Some(raster), true) => class_layers(raster, frame.ground),
         _ => role_layers(&outcome.features),
@@ -57,17 +88,13 @@ pub fn export_outcome(
     let wgs84 = Crs::wgs84();
     let system = if format.is_geographic() { &wgs84 } else { frame.crs };
     bring_to(&mut layers, frame.crs, system)?;
-    let made = match format {
-        FeatureFormat::GeoPackage => geopackage::file(&layers, system, &[])?,
-        FeatureFormat::GeoJson => json::file(&layers, title),
+    match format {
+        FeatureFormat::GeoPackage => geopackage::file(&layers, system, &[]),
+        FeatureFormat::GeoJson => Ok(json::file(&layers, title)),
         FeatureFormat::Kmz | FeatureFormat::Msdl | FeatureFormat::Nvg => {
-            return Err(FeatureExportError::Make("analyses are written as .gpkg or .geojson".into()));
+            Err(FeatureExportError::Make("analyses are written as .gpkg or .geojson".into()))
         }
-    };
-    let mut outputs = OutputFiles::default();
-    outputs.write(path, &made.bytes)?;
-    outputs.publish()?;
-    Ok(made.told)
+    }
 }
 
 /// A layer for each role and kind of shape.

@@ -6,12 +6,13 @@ use std::path::PathBuf;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyUserWarning};
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyAnyMethods, PyTuple};
+use pyo3::types::{IntoPyDict, PyAnyMethods, PyDict, PyTuple};
 use sandtable::{
     Crs, Dem, DemOptions, Elevation, HeightSlices, HillshadeOptions, Interpolation, Samples, Sampling,
     Sector, SightQuery, Status, Surface, ViewshedOptions,
 };
 
+use crate::analysis::analyzed;
 use crate::arguments::{
     Transform, crs_name, crs_or, curvature, end, geotransform, height, positions, transform,
 };
@@ -304,6 +305,24 @@ impl PyDem {
         let options = ViewshedOptions { observer, target_above_m, range_m, sector, curvature };
         let seen = py.detach(|| self.elevation.viewshed(&crs, &options)).map_err(failed)?;
         PyRaster::new(py, &seen)
+    }
+
+    /// Analyzes the ground, as `sandtable analyze`: `kind` and the keywords are those of `sandtable.kinds()`.
+    ///
+    /// Positions are (x, y) in `crs`, by default the file's, texts that state places, lists or arrays of them, or shapes of
+    /// shapely. `extent` is (x0, y0, x1, y1), two opposite corners or a ring. A kind that gives a raster alone makes an
+    /// `xarray.DataArray`, which needs xarray; every other an `Analysis`. Roads, water,
+    /// woods and buildings are not known, and a note says so. Raises SandtableError.
+    #[pyo3(signature = (kind, *, crs = None, **arguments))]
+    fn analyze<'py>(
+        &self,
+        py: Python<'py>,
+        kind: &str,
+        crs: Option<&Bound<'py, PyAny>>,
+        arguments: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let crs = crs_or(crs, || self.elevation.crs())?;
+        analyzed(py, arguments, crs, |texts, crs| self.elevation.analyze(kind, texts, crs))
     }
 
     /// The mesh of the ground with few triangles that is nowhere off by more than `max_error` meters, verified at every post.

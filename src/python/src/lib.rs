@@ -10,6 +10,7 @@
 
 #![forbid(unsafe_code)]
 
+mod analysis;
 mod arguments;
 mod dem;
 mod error;
@@ -26,6 +27,8 @@ use pyo3::prelude::*;
 /// Elevation and scenes: heights, profiles, lines of sight, viewsheds, meshes and pictures.
 #[pymodule]
 mod _sandtable {
+    #[pymodule_export]
+    use crate::analysis::analysis_kinds;
     #[pymodule_export]
     use crate::dem::{PyDem, open_dem};
     #[pymodule_export]

@@ -5,9 +5,11 @@ use std::sync::OnceLock;
 
 use numpy::{PyArray1, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyDict, PyTuple};
 use sandtable::{Finding, Scene, SceneOptions};
 
+use crate::analysis::analyzed;
+use crate::arguments::crs_or;
 use crate::error::{failed, wrong_value};
 use crate::findings::PyFinding;
 
@@ -93,6 +95,24 @@ impl PyScene {
         });
         let (rgb, (width, height)) = rendered.map_err(failed)?;
         PyArray1::from_vec(py, rgb).reshape([height as usize, width as usize, 3])
+    }
+
+    /// Analyzes the ground, as `sandtable analyze`: `kind` and the keywords are those of `sandtable.kinds()`.
+    ///
+    /// Positions are (x, y) in `crs`, by default the scene's, texts that state places, lists or arrays of them, or shapes of
+    /// shapely. `extent` is (x0, y0, x1, y1), two opposite corners or a ring. A kind that gives a raster alone makes an
+    /// `xarray.DataArray`, which needs xarray; every other an `Analysis`. The ground has its
+    /// earthworks, and roads, water, woods and buildings are known. Raises SandtableError.
+    #[pyo3(signature = (kind, *, crs = None, **arguments))]
+    fn analyze<'py>(
+        &self,
+        py: Python<'py>,
+        kind: &str,
+        crs: Option<&Bound<'py, PyAny>>,
+        arguments: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let crs = crs_or(crs, || self.scene.crs())?;
+        analyzed(py, arguments, crs, |texts, crs| self.scene.analyze(kind, texts, crs))
     }
 
     fn __repr__(&self) -> String {

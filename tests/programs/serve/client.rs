@@ -22,7 +22,9 @@ pub struct Server {
 pub struct Answer {
     pub status: u16,
     pub head: String,
+    /// Empty where the body is no text.
     pub body: String,
+    pub bytes: Vec<u8>,
 }
 
 impl Answer {
@@ -167,12 +169,15 @@ pub fn read_answer(from: &mut impl BufRead, with_body: bool) -> Answer {
         head.push('\n');
     }
     let status = head.split(' ').nth(1).and_then(|status| status.parse().ok()).unwrap_or(0);
-    let mut answer = Answer { status, head, body: String::new() };
+    let mut answer = Answer { status, head, body: String::new(), bytes: Vec::new() };
     let length = answer.header("content-length").parse().unwrap_or(0);
     if with_body {
         let mut body = vec![0; length];
         from.read_exact(&mut body).expect("as long as it says");
-        answer.body = String::from_utf8(body).expect("UTF-8");
+        if !answer.header("content-type").starts_with("image/") {
+            answer.body = String::from_utf8(body.clone()).expect("UTF-8");
+        }
+        answer.bytes = body;
     }
     answer
 }

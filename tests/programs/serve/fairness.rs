@@ -240,7 +240,8 @@ fn the_document_of_the_service_lists_what_it_answers() {
     assert_eq!(document["openapi"], "3.1.0");
     let page = server.get("/").body;
     let paths = document["paths"].as_object().expect("paths");
-    assert_eq!(paths.len(), 10, "{:?}", paths.keys());
+    let analyses = sandtable_catalog::kinds().count();
+    assert_eq!(paths.len(), 11 + analyses, "{:?}", paths.keys());
     for (path, item) in paths {
         let address = path.replace("{dataset}", "grid");
         assert_ne!(server.get(&address).status, 404, "{path}");

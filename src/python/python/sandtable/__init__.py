@@ -10,11 +10,13 @@ interpreter's lock; arrays are NumPy's. ``import sandtable.xarray`` adds the acc
 and ``sandtable.dask`` does plans on a Dask cluster.
 """
 
+from ._analysis import Analysis, kinds
 from ._errors import SandtableError
 from ._sandtable import Dem, Finding, LineOfSight, Mesh, Plan, Profile, Raster, Scene, Symbol, licenses, set_limit
 from ._sandtable import __VERSION__ as __version__
 
 __all__ = [
+    "Analysis",
     "Dem",
     "Finding",
     "LineOfSight",
@@ -26,6 +28,7 @@ __all__ = [
     "Scene",
     "Symbol",
     "__version__",
+    "kinds",
     "licenses",
     "set_limit",
 ]

@@ -5,6 +5,9 @@ from typing import Any, Literal, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ._analysis import Analysis as Analysis
+from ._analysis import kinds as kinds
+
 _Interpolation = Literal["bilinear", "planar", "nearest", "cubic", "distance-weighted"]
 _Surface = Literal["source", "ground", "scene"]
 # "EPSG:32616", a proj string, WKT 1, an EPSG code, a pyproj.CRS or a rasterio.crs.CRS
@@ -178,6 +181,7 @@ class Dem:
         flat: bool = False,
         crs: _Crs | None = None,
     ) -> Raster: ...
+    def analyze(self, kind: str, *, crs: _Crs | None = None, **arguments: Any) -> Any: ...
     def mesh(self, max_error: float) -> Mesh: ...
     def hillshade(self, azimuth: float = 315.0, altitude: float = 45.0) -> Raster: ...
 
@@ -214,6 +218,7 @@ class Scene:
     def render(
         self, camera: str | None = None, size: tuple[int, int] | None = None
     ) -> NDArray[np.uint8]: ...
+    def analyze(self, kind: str, *, crs: _Crs | None = None, **arguments: Any) -> Any: ...
 
 @final
 class Plan:
