@@ -14,7 +14,7 @@ use crate::stated::Stated;
 use crate::table::Table;
 use crate::table_key;
 use crate::value::KeyValue;
-use crate::words::{BuiltInVehicle, WordDeclaration};
+use crate::words::{AnalysisDraw, BuiltInVehicle, WordDeclaration};
 use sandtable_base::message::suggest::listed;
 use sandtable_catalog::kind::AnalysisKind;
 use sandtable_catalog::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
@@ -29,6 +29,8 @@ table! {
         /// What is analyzed; decides the keys of the table besides these. `sandtable analyze KIND --help` tells of each kind
         /// its source and its limits.
         kind: Stated<&'static AnalysisKind> = key::analysis_kind(), required;
+        /// What pictures show of it.
+        draw: AnalysisDraw = key::word::<AnalysisDraw>(), default "all";
         /// Coordinate system of positions.
         crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`";
         /// The parameters of the kind.

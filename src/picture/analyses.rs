@@ -33,7 +33,7 @@ pub(super) fn tints(scene: &SceneModel) -> Vec<TintPlan> {
 }
 
 fn tint(analysis: &SceneAnalysis, scene: &SceneModel) -> Option<TintPlan> {
-    let raster = analysis.outcome.raster.as_ref()?;
+    let raster = analysis.tinted_raster()?;
     let (classes, lattice) = (shown_classes(raster), &*analysis.ground);
     if is_print(scene) && classes.iter().any(|class| class.look.hatching != Hatching::None) {
         return None;
@@ -56,11 +56,11 @@ fn tint(analysis: &SceneAnalysis, scene: &SceneModel) -> Option<TintPlan> {
 /// The colors of all that [`draw`] draws.
 pub(super) fn colors(scene: &SceneModel) -> impl Iterator<Item = Srgba> {
     scene.analyses.iter().flat_map(|analysis| {
-        let outcome = &analysis.outcome;
-        let classes = outcome.raster.iter().flat_map(|raster| shown_classes(raster).into_owned());
+        let classes =
+            analysis.hatched_raster().into_iter().flat_map(|raster| shown_classes(raster).into_owned());
         let of_classes = classes.map(|class| printed(scene, hatch_color(class.look.tint)));
         let of_features =
-            outcome.features.iter().map(|feature| printed(scene, feature_color(analysis, feature)));
+            analysis.shown_features().iter().map(|feature| printed(scene, feature_color(analysis, feature)));
         of_classes.chain(of_features.flat_map(|color| [color, site_fill(color)]))
     })
 }
@@ -88,12 +88,12 @@ pub(super) fn draw(
     texts: &mut Vec<PlacedText>,
 ) {
     for analysis in &scene.analyses {
-        if let Some(raster) = &analysis.outcome.raster {
+        if let Some(raster) = analysis.hatched_raster() {
             let classes = shown_classes(raster);
             HatchedRaster { raster, classes: &classes, analysis, scene }.draw(view, pen);
         }
         let drawing = FeatureDrawing { analysis, view, scene, origin: scene.lattice.origin() };
-        analysis.outcome.features.iter().for_each(|feature| drawing.draw(feature, pen, texts));
+        analysis.shown_features().iter().for_each(|feature| drawing.draw(feature, pen, texts));
     }
 }
 

@@ -24,7 +24,7 @@ use sandtable_analysis::error::AnalysisError;
 use sandtable_analysis::extent::{LandExtent, PlacedOutcome, run_within};
 use sandtable_analysis::land::Land;
 use sandtable_analysis::movement::vehicle::Vehicle;
-use sandtable_analysis::outcome::Outcome;
+use sandtable_analysis::outcome::{Outcome, OutcomeFeature, OutcomeRaster};
 use sandtable_base::message::choice::Choice as _;
 use sandtable_catalog::kind::AnalysisKind;
 use sandtable_catalog::parameter::ParameterForm;
@@ -34,6 +34,7 @@ use sandtable_description::document::Document;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::parse::parse;
 use sandtable_description::stated::Stated;
+use sandtable_description::words::AnalysisDraw;
 use sandtable_draw::list::FeatureId;
 use sandtable_geom::position::Position;
 use sandtable_raster::answer::Answer;
@@ -53,12 +54,32 @@ pub struct SceneAnalysis {
     pub kind: &'static AnalysisKind,
     /// Its number among the scene's, from 0.
     pub number: usize,
+    /// What pictures show of it.
+    pub draw: AnalysisDraw,
     /// The feature that it is.
     pub feature: FeatureId,
     /// The ground on whose posts the values of its raster are.
     pub ground: Arc<Lattice>,
     /// What it gives.
     pub outcome: Outcome,
+}
+
+impl SceneAnalysis {
+    /// The raster whose classes pictures show by hatching; `None` where they show none.
+    pub fn hatched_raster(&self) -> Option<&OutcomeRaster> {
+        let shows = matches!(self.draw, AnalysisDraw::All | AnalysisDraw::Hatching);
+        self.outcome.raster.as_ref().filter(|_| shows)
+    }
+
+    /// The raster whose classes pictures show by tints; `None` where they show none.
+    pub fn tinted_raster(&self) -> Option<&OutcomeRaster> {
+        self.outcome.raster.as_ref().filter(|_| self.draw == AnalysisDraw::All)
+    }
+
+    /// The features that pictures show.
+    pub fn shown_features(&self) -> &[OutcomeFeature] {
+        if self.draw == AnalysisDraw::Nothing { &[] } else { &self.outcome.features }
+    }
 }
 
 /// An analysis whose arguments have their places.
@@ -83,7 +104,15 @@ impl SceneModel {
         self.features.push(SceneFeature { kind: FeatureKind::Analysis, name: name.clone(), origin });
         let feature = FeatureId(FeatureId::GROUND.0 + self.features.len() as u32);
         let number = self.analyses.len();
-        self.analyses.push(SceneAnalysis { name, kind, number, feature, ground, outcome });
+        self.analyses.push(SceneAnalysis {
+            name,
+            kind,
+            number,
+            draw: AnalysisDraw::All,
+            feature,
+            ground,
+            outcome,
+        });
     }
 }
 
@@ -221,7 +250,15 @@ pub(super) fn analyze(
             let span = table.kind.span().unwrap_or_default();
             findings.add(FindingCode::AnalysisLimited, span, format!("{name}: {note}"));
         }
-        analyses.push(SceneAnalysis { name, kind, number: analyses.len(), feature, ground, outcome });
+        analyses.push(SceneAnalysis {
+            name,
+            kind,
+            number: analyses.len(),
+            draw: table.draw,
+            feature,
+            ground,
+            outcome,
+        });
     }
     errors.finish()?;
     scene.findings.extend(findings.into_vec());

@@ -96,8 +96,8 @@ pub fn overlay_entries(scene: &SceneModel, picture: &Rendering) -> Vec<LegendEnt
 /// The classes that a raster holds and that are tinted or hatched, and what the lines of an analysis are.
 fn analysis_entries(analysis: &SceneAnalysis, scene: &SceneModel) -> Vec<LegendEntry> {
     let mut entries = Vec::new();
-    let is_alone = scene.analyses.iter().filter(|other| other.outcome.raster.is_some()).count() == 1;
-    if let Some(raster) = &analysis.outcome.raster {
+    let is_alone = scene.analyses.iter().filter(|other| other.hatched_raster().is_some()).count() == 1;
+    if let Some(raster) = analysis.hatched_raster() {
         let classes = shown_classes(raster);
         let mut is_held = vec![false; classes.len()];
         for index in 0..raster.values.len() {
@@ -106,11 +106,14 @@ fn analysis_entries(analysis: &SceneAnalysis, scene: &SceneModel) -> Vec<LegendE
             }
         }
         let held = classes.iter().zip(is_held).filter(|(_, is_held)| *is_held);
-        let shown = held.filter(|(class, _)| class.look.tint[3] > 0 || class.look.hatching != Hatching::None);
+        let is_tinted = analysis.tinted_raster().is_some();
+        let shown = held.filter(|(class, _)| {
+            is_tinted && class.look.tint[3] > 0 || class.look.hatching != Hatching::None
+        });
         entries.extend(shown.map(|(class, _)| class_entry(class, analysis, is_alone, scene.preset)));
     }
     let mut nouns: BTreeMap<&str, Srgba> = BTreeMap::new();
-    for feature in &analysis.outcome.features {
+    for feature in analysis.shown_features() {
         nouns.entry(feature_noun(feature)).or_insert_with(|| match scene.preset {
             Some(StylePreset::Print) => Srgba::opaque(0, 0, 0),
             _ => feature_color(analysis, feature),
@@ -134,7 +137,8 @@ fn class_entry(
     preset: Option<StylePreset>,
 ) -> LegendEntry {
     let tint = Srgba(class.look.tint);
-    let fill = GROUND.linear().lerp(tint.linear(), tint.alpha());
+    let share = if analysis.tinted_raster().is_some() { tint.alpha() } else { 0.0 };
+    let fill = GROUND.linear().lerp(tint.linear(), share);
     let name = match is_alone {
         true => capitalized(&class.label),
         false => format!("{}: {}", analysis.name, class.label),
