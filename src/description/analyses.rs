@@ -6,6 +6,7 @@
 use std::sync::LazyLock;
 
 use crate::bounds::Bounds::{self, Above, Within};
+use crate::color::Color;
 use crate::declaration::{KeyDeclaration, KeyKind, Presence};
 use crate::finding_code::FindingCode;
 use crate::key;
@@ -31,6 +32,8 @@ table! {
         kind: Stated<&'static AnalysisKind> = key::analysis_kind(), required;
         /// What pictures show of it.
         draw: AnalysisDraw = key::word::<AnalysisDraw>(), default "all";
+        /// Color of its lines, areas and marks.
+        color: Option<Color> = key::color(), otherwise "by what they are; routes and avenues in turn";
         /// Coordinate system of positions.
         crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`";
         /// The parameters of the kind.

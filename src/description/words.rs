@@ -71,6 +71,7 @@ words! {
     /// What a picture shows of an analysis.
     enum AnalysisDraw {
         All = "all": "tints and hatching of its classes, its lines, areas and marks",
+        Tints = "tints": "the same without hatching",
         Hatching = "hatching": "the same without tints, to lie over another analysis",
         Features = "features": "its lines, areas and marks",
         Nothing = "nothing": "nothing but its tables beside a picture with a margin",

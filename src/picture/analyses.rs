@@ -161,6 +161,12 @@ impl FeatureDrawing<'_> {
         if feature.role == FeatureRole::Corridor {
             self.draw_head(line, look, pen);
         }
+        if feature.role == FeatureRole::Route {
+            let at = line[line.len() / 2];
+            let name = self.analysis.name.clone();
+            let text = level_text(self.view, at, name, look.color, self.analysis.feature);
+            texts.push(PlacedText { course: PlacedCourse::Once(self.view.pieces(line)), ..text });
+        }
         match feature.role {
             FeatureRole::Isoline | FeatureRole::Stream | FeatureRole::FormLine | FeatureRole::Link => {
                 if !feature.name.is_empty() {

@@ -154,6 +154,9 @@ fn short(number: f32) -> String {
 
 /// The color of the lines of a feature of an analysis.
 pub fn feature_color(analysis: &SceneAnalysis, feature: &OutcomeFeature) -> Srgba {
+    if let Some(color) = analysis.color {
+        return color;
+    }
     match feature.role {
         FeatureRole::Place | FeatureRole::Post | FeatureRole::Outline => PLACE,
         FeatureRole::Route | FeatureRole::Corridor => WAYS[analysis.number % WAYS.len()],

@@ -29,12 +29,14 @@ use sandtable_base::message::choice::Choice as _;
 use sandtable_catalog::kind::AnalysisKind;
 use sandtable_catalog::parameter::ParameterForm;
 use sandtable_description::analyses::{AnalysisTable, DescribedValue, VehicleTable};
+use sandtable_description::color::Color;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::parse::parse;
 use sandtable_description::stated::Stated;
 use sandtable_description::words::AnalysisDraw;
+use sandtable_draw::color::Srgba;
 use sandtable_draw::list::FeatureId;
 use sandtable_geom::position::Position;
 use sandtable_raster::answer::Answer;
@@ -56,6 +58,8 @@ pub struct SceneAnalysis {
     pub number: usize,
     /// What pictures show of it.
     pub draw: AnalysisDraw,
+    /// The color of its lines, where one is stated.
+    pub color: Option<Srgba>,
     /// The feature that it is.
     pub feature: FeatureId,
     /// The ground on whose posts the values of its raster are.
@@ -73,7 +77,8 @@ impl SceneAnalysis {
 
     /// The raster whose classes pictures show by tints; `None` where they show none.
     pub fn tinted_raster(&self) -> Option<&OutcomeRaster> {
-        self.outcome.raster.as_ref().filter(|_| self.draw == AnalysisDraw::All)
+        let shows = matches!(self.draw, AnalysisDraw::All | AnalysisDraw::Tints);
+        self.outcome.raster.as_ref().filter(|_| shows)
     }
 
     /// The features that pictures show.
@@ -109,6 +114,7 @@ impl SceneModel {
             kind,
             number,
             draw: AnalysisDraw::All,
+            color: None,
             feature,
             ground,
             outcome,
@@ -255,6 +261,7 @@ pub(super) fn analyze(
             kind,
             number: analyses.len(),
             draw: table.draw,
+            color: table.color.map(|Color(color)| Srgba(color)),
             feature,
             ground,
             outcome,

@@ -96,8 +96,9 @@ pub fn overlay_entries(scene: &SceneModel, picture: &Rendering) -> Vec<LegendEnt
 /// The classes that a raster holds and that are tinted or hatched, and what the lines of an analysis are.
 fn analysis_entries(analysis: &SceneAnalysis, scene: &SceneModel) -> Vec<LegendEntry> {
     let mut entries = Vec::new();
-    let is_alone = scene.analyses.iter().filter(|other| other.hatched_raster().is_some()).count() == 1;
-    if let Some(raster) = analysis.hatched_raster() {
+    let shows = |of: &SceneAnalysis| of.hatched_raster().or(of.tinted_raster()).is_some();
+    let is_alone = scene.analyses.iter().filter(|other| shows(other)).count() == 1;
+    if let Some(raster) = analysis.hatched_raster().or(analysis.tinted_raster()) {
         let classes = shown_classes(raster);
         let mut is_held = vec![false; classes.len()];
         for index in 0..raster.values.len() {
@@ -107,8 +108,9 @@ fn analysis_entries(analysis: &SceneAnalysis, scene: &SceneModel) -> Vec<LegendE
         }
         let held = classes.iter().zip(is_held).filter(|(_, is_held)| *is_held);
         let is_tinted = analysis.tinted_raster().is_some();
+        let is_hatched = analysis.hatched_raster().is_some();
         let shown = held.filter(|(class, _)| {
-            is_tinted && class.look.tint[3] > 0 || class.look.hatching != Hatching::None
+            is_tinted && class.look.tint[3] > 0 || is_hatched && class.look.hatching != Hatching::None
         });
         entries.extend(shown.map(|(class, _)| class_entry(class, analysis, is_alone, scene.preset)));
     }
@@ -144,6 +146,7 @@ fn class_entry(
         false => format!("{}: {}", analysis.name, class.label),
     };
     let pattern = match class.look.hatching {
+        _ if analysis.hatched_raster().is_none() => None,
         Hatching::None => None,
         Hatching::Single => Some(PrintPattern::Hatching),
         Hatching::Crossed => Some(PrintPattern::CrossHatching),
