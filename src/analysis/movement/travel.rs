@@ -47,7 +47,8 @@ pub(crate) struct TravelGround<'a> {
     ground: &'a Lattice,
     posts: Vec<TravelPost>,
     grades: GradeTable,
-    steps: [TravelStep; 16],
+    /// To the sixteen neighbors; the eight around a post come first.
+    steps: Vec<TravelStep>,
     least_pace: f32,
     greatest_pace: f32,
     /// Posts that are slowed, each with its signed pace before, in the order in which they were slowed.
@@ -139,7 +140,7 @@ impl<'a> TravelGround<'a> {
             let length_m = (ground.cell() * DVec2::new(f64::from(east), f64::from(north))).length() as f32;
             TravelStep { columns: east, rows: north, offset: offset(east, north), flanks, length_m }
         });
-        Ok(Self { ground, posts, grades, steps, least_pace, greatest_pace, slowed: Vec::new() })
+        Ok(Self { ground, posts, grades, steps: steps.into(), least_pace, greatest_pace, slowed: Vec::new() })
     }
 
     /// Multiplies the pace of posts, to keep a later way off them.
@@ -469,3 +470,7 @@ mod tests {
         assert!((f64::from(down) - tobler(-0.2)).abs() < 0.01, "{down}");
     }
 }
+
+#[cfg(test)]
+#[path = "oracle_tests.rs"]
+mod oracle_tests;
