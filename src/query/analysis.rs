@@ -9,7 +9,7 @@ use crate::analysis_extent::{LandExtent, ground_part, land_part, raster_part};
 use crate::dataset::{Dataset, DatasetOptions, OpenError, QueryError};
 use crate::ground::{GroundError, QueriedGround};
 use crate::positions::{PositionArgument, position_list};
-use crate::post_raster::post_header;
+use crate::post_raster::part_header;
 use crate::windowed_elevation::GroundReach;
 use sandtable_analysis::arguments::{AnalysisArguments, ArgumentValue};
 use sandtable_analysis::error::AnalysisError;
@@ -17,7 +17,7 @@ use sandtable_analysis::land::Land;
 use sandtable_analysis::outcome::{Outcome, OutcomeRaster, PostValues};
 use sandtable_analysis::run::{raster_figures, run};
 use sandtable_base::message::suggest::{quoted, remedy};
-use sandtable_catalog::kind::AnalysisKind;
+use sandtable_catalog::kind::{AnalysisKind, AnalysisReach};
 use sandtable_catalog::parameter::{AnalysisParameter, EXTENT, ParameterDefault, ParameterForm};
 use sandtable_geom::crs::{Crs, CrsError};
 use sandtable_raster::raster::{Raster, Samples};
@@ -51,6 +51,12 @@ pub enum AnalyzeError {
     Other { name: String, source: Box<OpenError> },
     #[error(transparent)]
     Analysis(#[from] AnalysisError),
+    /// A kind that reaches everywhere cannot be cut into parts.
+    #[error(
+        "{kind} cannot be cut into parts: land from everywhere has an effect on its values; run `analyze {kind}`, where \
+         `--extent` limits the land"
+    )]
+    Whole { kind: &'static str },
 }
 
 impl AnalyzeError {
@@ -92,6 +98,11 @@ pub fn bare_land(
         return Ok(Land::bare(frame.lattice, frame.crs));
     }
     let posts = posts_of((kind, arguments), crs, (&frame.lattice, &frame.crs))?;
+    bare_posts(dataset, &frame, posts)
+}
+
+/// The land of posts of the ground of a dataset, of which `frame` holds a few, without what lies on it.
+fn bare_posts(dataset: &Dataset, frame: &QueriedGround, posts: PostRect) -> Result<Land, AnalyzeError> {
     let corners = [posts.first, posts.last].map(|post| frame.lattice.map_position(post));
     let ground = dataset.ground(&GroundReach { crs: &frame.crs, at: &corners, around_m: 0.0 })?;
     let part = ground_part(&ground.lattice, posts).map_err(GroundError::from)?;
@@ -111,8 +122,11 @@ pub fn needed_posts(
     posts_of(analysis, crs, (&frame.lattice, &frame.crs))
 }
 
-/// The ground with a few of its posts, or all where they are in memory.
-fn frame(dataset: &Dataset) -> Result<QueriedGround, QueryError> {
+/// The ground of a dataset with a few of its posts, or all where they are in memory.
+///
+/// # Errors
+/// There is no ground.
+pub fn frame(dataset: &Dataset) -> Result<QueriedGround, QueryError> {
     dataset.ground(&GroundReach { crs: &dataset.crs(), at: &[], around_m: 0.0 })
 }
 
@@ -168,50 +182,160 @@ pub fn analyze_among(
 ) -> Result<Analyzed, AnalyzeError> {
     let extent = extent(arguments, crs, &land.crs)?;
     let arguments = read(kind, arguments, crs, &land.crs)?;
-    let Some(extent) = extent else { return analyze_all(grounds, land, &arguments, stop) };
+    let Some(extent) = extent else { return analyze_all(grounds, &land, &arguments, stop) };
     let is_beyond = extent.is_beyond(&land.ground);
-    let lattice = |error: LatticeError| AnalyzeError::Ground(error.into());
-    let needed = extent.needed_posts(&arguments, &land.ground).map_err(of_extent)?;
-    let mut land = land_part(land, needed).map_err(lattice)?;
-    let is_cut = arguments.reach_posts(land.ground.cell()).is_none();
-    if is_cut {
-        land = extent.masked(land).map_err(of_extent)?;
-    }
-    let mut analyzed = analyze_all(grounds, land, &arguments, stop)?;
-    if !is_cut {
-        let posts = extent.posts(&analyzed.ground).map_err(of_extent)?;
-        let ground = ground_part(&analyzed.ground, posts).map_err(lattice)?;
-        let raster = analyzed.outcome.raster.take();
-        analyzed.outcome.raster = raster.map(|raster| {
-            let mut raster = raster_part(raster, &analyzed.ground, posts);
-            extent.mask(&mut raster, &ground);
-            analyzed.outcome.figures = raster_figures(kind, &raster, &ground);
-            raster
-        });
-        analyzed.ground = ground;
-    }
+    let posts = extent.posts(&land.ground).map_err(of_extent)?;
+    let mut analyzed = if arguments.reach_posts(land.ground.cell()).is_some() {
+        parted(grounds, &land, &arguments, (posts, Some(&extent)), stop)?
+    } else {
+        let land = land_part(&land, posts).map_err(no_lattice)?;
+        analyze_all(grounds, &extent.masked(land).map_err(of_extent)?, &arguments, stop)?
+    };
     if is_beyond {
         analyzed.outcome.notes.push("`extent` reaches beyond the land; nothing is known there".into());
     }
     Ok(analyzed)
 }
 
+fn no_lattice(error: LatticeError) -> AnalyzeError {
+    AnalyzeError::Ground(error.into())
+}
+
+/// An analysis of a kind that can be cut into parts: what makes the values of any posts of the ground of a dataset.
+pub struct PartedAnalysis {
+    arguments: AnalysisArguments,
+    extent: Option<LandExtent>,
+    /// The ground with a few of its posts, or all.
+    frame: QueriedGround,
+    /// The land, where it is in memory.
+    land: Option<Land>,
+}
+
+impl PartedAnalysis {
+    /// Prepares an analysis of a dataset; `land` is that of a scene, for a kind that uses what lies on its ground.
+    ///
+    /// # Errors
+    /// [`AnalyzeError::Whole`], and as [`bare_land`].
+    pub fn new(
+        dataset: &Dataset,
+        land: Option<Land>,
+        (kind, arguments): (&'static AnalysisKind, &[WrittenArgument]),
+        crs: &Crs,
+    ) -> Result<Self, AnalyzeError> {
+        check_parts(kind)?;
+        let frame = frame(dataset)?;
+        let extent = extent(arguments, crs, &frame.crs)?;
+        let arguments = read(kind, arguments, crs, &frame.crs)?;
+        let bare = || Land::bare(Arc::clone(&frame.lattice), frame.crs.clone());
+        let land = land.or_else(|| frame.lattice.holds_all().then(bare));
+        Ok(Self { arguments, extent, frame, land })
+    }
+
+    /// The frame of the ground: its lattice may hold a few posts alone.
+    pub fn frame(&self) -> &QueriedGround {
+        &self.frame
+    }
+
+    /// From how many posts around a part the land has an effect on its values.
+    pub fn reach(&self) -> u32 {
+        self.arguments.reach_posts(self.frame.lattice.cell()).unwrap_or(0)
+    }
+
+    /// The posts of all parts together, counted in the whole ground.
+    ///
+    /// # Errors
+    /// [`AnalyzeError::Argument`] of an extent.
+    pub fn posts(&self) -> Result<PostRect, AnalyzeError> {
+        match &self.extent {
+            None => Ok(PostRect::all(&self.frame.lattice)),
+            Some(extent) => extent.posts(&self.frame.lattice).map_err(of_extent),
+        }
+    }
+
+    /// The values at `posts`, counted in the whole ground: those of the analysis of all of it, to the last bit.
+    ///
+    /// # Errors
+    /// See [`AnalyzeError`].
+    ///
+    /// # Panics
+    /// Where the posts reach beyond the ground.
+    pub fn part(
+        &self,
+        dataset: &Dataset,
+        posts: PostRect,
+        stop: &StopFlag,
+    ) -> Result<Analyzed, AnalyzeError> {
+        let (grounds, cut) = ((dataset, OtherGrounds::Files), self.extent.as_ref());
+        if let Some(land) = &self.land {
+            return parted(grounds, land, &self.arguments, (posts, cut), stop);
+        }
+        let needed = posts.grown((self.reach(), self.reach()), &self.frame.lattice);
+        let land = bare_posts(dataset, &self.frame, needed)?;
+        parted(grounds, &land, &self.arguments, (within(posts, needed), cut), stop)
+    }
+}
+
+/// Checks that a kind can be cut into parts.
+///
+/// # Errors
+/// [`AnalyzeError::Whole`].
+pub fn check_parts(kind: &'static AnalysisKind) -> Result<(), AnalyzeError> {
+    match kind.reach {
+        AnalysisReach::Whole => Err(AnalyzeError::Whole { kind: kind.name }),
+        _ => Ok(()),
+    }
+}
+
+/// Posts of the whole counted in a part of it.
+fn within(posts: PostRect, part: PostRect) -> PostRect {
+    let from = |post: Post| Post { column: post.column - part.first.column, row: post.row - part.first.row };
+    PostRect { first: from(posts.first), last: from(posts.last) }
+}
+
+/// Analyzes posts of the land with as much around them as their values need, and keeps theirs, those in the extent.
+fn parted(
+    grounds: (&Dataset, OtherGrounds<'_>),
+    land: &Land,
+    arguments: &AnalysisArguments,
+    (posts, extent): (PostRect, Option<&LandExtent>),
+    stop: &StopFlag,
+) -> Result<Analyzed, AnalyzeError> {
+    let reach = arguments.reach_posts(land.ground.cell()).unwrap_or(0);
+    let needed = posts.grown((reach, reach), &land.ground);
+    let posts = within(posts, needed);
+    let analyzed = match needed == PostRect::all(&land.ground) {
+        true => analyze_all(grounds, land, arguments, stop)?,
+        false => analyze_all(grounds, &land_part(land, needed).map_err(no_lattice)?, arguments, stop)?,
+    };
+    let ground = ground_part(&analyzed.ground, posts).map_err(no_lattice)?;
+    let Analyzed { ground: around, crs, mut outcome } = analyzed;
+    if let Some(raster) = outcome.raster.take() {
+        let mut raster = raster_part(raster, &around, posts);
+        extent.into_iter().for_each(|extent| extent.mask(&mut raster, &ground));
+        outcome.figures = raster_figures(arguments.kind(), &raster, &ground);
+        outcome.raster = Some(raster);
+    }
+    Ok(Analyzed { ground, crs, outcome })
+}
+
 /// Analyzes all of the land.
 fn analyze_all(
     (dataset, others): (&Dataset, OtherGrounds<'_>),
-    mut land: Land,
+    land: &Land,
     arguments: &AnalysisArguments,
     stop: &StopFlag,
 ) -> Result<Analyzed, AnalyzeError> {
     let kind = arguments.kind();
+    let mut compared = None;
     for parameter in kind.parameters.iter().filter(|parameter| parameter.form == ParameterForm::Ground) {
         let file = arguments.word(parameter.name);
         if !file.is_empty() {
-            land.other_ground = Some(other_ground((parameter.name, &file), (dataset, others), &land)?);
+            let other = other_ground((parameter.name, &file), (dataset, others), land)?;
+            compared = Some(Land { other_ground: Some(other), ..land.clone() });
         }
     }
-    let outcome = run(&land, arguments, stop)?;
-    Ok(Analyzed { ground: land.ground, crs: land.crs, outcome })
+    let outcome = run(compared.as_ref().unwrap_or(land), arguments, stop)?;
+    Ok(Analyzed { ground: Arc::clone(&land.ground), crs: land.crs.clone(), outcome })
 }
 
 /// The word for the elevation of a dataset before its scene's earthworks.
@@ -248,7 +372,11 @@ fn other_ground(
             .extend(answers.iter().map(|answer| answer.height_m().map_or(f32::NAN, |height| height as f32)));
     }
     let none = |_| AnalyzeError::argument(name, format!("{file} has no ground at the posts of the land"));
-    Lattice::new(land.ground.origin(), land.ground.cell(), columns, heights).map(Arc::new).map_err(none)
+    if heights.iter().all(|height| height.is_nan()) {
+        return Err(none(LatticeError::Empty));
+    }
+    let frame = (land.ground.origin(), land.ground.cell());
+    Lattice::part(frame, land.ground.first(), columns, heights).map(Arc::new).map_err(none)
 }
 
 /// The arguments of a kind from what users wrote, without the extent, positions brought from `crs` to `land_crs`.
@@ -351,15 +479,25 @@ fn points(text: &str, least: usize, crs: &Crs, land_crs: &Crs) -> Result<Argumen
 
 /// The raster of an outcome, north up, its samples at the posts of `ground`.
 pub fn raster(outcome: &OutcomeRaster, ground: &Lattice, crs: &Crs) -> Raster {
-    let (data_type, nodata) = match outcome.values {
+    posts_raster(&outcome.values, outcome.name, (ground, PostRect::all(ground)), crs)
+}
+
+/// The raster of values at posts of a ground, north up; `name` is its driver.
+pub fn posts_raster(
+    values: &PostValues,
+    name: &'static str,
+    (ground, posts): (&Lattice, PostRect),
+    crs: &Crs,
+) -> Raster {
+    let (data_type, nodata) = match values {
         PostValues::Numbers(_) => ("Float32", -9999.0),
         PostValues::Codes(_) => ("Byte", f64::from(PostValues::NO_CODE)),
     };
-    let columns = ground.columns() as usize;
-    let samples = (0..ground.rows() as usize)
+    let columns = posts.width();
+    let samples = (0..posts.height())
         .rev()
-        .flat_map(|row| (row * columns..(row + 1) * columns).map(|index| outcome.values.value(index)));
-    let header = post_header(ground, crs, (outcome.name, data_type), nodata);
+        .flat_map(|row| (row * columns..(row + 1) * columns).map(|index| values.value(index)));
+    let header = part_header((ground, posts), crs, (name, data_type), nodata);
     Raster { samples: Samples::F32(samples.collect()), ..header }
 }
 

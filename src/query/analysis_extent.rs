@@ -177,23 +177,24 @@ pub(crate) fn ground_part(ground: &Arc<Lattice>, posts: PostRect) -> Result<Arc<
     }
 }
 
-/// The land of these posts; lines that leave it stay whole.
+/// The land of these posts; lines that leave it stay whole, and there is no other ground.
 ///
 /// # Errors
 /// As [`Lattice::cut_to_held`].
-pub(crate) fn land_part(land: Land, posts: PostRect) -> Result<Land, LatticeError> {
-    if posts == PostRect::all(&land.ground) {
-        return Ok(land);
-    }
-    let ground = ground_part(&land.ground, posts)?;
+pub(crate) fn land_part(land: &Land, posts: PostRect) -> Result<Land, LatticeError> {
     let columns = land.ground.columns() as usize;
     Ok(Land {
-        ground,
-        cover: land.cover.map(|values| values_part(&values, columns, posts)),
-        water: land.water.map(|values| values_part(&values, columns, posts)),
-        woods: land.woods.map(|values| values_part(&values, columns, posts)),
-        obstacles_m: land.obstacles_m.map(|values| values_part(&values, columns, posts)),
-        ..land
+        ground: ground_part(&land.ground, posts)?,
+        crs: land.crs.clone(),
+        cover: land.cover.as_ref().map(|values| values_part(values, columns, posts)),
+        roads: land.roads.clone(),
+        water: land.water.as_ref().map(|values| values_part(values, columns, posts)),
+        woods: land.woods.as_ref().map(|values| values_part(values, columns, posts)),
+        obstacles_m: land.obstacles_m.as_ref().map(|values| values_part(values, columns, posts)),
+        crossings: land.crossings.clone(),
+        steps: land.steps.clone(),
+        vehicles: land.vehicles.clone(),
+        other_ground: None,
     })
 }
 

@@ -8,6 +8,7 @@ use sandtable_raster::raster::{Raster, Samples, north_up_nodes};
 use sandtable_raster::windows::{ByteRows, RasterWindow, Windows};
 use sandtable_terrain::hillshade::{self, HillshadeOptions, hillshade};
 use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::post_rect::PostRect;
 
 /// A byte for each post of a lattice, and which byte means no data.
 pub struct PostBytes<F> {
@@ -38,17 +39,26 @@ impl<F: Fn(usize, &mut [u8]) + Sync> PostBytes<F> {
 pub(crate) fn post_header(
     lattice: &Lattice,
     crs: &Crs,
+    of: (&'static str, &'static str),
+    nodata: f64,
+) -> Raster {
+    part_header((lattice, PostRect::all(lattice)), crs, of, nodata)
+}
+
+/// [`post_header`] of some posts of a lattice.
+pub(crate) fn part_header(
+    (lattice, posts): (&Lattice, PostRect),
+    crs: &Crs,
     (name, data_type): (&'static str, &'static str),
     nodata: f64,
 ) -> Raster {
-    let (columns, rows) = (lattice.columns(), lattice.rows());
-    let north_west = lattice.map_position(Post { column: 0, row: rows - 1 });
+    let north_west = lattice.map_position(Post { column: posts.first.column, row: posts.last.row });
     let header = Raster {
         driver: name,
         data_type,
         crs: (*crs != Crs::local()).then(|| crs.clone()),
         nodata: Some(nodata),
-        ..Raster::without_place(columns, rows)
+        ..Raster::without_place(posts.width() as u32, posts.height() as u32)
     };
     header.placed(north_up_nodes(north_west, lattice.cell()))
 }
