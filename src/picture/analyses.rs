@@ -21,6 +21,9 @@ use sandtable_scene::sight_layers::heading;
 /// The radius of marks of places in text heights.
 const MARK_EM: f64 = 0.5;
 
+/// How far from the border of the ground lines end, in text heights: farther than they are wide.
+const INSIDE_EM: f64 = 0.3;
+
 /// The half width and the length of an avenue's head in text heights.
 const HEAD_EM: [f64; 2] = [0.9, 1.7];
 
@@ -126,7 +129,15 @@ impl FeatureDrawing<'_> {
     }
 
     fn stroke(&self, line: &[DVec2], look: LineLook, pen: &mut GraphicPen) {
-        self.view.draw(pen, line, look, self.analysis.feature);
+        let line: Vec<DVec2> = line.iter().map(|&at| self.inside(at)).collect();
+        self.view.draw(pen, &line, look, self.analysis.feature);
+    }
+
+    /// A place so far within the border of the ground that a line there lies on it.
+    fn inside(&self, at: DVec2) -> DVec2 {
+        let extent = self.scene.lattice.extent();
+        let inset_m = (INSIDE_EM * self.view.em_at(at)).min(extent.size().min_element() / 4.0);
+        at.clamp(extent.min + inset_m, extent.max - inset_m)
     }
 
     fn draw_point(
@@ -189,6 +200,7 @@ impl FeatureDrawing<'_> {
         let Some(along) = from.and_then(|from| (tip - *from).try_normalize()) else { return };
         let (tip, base) = (tip + along * (length_m * 0.5), tip - along * (length_m * 0.5));
         let ring = [tip, base + along.perp() * half_m, base - along.perp() * half_m];
+        let ring = ring.map(|at| self.inside(at));
         area::fill(&ring, &[], 1.0, pen.plan(look.color, self.analysis.feature));
     }
 
@@ -207,6 +219,9 @@ impl FeatureDrawing<'_> {
                     true => ring.iter().rev().copied().collect(),
                     false => ring.clone(),
                 }
+            };
+            let turned = |ring: &Vec<DVec2>| -> Vec<DVec2> {
+                turned(ring).into_iter().map(|at| self.inside(at)).collect()
             };
             let holes: Vec<Vec<DVec2>> = holes.iter().map(turned).collect();
             let fill = site_fill(look.color);
