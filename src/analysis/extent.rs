@@ -141,6 +141,11 @@ impl LandExtent {
         self.bounds
     }
 
+    /// The ring of an area, in map coordinates of the land; `None` of a rectangle.
+    pub fn ring(&self) -> Option<&[DVec2]> {
+        self.ring.as_deref()
+    }
+
     /// The posts of the land within its bounds.
     ///
     /// # Errors

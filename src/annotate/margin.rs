@@ -222,6 +222,9 @@ fn have_room(
         let free = columns.iter_mut().find(|column| has_room(size, column));
         free.map(|free| free.min.y += size.y + gap).is_some()
     };
-    before.iter().filter_map(|(_, piece)| piece.as_ref()).for_each(|piece| drop(place(piece)));
+    // A piece before that has no room is left out.
+    before.iter().filter_map(|(_, piece)| piece.as_ref()).for_each(|piece| {
+        place(piece);
+    });
     parts.iter().all(place)
 }

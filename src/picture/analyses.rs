@@ -35,7 +35,8 @@ pub(super) fn tints(scene: &SceneModel) -> Vec<TintPlan> {
     scene.analyses.iter().filter_map(|analysis| tint(analysis, scene)).collect()
 }
 
-fn tint(analysis: &SceneAnalysis, scene: &SceneModel) -> Option<TintPlan> {
+/// The tint of an analysis of the scene's land; `None` where it has none.
+pub(super) fn tint(analysis: &SceneAnalysis, scene: &SceneModel) -> Option<TintPlan> {
     let raster = analysis.tinted_raster()?;
     let (classes, lattice) = (shown_classes(raster), &*analysis.ground);
     if is_print(scene) && classes.iter().any(|class| class.look.hatching != Hatching::None) {
@@ -56,16 +57,13 @@ fn tint(analysis: &SceneAnalysis, scene: &SceneModel) -> Option<TintPlan> {
     tint.plan(|index| color(index).is_some(), color)
 }
 
-/// The colors of all that [`draw`] draws.
-pub(super) fn colors(scene: &SceneModel) -> impl Iterator<Item = Srgba> {
-    scene.analyses.iter().flat_map(|analysis| {
-        let classes =
-            analysis.hatched_raster().into_iter().flat_map(|raster| shown_classes(raster).into_owned());
-        let of_classes = classes.map(|class| printed(scene, hatch_color(class.look.tint)));
-        let of_features =
-            analysis.shown_features().iter().map(|feature| printed(scene, feature_color(analysis, feature)));
-        of_classes.chain(of_features.flat_map(|color| [color, site_fill(color)]))
-    })
+/// The colors of all that [`draw`] draws of an analysis.
+pub(super) fn colors(analysis: &SceneAnalysis, scene: &SceneModel) -> Vec<Srgba> {
+    let classes = analysis.hatched_raster().into_iter().flat_map(|raster| shown_classes(raster).into_owned());
+    let of_classes = classes.map(|class| printed(scene, hatch_color(class.look.tint)));
+    let of_features =
+        analysis.shown_features().iter().map(|feature| printed(scene, feature_color(analysis, feature)));
+    of_classes.chain(of_features.flat_map(|color| [color, site_fill(color)])).collect()
 }
 
 /// The color of lines on a picture: black on one in black on white.
@@ -83,14 +81,14 @@ fn site_fill(Srgba([red, green, blue, _]): Srgba) -> Srgba {
     Srgba([red, green, blue, SITE_ALPHA])
 }
 
-/// Draws the hatching and the features of analyses and notes their texts.
+/// Draws the hatching and the features of the scene's analyses, and of one that is tried, and notes their texts.
 pub(super) fn draw(
-    scene: &SceneModel,
+    (scene, tried): (&SceneModel, Option<&SceneAnalysis>),
     view: &GraphicView<'_>,
     pen: &mut GraphicPen,
     texts: &mut Vec<PlacedText>,
 ) {
-    for analysis in &scene.analyses {
+    for analysis in scene.analyses.iter().chain(tried) {
         if let Some(raster) = analysis.hatched_raster() {
             let classes = shown_classes(raster);
             HatchedRaster { raster, classes: &classes, analysis, scene }.draw(view, pen);

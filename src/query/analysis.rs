@@ -61,6 +61,15 @@ pub enum AnalyzeError {
 }
 
 impl AnalyzeError {
+    /// The parameter that is at fault, where one is.
+    pub fn key(&self) -> Option<&str> {
+        match self {
+            Self::Argument { name, .. } | Self::Other { name, .. } => Some(name),
+            Self::Analysis(error) => error.key(),
+            Self::Query(_) | Self::Ground(_) | Self::Whole { .. } => None,
+        }
+    }
+
     fn argument(name: &str, problem: impl Into<String>) -> Self {
         Self::Argument { name: name.to_owned(), problem: problem.into() }
     }
@@ -141,8 +150,11 @@ fn posts_of(
     extent.needed_posts(&arguments, ground).map_err(of_extent)
 }
 
-/// The argument `extent`; `None` where it is not stated.
-fn extent(
+/// The argument `extent`, brought from `crs` to `land_crs`; `None` where it is not stated.
+///
+/// # Errors
+/// [`AnalyzeError::Argument`]: the text is no extent.
+pub fn extent(
     arguments: &[WrittenArgument],
     crs: &Crs,
     land_crs: &Crs,
