@@ -21,6 +21,9 @@ use sandtable_scene::sight_layers::heading;
 /// The radius of marks of places in text heights.
 const MARK_EM: f64 = 0.5;
 
+/// How far below its place a name begins in text heights: the mark stays free.
+const NAME_EM: f64 = 0.8;
+
 /// The half width and the length of an avenue's head in text heights.
 const HEAD_EM: [f64; 2] = [0.9, 1.7];
 
@@ -143,6 +146,7 @@ impl FeatureDrawing<'_> {
             let up_deg = self.view.up_azimuth_deg(at);
             let corner = |turn: u32| at + heading(up_deg + 120.0 * f64::from(turn)) * radius_m * 1.4;
             self.stroke(&[0, 1, 2, 3].map(corner), look, pen);
+            area::fill(&[2, 1, 0].map(corner), &[], 1.0, pen.plan(look.color, self.analysis.feature));
         } else {
             self.stroke(&circle(at, radius_m), look, pen);
         }
@@ -244,7 +248,7 @@ impl FeatureDrawing<'_> {
             return;
         }
         let down = heading(self.view.up_azimuth_deg(at)) * -self.view.em_at(at);
-        let toward = self.view.on_ground(at + down);
+        let (at, toward) = (at + down * NAME_EM, self.view.on_ground(at + down * 2.0));
         texts.push(PlacedText { toward, ..self.text(feature, at, color) });
     }
 }
@@ -255,12 +259,15 @@ fn width_px(feature: &OutcomeFeature) -> f64 {
         FeatureRole::Place | FeatureRole::Post => 2.4,
         FeatureRole::Route => 4.2,
         FeatureRole::Corridor => 5.0,
-        FeatureRole::Isoline => 1.2,
+        FeatureRole::Isoline => match property(feature, "is_index") {
+            Some(PropertyValue::Truth(true)) => 2.2,
+            _ => 1.2,
+        },
         FeatureRole::Stream => match property(feature, "order") {
             Some(PropertyValue::Whole(order)) => 1.0 + 0.7 * (*order).clamp(1, 8) as f64,
             _ => 1.7,
         },
-        FeatureRole::FormLine => 2.0,
+        FeatureRole::FormLine => 2.8,
         FeatureRole::Site | FeatureRole::Outline => 2.2,
         FeatureRole::Link => 2.6,
     }

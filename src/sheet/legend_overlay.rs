@@ -123,10 +123,12 @@ fn analysis_entries(analysis: &SceneAnalysis, scene: &SceneModel) -> Vec<LegendE
     }
     // Marks of places tell what they are by their names.
     nouns.retain(|noun, _| !matches!(*noun, "place" | "post" | "outline"));
-    let is_one = nouns.len() == 1;
-    let name = |noun: &str| match is_one {
-        true => analysis.name.clone(),
-        false => format!("{}: {noun}", analysis.name),
+    let is_one = nouns.len() == 1 && analysis.outcome.raster.is_none();
+    let is_only = scene.analyses.len() == 1;
+    let name = |noun: &str| match (is_one, is_only) {
+        (true, _) => analysis.name.clone(),
+        (false, true) => capitalized(noun),
+        (false, false) => format!("{}: {noun}", analysis.name),
     };
     entries.extend(nouns.into_iter().map(|(noun, color)| line(&name(noun), color)));
     entries
