@@ -24,7 +24,10 @@ const MARK_EM: f64 = 0.5;
 /// How far below its place a name begins in text heights: the mark stays free.
 const NAME_EM: f64 = 0.8;
 
-/// The half width and the length of an avenue's head in text heights.
+/// The width of an avenue's line, in pixels of a picture 1080 lines high.
+const AVENUE_PX: f64 = 5.0;
+
+/// The half width and the length of an avenue's head in text heights; those of thinner lines are smaller.
 const HEAD_EM: [f64; 2] = [0.9, 1.7];
 
 /// The share of light that the fill of a site stops, of 255.
@@ -162,7 +165,7 @@ impl FeatureDrawing<'_> {
         texts: &mut Vec<PlacedText>,
     ) {
         self.stroke(line, look, pen);
-        if feature.role == FeatureRole::Corridor {
+        if let FeatureRole::Corridor | FeatureRole::Haul = feature.role {
             self.draw_head(line, look, pen);
         }
         if feature.role == FeatureRole::Route {
@@ -188,7 +191,7 @@ impl FeatureDrawing<'_> {
     fn draw_head(&self, line: &[DVec2], look: LineLook, pen: &mut GraphicPen) {
         let Some((&tip, before)) = line.split_last() else { return };
         let Some(em_m) = self.view.em_m(&[tip]) else { return };
-        let [half_m, length_m] = HEAD_EM.map(|em| em * em_m);
+        let [half_m, length_m] = HEAD_EM.map(|em| em * em_m * (look.width_px / AVENUE_PX));
         let from = before.iter().rev().find(|at| at.distance(tip) >= length_m).or(line.first());
         let Some(along) = from.and_then(|from| (tip - *from).try_normalize()) else { return };
         let (tip, base) = (tip + along * (length_m * 0.5), tip - along * (length_m * 0.5));
@@ -258,7 +261,8 @@ fn width_px(feature: &OutcomeFeature) -> f64 {
     match feature.role {
         FeatureRole::Place | FeatureRole::Post => 2.4,
         FeatureRole::Route => 4.2,
-        FeatureRole::Corridor => 5.0,
+        FeatureRole::Corridor => AVENUE_PX,
+        FeatureRole::Haul => 2.4,
         FeatureRole::Isoline => match property(feature, "is_index") {
             Some(PropertyValue::Truth(true)) => 2.2,
             _ => 1.2,

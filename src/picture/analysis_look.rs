@@ -145,7 +145,9 @@ fn sides(reach: f32, unit: &str) -> Vec<ValueClass> {
     let class = |(index, tint): (usize, [u8; 4])| {
         let (from, to) = (step * (index as f32 - 3.0), step * (index as f32 - 2.0));
         match index {
-            0 => ValueClass::new(f32::NEG_INFINITY, format!("below {}{unit}", short(to)), tint, Hatching::None),
+            0 => {
+                ValueClass::new(f32::NEG_INFINITY, format!("below {}{unit}", short(to)), tint, Hatching::None)
+            }
             5 => ValueClass::new(from, format!("{}{unit} and more", short(from)), tint, Hatching::None),
             _ => {
                 let label = format!("{} to {}{unit}", short(from), short(to));
@@ -198,7 +200,7 @@ pub fn feature_color(analysis: &SceneAnalysis, feature: &OutcomeFeature) -> Srgb
     }
     match feature.role {
         FeatureRole::Place | FeatureRole::Post | FeatureRole::Outline => PLACE,
-        FeatureRole::Route | FeatureRole::Corridor => WAYS[analysis.number % WAYS.len()],
+        FeatureRole::Route | FeatureRole::Corridor | FeatureRole::Haul => WAYS[analysis.number % WAYS.len()],
         FeatureRole::Isoline => ISOLINE,
         FeatureRole::Stream => STREAM,
         FeatureRole::FormLine => {
@@ -227,6 +229,7 @@ pub fn feature_noun(feature: &OutcomeFeature) -> &'static str {
         FeatureRole::Outline => "outline",
         FeatureRole::Route => "route",
         FeatureRole::Corridor => "avenue",
+        FeatureRole::Haul => "haul",
         FeatureRole::Isoline => "line of equal value",
         FeatureRole::Stream => "stream",
         FeatureRole::FormLine => {
@@ -289,7 +292,10 @@ mod tests {
         let classes = shown_classes(&raster);
         let froms: Vec<f32> = classes.iter().skip(1).map(|class| class.from).collect();
         assert_eq!(froms, [-40.0, -20.0, 0.0, 20.0, 40.0]);
-        assert_eq!([0, 1, 5].map(|index| &*classes[index].label), ["below -40 m", "-40 to -20 m", "40 m and more"]);
+        assert_eq!(
+            [0, 1, 5].map(|index| &*classes[index].label),
+            ["below -40 m", "-40 to -20 m", "40 m and more"]
+        );
         assert_eq!(class_of(&classes, -999.0), Some(0));
     }
 

@@ -112,7 +112,13 @@ fn analysis_entries(analysis: &SceneAnalysis, scene: &SceneModel) -> Vec<LegendE
         let shown = held.filter(|(class, _)| {
             is_tinted && class.look.tint[3] > 0 || is_hatched && class.look.hatching != Hatching::None
         });
-        entries.extend(shown.map(|(class, _)| class_entry(class, analysis, is_alone, scene.preset)));
+        for (class, _) in shown {
+            let entry = class_entry(class, analysis, is_alone, scene.preset);
+            // North is on both ends of aspects.
+            if !entries.contains(&entry) {
+                entries.push(entry);
+            }
+        }
     }
     let mut nouns: BTreeMap<&str, Srgba> = BTreeMap::new();
     for feature in analysis.shown_features() {

@@ -39,7 +39,8 @@ pub fn text_of(name: &str) -> String {
 
 /// The pages in a folder of the book, in order of their names.
 fn in_folder(folder: &str) -> Vec<String> {
-    let entries = fs::read_dir(Path::new(ROOT).join(folder)).unwrap_or_else(|error| panic!("{folder}: {error}"));
+    let entries =
+        fs::read_dir(Path::new(ROOT).join(folder)).unwrap_or_else(|error| panic!("{folder}: {error}"));
     let names = entries.map(|entry| entry.expect("readable").file_name().to_string_lossy().into_owned());
     let pages = names.filter(|name| name.ends_with(".md")).map(|name| format!("{folder}/{name}"));
     let mut pages: Vec<String> = pages.filter(|page| page != SUMMARY).collect();

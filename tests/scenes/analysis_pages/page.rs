@@ -79,7 +79,10 @@ pub fn family_page(family: AnalysisFamily) -> String {
     let mut page = format!("# {title}\n\n{about}\n\n| | |\n|---|---|\n");
     for kind in kinds_of(family) {
         let AnalysisKind { name, title, summary, .. } = kind;
-        let _ = writeln!(page, "| [![{title}]({name}.png)]({name}.md) | **[{title}]({name}.md)** (`{name}`): {summary} |");
+        let _ = writeln!(
+            page,
+            "| [![{title}]({name}.png)]({name}.md) | **[{title}]({name}.md)** (`{name}`): {summary} |"
+        );
     }
     if family == AnalysisFamily::Movement {
         page.push_str(&vehicles());
@@ -125,14 +128,14 @@ fn short(number: f64) -> String {
 pub fn kind_page(kind: &'static AnalysisKind, example: &Example, outcome: &Outcome) -> String {
     let mut page = format!("# {}\n\n{}\n\n", kind.title, kind.summary);
     let _ = write!(page, "```sh\n{}\n```\n\n", command(kind, example));
-    let _ = write!(page, "![{}: {}]({}.png)\n\n{}\n\n", kind.title, example.caption, kind.name, example.caption);
+    let _ = write!(page, "![{}]({}.png)\n\n{}\n\n", kind.title, kind.name, example.caption);
     let _ = write!(page, "In a scene file:\n\n```toml\n{}```\n\n", analysis_table(kind, example));
     page.push_str("## Parameters\n\n");
     page.push_str("| key | option | value | unit | default | what it says |\n|---|---|---|---|---|---|\n");
     page.extend(kind.all_parameters().map(parameter_row));
     page.push_str("\n## What it gives\n\n");
-    page.push_str(&given(outcome));
-    let _ = write!(page, "\n## What it knows\n\n{}\n\n", known(kind));
+    page.push_str(given(outcome).trim_end());
+    let _ = write!(page, "\n\n## What it knows\n\n{}\n\n", known(kind));
     let _ = write!(page, "Source: {}.\n\n", kind.source.trim_end_matches('.'));
     page.push_str("## What it does not know\n\n");
     for limit in kind.limits {
@@ -199,7 +202,11 @@ fn parameter_row(parameter: &AnalysisParameter) -> String {
         ParameterDefault::Otherwise(text) => text.to_owned(),
     };
     let option = name.replace('_', "-");
-    format!("| `{name}` | `--{option}` | {} | {unit} | {default} | {doc} |\n", values(parameter.form))
+    format!(
+        "| `{name}` | `--{option}` | {} | {unit} | {default} | {} |\n",
+        values(parameter.form),
+        doc.replace('|', "\\|")
+    )
 }
 
 fn values(form: ParameterForm) -> String {
@@ -235,15 +242,20 @@ fn given(outcome: &Outcome) -> String {
         };
         if told.insert((feature_noun(feature), shape)) {
             let names: Vec<String> = feature.properties.iter().map(|(name, _)| format!("`{name}`")).collect();
-            let with = if names.is_empty() { String::new() } else { format!(" with {}", names.join(", ")) };
-            let _ = writeln!(text, "- {shape}, each a {}{with}", feature_noun(feature));
+            let with = if names.is_empty() {
+                String::new()
+            } else {
+                format!(" with the properties {}", names.join(", "))
+            };
+            let _ = writeln!(text, "- {shape} (*{}*){with}", feature_noun(feature));
         }
     }
     for table in &outcome.tables {
         let columns = table.columns.iter().map(|column| with_unit(column.name, column.unit));
         let _ = writeln!(text, "- a table, *{}*: {}", table.title, columns.collect::<Vec<_>>().join(", "));
     }
-    let figures = outcome.figures.iter().take(MOST_FIGURES).map(|figure| with_unit(&figure.name, figure.unit));
+    let figures =
+        outcome.figures.iter().take(MOST_FIGURES).map(|figure| with_unit(&figure.name, figure.unit));
     let figures: Vec<String> = figures.collect();
     if !figures.is_empty() {
         let more = if outcome.figures.len() > MOST_FIGURES { " and more" } else { "" };
@@ -262,7 +274,9 @@ fn given_raster(raster: &OutcomeRaster) -> String {
         text.push_str("; a picture shows it by steps of round numbers\n");
         return text;
     }
-    text.push_str("; a picture shows it by classes:\n\n  | from | class | in black on white |\n  |---|---|---|\n");
+    text.push_str(
+        "; a picture shows it by classes:\n\n  | from | class | in black on white |\n  |---|---|---|\n",
+    );
     for class in &raster.classes {
         let hatching = match class.look.hatching {
             Hatching::None => "",

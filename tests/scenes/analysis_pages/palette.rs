@@ -1,4 +1,4 @@
-//! Few colors for a picture of many, by median cut (Heckbert 1982).
+//! Few colors for a picture of many, by cutting the space of colors where it is widest (after Heckbert 1982).
 
 use image::RgbImage;
 
@@ -58,9 +58,10 @@ impl PictureColors {
             sums.iter_mut().zip(pixel.0).for_each(|(sum, channel)| *sum += u32::from(channel));
         }
         let mean = |&(count, sums): &(u32, [u32; 3])| (sums.map(|sum| (sum / count) as u8), count);
-        let mut boxes: Vec<ColorBox> = vec![counts.iter().filter(|(count, _)| *count > 0).map(mean).collect()];
+        let mut boxes: Vec<ColorBox> =
+            vec![counts.iter().filter(|(count, _)| *count > 0).map(mean).collect()];
         while boxes.len() < most {
-            let weight = |colors: &ColorBox| u64::from(pixels(colors)).isqrt() * u64::from(widest(colors).1);
+            let weight = |colors: &ColorBox| pixels(colors).isqrt().isqrt() * u32::from(widest(colors).1);
             let chosen = (0..boxes.len()).max_by_key(|&index| (weight(&boxes[index]), index));
             let Some(chosen) = chosen.filter(|&index| weight(&boxes[index]) > 0) else { break };
             let halves = halved(boxes.swap_remove(chosen));
@@ -76,6 +77,15 @@ impl PictureColors {
     }
 }
 
+impl PictureColors {
+    /// The picture, so many pixels wide.
+    pub fn picture(&self, width: u32) -> RgbImage {
+        let data = self.indices.iter().flat_map(|&index| self.palette.color(index)).collect();
+        let height = self.indices.len() as u32 / width;
+        RgbImage::from_raw(width, height, data).expect("three bytes a pixel")
+    }
+}
+
 fn pixels(colors: &ColorBox) -> u32 {
     colors.iter().map(|(_, count)| count).sum()
 }
@@ -86,20 +96,19 @@ fn widest(colors: &ColorBox) -> (usize, u8) {
         let values = || colors.iter().map(move |(color, _)| color[channel]);
         values().max().unwrap_or(0) - values().min().unwrap_or(0)
     };
-    (0..3).map(|channel| (channel, range(channel))).max_by_key(|&(channel, range)| (range, channel)).unwrap_or((0, 0))
+    (0..3)
+        .map(|channel| (channel, range(channel)))
+        .max_by_key(|&(channel, range)| (range, channel))
+        .unwrap_or((0, 0))
 }
 
-/// The colors on each side of the median of the channel in which they differ most.
+/// The colors on each side of the middle between the extremes of the channel in which they differ most, so that a few pixels of
+/// a color of their own, as in a legend, keep it.
 fn halved(mut colors: ColorBox) -> [ColorBox; 2] {
     let (channel, _) = widest(&colors);
     colors.sort_by_key(|(color, _)| (color[channel], *color));
-    let half = pixels(&colors) / 2;
-    let mut counted = 0;
-    let is_below = |(_, count): &&([u8; 3], u32)| {
-        counted += count;
-        counted <= half
-    };
-    let below = colors.iter().take_while(is_below).count().clamp(1, colors.len() - 1);
+    let [least, most] = [0, colors.len() - 1].map(|index| u32::from(colors[index].0[channel]));
+    let below = colors.partition_point(|(color, _)| 2 * u32::from(color[channel]) <= least + most);
     let above = colors.split_off(below);
     [colors, above]
 }
@@ -108,7 +117,8 @@ fn halved(mut colors: ColorBox) -> [ColorBox; 2] {
 fn middle(colors: &ColorBox) -> [u8; 3] {
     let all = u64::from(pixels(colors)).max(1);
     [0, 1, 2].map(|channel| {
-        let sum: u64 = colors.iter().map(|(color, count)| u64::from(color[channel]) * u64::from(*count)).sum();
+        let sum: u64 =
+            colors.iter().map(|(color, count)| u64::from(color[channel]) * u64::from(*count)).sum();
         (sum / all) as u8
     })
 }

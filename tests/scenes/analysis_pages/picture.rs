@@ -22,16 +22,16 @@ use crate::analysis_pages::page::analysis_table;
 use crate::analysis_pages::palette::{Palette, PictureColors};
 
 /// Small enough for a page and for the repository, large enough for a legend.
-pub const SIZE: PictureSize = PictureSize { width: 560, height: 400 };
+pub const SIZE: PictureSize = PictureSize { width: 560, height: 360 };
 
 /// The size of the picture that it is cut from: lines are as wide as on a large map, not as on a small one.
 const DRAWN: PictureSize = PictureSize { width: SIZE.width, height: 2 * SIZE.height };
 
 /// The colors of a picture.
-const COLORS: usize = 96;
+const COLORS: usize = 60;
 
-/// How far apart a pixel's channels may be on average before the picture is another one: colors are rounded.
-const MOST_APART: f64 = 4.0;
+/// How far apart a pixel's channels may be on average before the picture is another one.
+const MOST_APART: f64 = 3.0;
 
 /// A pixel that is farther from the kept one has changed.
 const CHANGED: u8 = 48;
@@ -100,7 +100,8 @@ fn read(path: &Path) -> Result<RgbImage, String> {
     let file = fs::File::open(path).map_err(|error| wrong(&error))?;
     let mut reader = png::Decoder::new(BufReader::new(file)).read_info().map_err(|error| wrong(&error))?;
     let (width, height) = reader.info().size();
-    let palette = reader.info().palette.as_deref().map(Palette::from_bytes).ok_or_else(|| wrong(&"no palette"))?;
+    let palette =
+        reader.info().palette.as_deref().map(Palette::from_bytes).ok_or_else(|| wrong(&"no palette"))?;
     let mut indices = vec![0; width as usize * height as usize];
     reader.next_frame(&mut indices).map_err(|error| wrong(&error))?;
     let data = indices.into_iter().flat_map(|index| palette.color(index)).collect();
@@ -112,8 +113,11 @@ fn read(path: &Path) -> Result<RgbImage, String> {
 pub fn difference(picture: &RgbImage, path: &Path, fresh: &Path) -> Option<String> {
     let fault = match read(path) {
         Err(error) => error,
-        Ok(kept) if kept.dimensions() != picture.dimensions() => format!("{} has another size", path.display()),
+        Ok(kept) if kept.dimensions() != picture.dimensions() => {
+            format!("{} has another size", path.display())
+        }
         Ok(kept) => {
+            let picture = PictureColors::of(picture, COLORS).picture(SIZE.width);
             let apart = |(a, b): (&image::Rgb<u8>, &image::Rgb<u8>)| {
                 a.0.iter().zip(b.0).map(|(&a, b)| a.abs_diff(b)).max().unwrap_or(0)
             };
