@@ -29,6 +29,19 @@ const FLOOD_LIMITS: &[&str] = &[
     LIMITS[1],
 ];
 
+/// What a dam break does not know.
+const DAM_BREAK_LIMITS: &[&str] = &[
+    "A first estimate, no simulation: no water is moved, so that there is no wave, no backwater, no flow over a pass into another valley, and no debris.",
+    "The peak is a regression over 22 embankment dams that failed, good to a factor of two; a concrete dam fails faster and has a higher peak.",
+    "Downstream the peak falls by half over `halving_km`: the default is an assumption on the safe side, not a law; a wide plain halves it within a few kilometers.",
+    "Each reach has the normal depth of its mean section, which jumps from one reach to the next; on level beds the slope counts as 0.0001, and arrivals are those of a kinematic wave.",
+    "Water that the elevations show counts as ground: behind a full dam state `volume_m3` and `height_m`.",
+    "The dam's line is extended straight beyond its ends to hold the water; it is sought up to 30 m or a quarter of its length, at most 200 m, to both sides for the lowest ground.",
+    LIMITS[0],
+    LIMITS[1],
+    LIMITS[3],
+];
+
 /// The layers that water needs: what lets it through embankments.
 const CROSSINGS: &[LandPart] = &[LandPart::Crossings];
 
@@ -245,5 +258,75 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
         layers: CROSSINGS,
         source: "Poulter and Halpin 2008 (bathtub with the eight-side or the four-side rule)",
         limits: FLOOD_LIMITS,
+    },
+    AnalysisKind {
+        name: "dam-break",
+        family: AnalysisFamily::Water,
+        title: "Dam break",
+        summary: "What a dam that fails would flood, by formulas: its peak discharge, and the depth at which that flows down the valley.",
+        parameters: &[
+            AnalysisParameter::plain(
+                "dam",
+                ParameterForm::Line,
+                ParameterDefault::Required,
+                "The dam, from one side of the valley to the other.",
+            ),
+            AnalysisParameter::number(
+                "level_m",
+                (-500.0, 9000.0),
+                "m",
+                ParameterDefault::Required,
+                "The level of the water behind the dam, an elevation.",
+            ),
+            AnalysisParameter::number(
+                "volume_m3",
+                (1.0, 1e12),
+                "m³",
+                ParameterDefault::Otherwise("what the ground behind the dam holds up to the level"),
+                "The volume of the water above the bottom of the breach.",
+            ),
+            AnalysisParameter::number(
+                "height_m",
+                (0.1, 500.0),
+                "m",
+                ParameterDefault::Otherwise(
+                    "from the level down to the lowest ground beside the dam on its lower side",
+                ),
+                "The height of the water above the bottom of the breach.",
+            ),
+            AnalysisParameter::number(
+                "way_km",
+                (0.1, 500.0),
+                "km",
+                ParameterDefault::Value("30"),
+                "How far down the valley the flood is followed.",
+            ),
+            AnalysisParameter::number(
+                "reach_m",
+                (50.0, 10_000.0),
+                "m",
+                ParameterDefault::Value("500"),
+                "The length of the parts of the valley that have a depth each.",
+            ),
+            AnalysisParameter::number(
+                "halving_km",
+                (0.5, 1000.0),
+                "km",
+                ParameterDefault::Value("50"),
+                "The way over which the peak discharge falls to its half.",
+            ),
+            AnalysisParameter::number(
+                "roughness",
+                (0.01, 0.3),
+                "s/m^⅓",
+                ParameterDefault::Value("0.06"),
+                "Manning's roughness of the valley: 0.03 pasture, 0.06 scrub and fields with hedges, 0.1 woods.",
+            ),
+        ],
+        yields: AnalysisYield::Both,
+        reach: AnalysisReach::Whole,
+        layers: CROSSINGS,
+        source: "Froehlich 1995 (peak discharge of embankment dams); Zheng et al. 2018 (sections from heights above drainage, Manning's formula); Nobre et al. 2011",
+        limits: DAM_BREAK_LIMITS,
     },
 ];

@@ -65,7 +65,7 @@ table! {
         width_m: Option<f64> = key::number(SIZE, "m"), otherwise "by `like`";
         /// The diameter of stems that it pushes over.
         stem_m: Option<f64> = key::number(SIZE, "m"), otherwise "by `like`";
-        /// Its mass.
+        /// Its mass with its load.
         mass_t: Option<f64> = key::number(SIZE, "t"), otherwise "by `like`";
     }
     check(reader) {

@@ -265,7 +265,7 @@ mod tests {
                 continue;
             };
             kinds += 1;
-            let land = bare_land(&kept).expect("ground");
+            let land = bare_land(&kept, (kind, &[]), &kept.crs()).expect("ground");
             let whole = analyze(&kept, land, (kind, &[]), &kept.crs(), &stop).expect(kind.name);
             let raster = whole.outcome.raster.as_ref().expect(kind.name);
             let mut of_whole = OutcomeWindows::new(raster, &whole.ground, &whole.crs);
@@ -285,7 +285,12 @@ mod tests {
 
     #[test]
     fn all_of_elevation_on_disk_is_the_land_of_an_analysis() {
-        let [on_disk, kept] = [0, u64::MAX].map(|most_kept| bare_land(&dataset(most_kept)).expect("ground"));
+        let kind = sandtable_catalog::kind("slope").expect("a kind");
+        let land = |most_kept: u64| {
+            let dataset = dataset(most_kept);
+            bare_land(&dataset, (kind, &[]), &dataset.crs()).expect("ground")
+        };
+        let [on_disk, kept] = [0, u64::MAX].map(land);
         assert_eq!(on_disk.ground.heights().len(), kept.ground.heights().len());
         assert!(
             on_disk

@@ -171,7 +171,7 @@ mod tests {
     fn an_extent_off_the_land_or_between_posts_is_refused_by_its_name() {
         let off = refusal("0,0,10,10");
         assert!(
-            off.starts_with("`extent`: ") && off.contains("from 500000,4000000 to 500590,4000490"),
+            off.starts_with("`extent` ") && off.contains("from 500000,4000000 to 500590,4000490"),
             "{off}"
         );
         assert!(refusal("500001,4000001,500009,4000009").contains("fewer than two posts a side"));

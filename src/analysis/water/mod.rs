@@ -3,6 +3,7 @@
 mod basins;
 mod breach;
 mod carve;
+mod dam_break;
 mod directions;
 mod drainage;
 mod drainage_height;
@@ -10,6 +11,9 @@ mod fill;
 mod flood;
 mod infinity;
 mod kinds;
+mod normal_depth;
+#[cfg(test)]
+mod oracle_tests;
 mod outlines;
 mod prepared;
 mod streams;
@@ -24,4 +28,5 @@ pub(crate) const FUNCTIONS: &[(&str, KindFunction)] = &[
     ("basins", basins::basins),
     ("drainage-height", drainage_height::drainage_height),
     ("flood", flood::flood),
+    ("dam-break", dam_break::dam_break),
 ];
