@@ -337,6 +337,13 @@ pub const EXAMPLES: &[Example] = &[
         caption: "What the lake floods when it rises to 320 m.",
     },
     Example {
+        kind: "dam-break",
+        land: ExampleLand::Elevation,
+        arguments: &[("dam", "16S GF 54000 18600; 16S GF 54000 19700"), ("level_m", "320"), ("way_km", "12")],
+        shows: [755_500.0, 4_018_600.0, 95_000.0],
+        caption: "A dam in a narrow part of the valley: the water that it holds, and the depths below it where it fails.",
+    },
+    Example {
         kind: "cut-fill",
         land: ExampleLand::Earthworks,
         arguments: &[("against", "source")],

@@ -184,13 +184,20 @@ fn scene_value(parameter: &AnalysisParameter, text: &str) -> String {
         ParameterForm::Numbers { .. } => format!("[{}]", text.replace(',', ", ")),
         ParameterForm::Word(_) | ParameterForm::Vehicle | ParameterForm::Ground => format!("\"{text}\""),
         ParameterForm::Points { .. } | ParameterForm::Line | ParameterForm::Area | ParameterForm::Extent => {
-            let points: Vec<String> =
-                text.split(';').map(|point| format!("[{}]", point.trim().replace(',', ", "))).collect();
+            let points: Vec<String> = text.split(';').map(|point| scene_position(point.trim())).collect();
             match &points[..] {
                 [point] => point.clone(),
                 points => format!("[{}]", points.join(", ")),
             }
         }
+    }
+}
+
+/// A position as the value of a key: a list of two numbers, or a text.
+fn scene_position(text: &str) -> String {
+    match text.split_once(',') {
+        Some((x, y)) => format!("[{x}, {y}]"),
+        None => format!("\"{text}\""),
     }
 }
 
