@@ -24,7 +24,13 @@ const MARK_EM: f64 = 0.5;
 /// How far from the border of the ground lines end, in text heights: farther than they are wide.
 const INSIDE_EM: f64 = 0.3;
 
-/// The half width and the length of an avenue's head in text heights.
+/// How far below its place a name begins in text heights: the mark stays free.
+const NAME_EM: f64 = 0.8;
+
+/// The width of an avenue's line, in pixels of a picture 1080 lines high.
+const AVENUE_PX: f64 = 5.0;
+
+/// The half width and the length of an avenue's head in text heights; those of thinner lines are smaller.
 const HEAD_EM: [f64; 2] = [0.9, 1.7];
 
 /// The share of light that the fill of a site stops, of 255.
@@ -152,6 +158,7 @@ impl FeatureDrawing<'_> {
             let up_deg = self.view.up_azimuth_deg(at);
             let corner = |turn: u32| at + heading(up_deg + 120.0 * f64::from(turn)) * radius_m * 1.4;
             self.stroke(&[0, 1, 2, 3].map(corner), look, pen);
+            area::fill(&[2, 1, 0].map(corner), &[], 1.0, pen.plan(look.color, self.analysis.feature));
         } else {
             self.stroke(&circle(at, radius_m), look, pen);
         }
@@ -167,7 +174,7 @@ impl FeatureDrawing<'_> {
         texts: &mut Vec<PlacedText>,
     ) {
         self.stroke(line, look, pen);
-        if feature.role == FeatureRole::Corridor {
+        if let FeatureRole::Corridor | FeatureRole::Haul = feature.role {
             self.draw_head(line, look, pen);
         }
         if feature.role == FeatureRole::Route {
@@ -193,7 +200,7 @@ impl FeatureDrawing<'_> {
     fn draw_head(&self, line: &[DVec2], look: LineLook, pen: &mut GraphicPen) {
         let Some((&tip, before)) = line.split_last() else { return };
         let Some(em_m) = self.view.em_m(&[tip]) else { return };
-        let [half_m, length_m] = HEAD_EM.map(|em| em * em_m);
+        let [half_m, length_m] = HEAD_EM.map(|em| em * em_m * (look.width_px / AVENUE_PX));
         let from = before.iter().rev().find(|at| at.distance(tip) >= length_m).or(line.first());
         let Some(along) = from.and_then(|from| (tip - *from).try_normalize()) else { return };
         let (tip, base) = (tip + along * (length_m * 0.5), tip - along * (length_m * 0.5));
@@ -257,7 +264,7 @@ impl FeatureDrawing<'_> {
             return;
         }
         let down = heading(self.view.up_azimuth_deg(at)) * -self.view.em_at(at);
-        let toward = self.view.on_ground(at + down);
+        let (at, toward) = (at + down * NAME_EM, self.view.on_ground(at + down * 2.0));
         texts.push(PlacedText { toward, ..self.text(feature, at, color) });
     }
 }
@@ -267,13 +274,17 @@ fn width_px(feature: &OutcomeFeature) -> f64 {
     match feature.role {
         FeatureRole::Place | FeatureRole::Post => 2.4,
         FeatureRole::Route => 4.2,
-        FeatureRole::Corridor => 5.0,
-        FeatureRole::Isoline => 1.2,
+        FeatureRole::Corridor => AVENUE_PX,
+        FeatureRole::Haul => 2.4,
+        FeatureRole::Isoline => match property(feature, "is_index") {
+            Some(PropertyValue::Truth(true)) => 2.2,
+            _ => 1.2,
+        },
         FeatureRole::Stream => match property(feature, "order") {
             Some(PropertyValue::Whole(order)) => 1.0 + 0.7 * (*order).clamp(1, 8) as f64,
             _ => 1.7,
         },
-        FeatureRole::FormLine => 2.0,
+        FeatureRole::FormLine => 2.8,
         FeatureRole::Site | FeatureRole::Outline => 2.2,
         FeatureRole::Link => 2.6,
     }

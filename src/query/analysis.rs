@@ -22,9 +22,10 @@ use sandtable_catalog::kind::{AnalysisKind, AnalysisReach};
 use sandtable_catalog::parameter::{AnalysisParameter, EXTENT, ParameterDefault, ParameterForm};
 use sandtable_geom::crs::{Crs, CrsError};
 use sandtable_raster::raster::{Raster, Samples};
+use sandtable_scene::analyses::interpolation_between;
 use sandtable_terrain::lattice::{Lattice, LatticeError, Post};
 use sandtable_terrain::post_rect::PostRect;
-use sandtable_terrain::query::{Interpolation, Surface};
+use sandtable_terrain::query::Surface;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// An argument as users write it, and its parameter's name.
@@ -338,12 +339,13 @@ fn other_ground(
             (find(file).ok_or_else(unknown)?, Surface::Ground)
         }
     };
+    let interpolation = interpolation_between(surface, &land.ground);
     let (columns, rows) = (land.ground.columns(), land.ground.rows());
     let mut heights = Vec::with_capacity(columns as usize * rows as usize);
     for row in 0..rows {
         let at: Vec<DVec2> =
             (0..columns).map(|column| land.ground.map_position(Post { column, row })).collect();
-        let answers = other.heights(surface, Interpolation::default(), &land.crs, &at)?;
+        let answers = other.heights(surface, interpolation, &land.crs, &at)?;
         heights
             .extend(answers.iter().map(|answer| answer.height_m().map_or(f32::NAN, |height| height as f32)));
     }

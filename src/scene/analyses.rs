@@ -328,10 +328,20 @@ fn heights_of(file: &str, assets: &Assets) -> Result<HeightService, OpenSceneErr
     Ok(build_ground(&other, assets)?.heights)
 }
 
+/// How heights of a surface are interpolated at the posts of `ground`, so that what earthworks leave as it was is the same. Posts
+/// that a scene inserts between measured ones for its features lie on the triangles of these.
+pub fn interpolation_between(surface: Surface, ground: &Lattice) -> Interpolation {
+    match surface {
+        Surface::Source if ground.doublings() > 0 => Interpolation::Planar,
+        _ => Interpolation::default(),
+    }
+}
+
 /// Heights at the posts of the land; `None` where there are none.
 fn sampled(heights: &HeightService, surface: Surface, land: &Land) -> Option<Arc<Lattice>> {
     let ground = &land.ground;
     let (columns, rows) = (ground.columns(), ground.rows());
+    let interpolation = interpolation_between(surface, ground);
     let snapshot = heights.snapshot();
     let mut answers = vec![Answer::NoData; columns as usize];
     let mut samples = Vec::with_capacity(columns as usize * rows as usize);
@@ -339,7 +349,7 @@ fn sampled(heights: &HeightService, surface: Surface, land: &Land) -> Option<Arc
         let at = (0..columns)
             .map(|column| land.crs.transform(snapshot.crs(), ground.map_position(Post { column, row })));
         let at: Vec<DVec2> = at.collect::<Result<_, _>>().ok()?;
-        snapshot.heights(surface, Interpolation::default(), &at, &mut answers);
+        snapshot.heights(surface, interpolation, &at, &mut answers);
         samples
             .extend(answers.iter().map(|answer| answer.height_m().map_or(f32::NAN, |height| height as f32)));
     }

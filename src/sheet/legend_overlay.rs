@@ -98,17 +98,24 @@ fn analysis_entries(analysis: &SceneAnalysis, scene: &SceneModel) -> Vec<LegendE
     let mut entries = Vec::new();
     let shows = |of: &SceneAnalysis| of.hatched_raster().or(of.tinted_raster()).is_some();
     let is_alone = scene.analyses.iter().filter(|other| shows(other)).count() == 1;
-    let classes = legend_classes(analysis);
-    entries.extend(classes.iter().map(|class| class_entry(class, analysis, is_alone, scene.preset)));
+    for class in legend_classes(analysis) {
+        let entry = class_entry(&class, analysis, is_alone, scene.preset);
+        // North is on both ends of aspects.
+        if !entries.contains(&entry) {
+            entries.push(entry);
+        }
+    }
     let nouns = legend_lines(analysis);
-    let is_one = nouns.len() == 1;
+    let is_one = nouns.len() == 1 && analysis.outcome.raster.is_none();
+    let is_only = scene.analyses.len() == 1;
     let printed = |color: Srgba| match scene.preset {
         Some(StylePreset::Print) => Srgba::opaque(0, 0, 0),
         _ => color,
     };
-    let name = |noun: &str| match is_one {
-        true => analysis.name.clone(),
-        false => format!("{}: {noun}", analysis.name),
+    let name = |noun: &str| match (is_one, is_only) {
+        (true, _) => analysis.name.clone(),
+        (false, true) => capitalized(noun),
+        (false, false) => format!("{}: {noun}", analysis.name),
     };
     entries.extend(nouns.into_iter().map(|(noun, color)| line(&name(noun), printed(color))));
     entries

@@ -190,6 +190,25 @@ fn a_route_states_its_way_points_and_its_march_table() {
 }
 
 #[test]
+fn ground_that_no_earthworks_touch_is_neither_cut_nor_filled() {
+    // The scene's roads need posts between the measured ones.
+    let path = Path::new(env!("SANDTABLE_ROOT")).join("scenes/cut.toml");
+    let text = "include = \"earthworks.toml\"\n[[analysis]]\nkind = \"cut-fill\"\nagainst = \"source\"\n";
+    let scene = build_scene_text(&path, text, &[], &|_| ()).expect("a sound scene");
+    let analysis = &scene.analyses[0];
+    let raster = analysis.outcome.raster.as_ref().expect("a raster");
+    assert!(analysis.ground.doublings() > 0);
+    let (mut far, mut near) = (0.0_f32, 0.0_f32);
+    for post in analysis.ground.posts() {
+        let value = raster.values.value(analysis.ground.index(post)).abs();
+        let is_far = analysis.ground.map_position(post).y > 400.0;
+        let most = if is_far { &mut far } else { &mut near };
+        *most = most.max(value);
+    }
+    assert!(far < 1e-4 && near > 5.0, "{far} {near}");
+}
+
+#[test]
 fn what_an_analysis_does_not_know_is_a_note_at_its_kind() {
     let scene = scene("[[analysis]]\nkind = \"obstacles\"\nvehicle = \"foot\"\n").expect("a sound scene");
     let notes: Vec<_> =

@@ -4,7 +4,7 @@ use super::window::{GradientMethod, WindowGradient, by_window};
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
-use crate::outcome::{Outcome, OutcomeRaster, PostValues};
+use crate::outcome::{Hatching, Outcome, OutcomeRaster, PostValues, ValueClass};
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// The azimuths of multidirectional light, degrees.
@@ -44,9 +44,21 @@ pub(crate) fn hillshade(
         name: "hillshade",
         unit: "",
         values: PostValues::Numbers(values),
-        classes: Vec::new(),
+        classes: classes(),
     };
     Ok(Outcome { raster: Some(raster), ..Outcome::default() })
+}
+
+/// Grays, the lighter the more light.
+fn classes() -> Vec<ValueClass> {
+    const CLASSES: u8 = 8;
+    const STEP: u8 = 32;
+    let class = |index: u8| {
+        let (from, gray) = (index * STEP, index * STEP + STEP / 2);
+        let label = format!("{} to {}", from.max(1), from + (STEP - 1));
+        ValueClass::new(f32::from(from), label, [gray, gray, gray, 225], Hatching::None)
+    };
+    (0..CLASSES).map(class).collect()
 }
 
 /// A direction from which light comes.
