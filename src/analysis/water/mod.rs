@@ -7,6 +7,8 @@ mod dam_break;
 mod directions;
 mod drainage;
 mod drainage_height;
+#[cfg(test)]
+mod extreme_tests;
 mod fill;
 mod flood;
 mod infinity;
