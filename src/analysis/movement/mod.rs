@@ -9,6 +9,7 @@ mod isochrones;
 mod obstacles;
 mod queue;
 mod route;
+mod search;
 mod travel;
 pub mod vehicle;
 
