@@ -19,8 +19,9 @@ fn landing_zones_are_those_of_the_definition_on_three_places() {
     for (name, file) in PLACES {
         let Some(mut land) = place(file) else { return };
         let columns = land.ground.columns() as usize;
-        let tree =
-            |index: usize| if (index % columns * 73 + index / columns * 151) % 997 == 0 { 4.0 } else { 0.0 };
+        let tree = |index: usize| {
+            if (index % columns * 73 + index / columns * 151).is_multiple_of(997) { 4.0 } else { 0.0 }
+        };
         land.obstacles_m = Some((0..land.ground.heights().len()).map(tree).collect());
         for row in rows.iter().filter(|row| row[0] == name) {
             let arguments = [

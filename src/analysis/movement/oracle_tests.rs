@@ -1,8 +1,10 @@
 //! Times against GRASS `r.walk` and `r.cost`, routes against scikit-image, on real ground.
 
 use super::*;
+use crate::movement::search::TravelGoal;
 use crate::test_land::shaped;
 use crate::test_places::{PLACES, place, table};
+use sandtable_terrain::stop_flag::StopFlag;
 
 const ALL: TravelGoal<'static> = TravelGoal { most_s: f32::INFINITY, any_of: None };
 

@@ -5,7 +5,8 @@ use glam::DVec2;
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
-use crate::movement::travel::{TravelGoal, TravelGround, travel_ground};
+use crate::movement::search::TravelGoal;
+use crate::movement::travel::{TravelGround, travel_ground};
 use crate::outcome::{
     FeatureRole, Figure, Outcome, OutcomeFeature, OutcomeShape, OutcomeTable, PropertyValue, TableColumn,
 };
