@@ -142,8 +142,8 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
             ),
         ],
         yields: AnalysisYield::Raster,
-        // Normals reach a post farther than the square.
-        reach: AnalysisReach::Whole,
+        // Normals reach a post farther than the largest square.
+        reach: AnalysisReach::Posts(201),
         layers: &[],
         source: "Riley, DeGloria and Elliot 1999 (TRI); Weiss 2001 (TPI); Sappington, Longshore and Thompson 2007 (VRM); \
                  Wilson et al. 2007 (roughness)",
