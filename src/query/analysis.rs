@@ -461,19 +461,29 @@ pub fn raster(outcome: &OutcomeRaster, ground: &Lattice, crs: &Crs) -> Raster {
 }
 
 /// The raster of values at posts of a ground, north up; `name` is its driver.
-pub fn posts_raster(
+fn posts_raster(
     values: &PostValues,
     name: &'static str,
     (ground, posts): (&Lattice, PostRect),
     crs: &Crs,
 ) -> Raster {
-    let (data_type, nodata) = described(values);
     let columns = posts.width();
     let samples = (0..posts.height())
         .rev()
         .flat_map(|row| (row * columns..(row + 1) * columns).map(|index| values.value(index)));
-    let header = part_header((ground, posts), crs, (name, data_type), nodata);
+    let header = posts_header(values, name, (ground, posts), crs);
     Raster { samples: Samples::F32(samples.collect()), ..header }
+}
+
+/// The raster of values of the type of `values` at posts of a ground, north up, without its samples.
+pub fn posts_header(
+    values: &PostValues,
+    name: &'static str,
+    place: (&Lattice, PostRect),
+    crs: &Crs,
+) -> Raster {
+    let (data_type, nodata) = described(values);
+    part_header(place, crs, (name, data_type), nodata)
 }
 
 /// The raster of the heights of a ground, north up.

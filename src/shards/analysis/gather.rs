@@ -1,6 +1,6 @@
 //! The raster of all shards of an analysis.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::analysis::arguments::AnalysisPlan;
 use crate::analysis::work::{EXTENSION, ground_posts};
@@ -12,11 +12,34 @@ use sandtable_base::limits::RASTER_SAMPLES;
 use sandtable_base::limits::memory::check_memory;
 use sandtable_dem::dem_format::DemFormat;
 use sandtable_dem::hints::DemOptions;
-use sandtable_files::raster_file;
-use sandtable_query::analysis::posts_raster;
+use sandtable_files::error::FileError;
+use sandtable_files::raster_file::{self, WriteRasterError};
+use sandtable_query::analysis::posts_header;
 use sandtable_query::dem;
-use sandtable_raster::raster::Raster;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::raster::{Raster, Samples};
+use sandtable_raster::windows::{RasterWindow, Windows};
 use sandtable_terrain::post_rect::PostRect;
+
+/// The results of shards as one raster, of which the tiles under the last window are held.
+struct TileWindows {
+    /// The raster without samples.
+    header: Raster,
+    tiles: Vec<ResultTile>,
+    held: Vec<HeldTile>,
+}
+
+/// The place of a shard's result in the raster, and its file.
+struct ResultTile {
+    window: RasterWindow,
+    path: PathBuf,
+}
+
+/// The samples of a tile, by its number.
+struct HeldTile {
+    id: usize,
+    samples: Vec<f32>,
+}
 
 /// Writes the values of a plan whose shards are all done: the raster that `analyze` writes.
 ///
@@ -37,48 +60,86 @@ pub fn gather(
         let (columns, rows) = (all.width() as u64, all.height() as u64);
         return Err(PlanError::new(&plan.folder, PlanFault::AnalysisPosts { columns, rows }).into());
     }
-    let checked = check_memory(posts * 2 * size_of::<f32>() as u64, "the raster", "plan a smaller `extent`");
-    checked.map_err(|error| PlanError::new(&plan.folder, PlanFault::Output(error.to_string())))?;
-    let mut values = None;
-    for (id, &tile) in tiles.iter().enumerate() {
-        let path = result_path(plan, id, EXTENSION);
-        let raster = dem::open(&path, &DemOptions::default())?.raster;
-        if (raster.width as usize, raster.height as usize) != (tile.width(), tile.height()) {
-            return Err(PlanError::new(&path, PlanFault::Result).into());
-        }
-        let values = values.get_or_insert_with(|| without_values(&raster, posts as usize));
-        put(values, all, tile, &raster);
-    }
-    let values = values.unwrap_or(PostValues::Codes(Vec::new()));
     let frame = opened.parts.frame();
-    let raster = posts_raster(&values, opened.kind.name, (&frame.lattice, all), &frame.crs);
+    let first = dem::open(&result_path(plan, 0, EXTENSION), &DemOptions::default())?.raster;
+    let header = posts_header(&like(&first), opened.kind.name, (&frame.lattice, all), &frame.crs);
+    let place = |(id, tile): (usize, &PostRect)| ResultTile {
+        window: window_in(*tile, all),
+        path: result_path(plan, id, EXTENSION),
+    };
+    let tiles = tiles.iter().enumerate().map(place).collect();
+    let mut source = TileWindows { header, tiles, held: Vec::new() };
+    if raster_file::write_windows(&mut source, format, out, &plan.folder)?.is_some() {
+        return Ok(());
+    }
+    let checked = check_memory(posts * size_of::<f32>() as u64, "the raster", "gather it as a .tif");
+    checked.map_err(|error| PlanError::new(out, PlanFault::Output(error.to_string())))?;
+    let samples = source.samples(RasterWindow::all(source.size()));
+    let samples = samples.map_err(|error| WriteRasterError::from(FileError::at(&plan.folder)(error)))?;
+    let raster = Raster { samples, ..source.header };
     raster_file::write(&raster, format, out, &[opened.queried.path])?;
     Ok(())
 }
 
-/// No data for so many posts, of the type of a tile.
-fn without_values(tile: &Raster, posts: usize) -> PostValues {
+/// No values, of the type of those of a tile.
+fn like(tile: &Raster) -> PostValues {
     match tile.data_type {
-        "Byte" => PostValues::Codes(vec![PostValues::NO_CODE; posts]),
-        _ => PostValues::Numbers(vec![f32::NAN; posts]),
+        "Byte" => PostValues::Codes(Vec::new()),
+        _ => PostValues::Numbers(Vec::new()),
     }
 }
 
-/// Puts the samples of a tile, north up, in their places.
-fn put(values: &mut PostValues, all: PostRect, tile: PostRect, raster: &Raster) {
-    let samples = raster.samples.iter().collect::<Vec<f64>>();
-    for (row, samples) in (tile.first.row..=tile.last.row).rev().zip(samples.chunks(tile.width())) {
-        let start = all.index(sandtable_terrain::lattice::Post { column: tile.first.column, row });
-        match values {
-            PostValues::Numbers(values) => {
-                let places = &mut values[start..][..tile.width()];
-                places.iter_mut().zip(samples).for_each(|(place, &sample)| *place = sample as f32);
+/// The place of posts among all, in rows from the north.
+fn window_in(tile: PostRect, all: PostRect) -> RasterWindow {
+    RasterWindow {
+        column: tile.first.column - all.first.column,
+        row: all.last.row - tile.last.row,
+        width: tile.width() as u32,
+        height: tile.height() as u32,
+    }
+}
+
+impl Windows for TileWindows {
+    fn metadata(&self) -> &Raster {
+        &self.header
+    }
+
+    fn samples(&mut self, window: RasterWindow) -> Result<Samples, DemErrorKind> {
+        window.assert_within(self.size());
+        let rows = RasterWindow { column: 0, width: self.header.width, ..window };
+        self.held.retain(|held| self.tiles[held.id].window.intersection(rows).is_some());
+        let mut samples = vec![f32::NAN; window.samples()];
+        for (id, tile) in self.tiles.iter().enumerate() {
+            if window.intersection(tile.window).is_none() {
+                continue;
             }
-            PostValues::Codes(codes) => {
-                let code = |sample: f64| if sample.is_nan() { PostValues::NO_CODE } else { sample as u8 };
-                let places = &mut codes[start..][..tile.width()];
-                places.iter_mut().zip(samples).for_each(|(place, &sample)| *place = code(sample));
+            let known = self.held.iter().position(|held| held.id == id);
+            let at = match known {
+                Some(at) => at,
+                None => {
+                    self.held.push(HeldTile { id, samples: tile.samples()? });
+                    self.held.len() - 1
+                }
+            };
+            for (to, from) in window.shared_rows(tile.window) {
+                samples[to].copy_from_slice(&self.held[at].samples[from]);
             }
         }
+        Ok(Samples::F32(samples))
+    }
+}
+
+impl ResultTile {
+    /// The samples of the file, which was compared with its record.
+    fn samples(&self) -> Result<Vec<f32>, DemErrorKind> {
+        let opened = dem::open(&self.path, &DemOptions::default());
+        let raster = opened.map_err(|_| DemErrorKind::Changed)?.raster;
+        if (raster.width, raster.height) != (self.window.width, self.window.height) {
+            return Err(DemErrorKind::Changed);
+        }
+        Ok(match raster.samples {
+            Samples::F32(samples) => samples,
+            Samples::F64(samples) => samples.iter().map(|&sample| sample as f32).collect(),
+        })
     }
 }
