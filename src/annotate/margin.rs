@@ -171,7 +171,11 @@ fn fill_columns(
         pieces.iter().flat_map(|(_, piece)| piece).map(|piece| piece.bounds().size().y + gap).sum();
     let left = if columns.len() > 1 && height - taken < height / 3.0 { height } else { height - taken };
     let classes = class_legend::compose_parts(&annotations.classes, left, composer);
-    pieces.extend(classes.into_iter().map(|part| (FurnitureKind::Classes, Some(part))));
+    match have_room(&classes, &pieces, &columns, gap) {
+        true => pieces.extend(classes.into_iter().map(|part| (FurnitureKind::Classes, Some(part)))),
+        // Part of a legend would explain part of the picture.
+        false => margin.left_out.push(FurnitureKind::Classes),
+    }
     pieces.extend(norths.map(|norths| (FurnitureKind::Norths, norths)));
     for table in &notes.tables {
         pieces.push((FurnitureKind::Table, margin_table::compose(table, width, composer)));
@@ -186,8 +190,7 @@ fn fill_columns(
         };
         let bounds = piece.bounds();
         let size = bounds.size();
-        let has_room = |column: &&mut PixelBox| !size.cmpgt(column.size() + 1.0).any();
-        let Some(free) = columns.iter_mut().find(has_room) else {
+        let Some(free) = columns.iter_mut().find(|column| has_room(size, column)) else {
             margin.left_out.push(kind);
             continue;
         };
@@ -200,4 +203,28 @@ fn fill_columns(
         margin.drawing.append(piece.moved(by));
         free.min.y += size.y + gap;
     }
+}
+
+fn has_room(size: Vec2, column: &PixelBox) -> bool {
+    !size.cmpgt(column.size() + 1.0).any()
+}
+
+/// Whether all `parts` have room in the columns after the pieces before them.
+fn have_room(
+    parts: &[Drawing],
+    before: &[(FurnitureKind, Option<Drawing>)],
+    columns: &[PixelBox],
+    gap: f32,
+) -> bool {
+    let mut columns = columns.to_vec();
+    let mut place = |piece: &Drawing| {
+        let size = piece.bounds().size();
+        let free = columns.iter_mut().find(|column| has_room(size, column));
+        free.map(|free| free.min.y += size.y + gap).is_some()
+    };
+    // A piece before that has no room is left out.
+    before.iter().filter_map(|(_, piece)| piece.as_ref()).for_each(|piece| {
+        place(piece);
+    });
+    parts.iter().all(place)
 }

@@ -66,7 +66,7 @@ pub fn analysis_kinds() -> String {
 fn asked(
     name: &str,
     arguments: &[(&str, &str)],
-) -> Result<(&'static AnalysisKind, Vec<WrittenArgument>), AnalysisFailure> {
+) -> Result<(&'static AnalysisKind, Vec<WrittenArgument>), Error> {
     let kind = kind(name).ok_or_else(|| AnalysisFailure::Kind(name.to_owned()))?;
     let written = |&(name, text): &(&str, &str)| WrittenArgument { name: name.into(), text: text.into() };
     Ok((kind, arguments.iter().map(written).collect()))

@@ -44,6 +44,24 @@ pub enum AnalysisFamily {
     Earth,
 }
 
+impl AnalysisFamily {
+    /// All of them, in the order in which people read them.
+    pub const ALL: [Self; 6] =
+        [Self::Surface, Self::Movement, Self::Observation, Self::Landing, Self::Water, Self::Earth];
+
+    /// Its name in headings.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Surface => "Surface",
+            Self::Movement => "Movement",
+            Self::Observation => "Observation and fire",
+            Self::Landing => "Landing and sites",
+            Self::Water => "Water",
+            Self::Earth => "Earth",
+        }
+    }
+}
+
 /// What an analysis gives besides its figures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AnalysisYield {

@@ -44,6 +44,8 @@ pub enum EditValue {
     Text(String),
     /// A finite number.
     Number(f64),
+    /// Several such numbers.
+    Numbers(Vec<f64>),
     /// A place in map coordinates of the scene's system; written in the system that the table states.
     Point([f64; 2]),
     /// Several such places.

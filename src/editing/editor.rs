@@ -386,6 +386,10 @@ fn placed(value: &EditValue, from: &Crs, to: &Crs) -> Result<EditValue, EditErro
     };
     Ok(match value {
         EditValue::Number(number) => EditValue::Number(rounded(*number, DEGREE_DECIMALS)?),
+        EditValue::Numbers(numbers) => {
+            let all = numbers.iter().map(|number| rounded(*number, DEGREE_DECIMALS));
+            EditValue::Numbers(all.collect::<Result<_, _>>()?)
+        }
         EditValue::Point(at) => EditValue::Point(point(at)?),
         EditValue::Points(points) => EditValue::Points(points.iter().map(point).collect::<Result<_, _>>()?),
         EditValue::Text(_) => value.clone(),

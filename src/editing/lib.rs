@@ -13,6 +13,7 @@
 //! the same bytes. A scene that is built on a thread is that of the text at its start: where
 //! [`source`](editor::SceneEditor::source) has changed meanwhile, it is built once more.
 
+pub mod analysis_draft;
 pub mod edit;
 pub mod editor;
 pub mod effect;

@@ -403,6 +403,10 @@ fn written(value: &EditValue) -> String {
     match value {
         EditValue::Text(text) => Value::from(text.as_str()).to_string().trim().to_owned(),
         EditValue::Number(number) => written_number(*number),
+        EditValue::Numbers(numbers) => {
+            let all: Vec<String> = numbers.iter().map(|number| written_number(*number)).collect();
+            format!("[{}]", all.join(", "))
+        }
         EditValue::Point(point) => written_point(point),
         EditValue::Points(points) => {
             let all: Vec<String> = points.iter().map(written_point).collect();

@@ -21,6 +21,9 @@ use sandtable_scene::sight_layers::heading;
 /// The radius of marks of places in text heights.
 const MARK_EM: f64 = 0.5;
 
+/// How far from the border of the ground lines end, in text heights: farther than they are wide.
+const INSIDE_EM: f64 = 0.3;
+
 /// How far below its place a name begins in text heights: the mark stays free.
 const NAME_EM: f64 = 0.8;
 
@@ -38,7 +41,8 @@ pub(super) fn tints(scene: &SceneModel) -> Vec<TintPlan> {
     scene.analyses.iter().filter_map(|analysis| tint(analysis, scene)).collect()
 }
 
-fn tint(analysis: &SceneAnalysis, scene: &SceneModel) -> Option<TintPlan> {
+/// The tint of an analysis of the scene's land; `None` where it has none.
+pub(super) fn tint(analysis: &SceneAnalysis, scene: &SceneModel) -> Option<TintPlan> {
     let raster = analysis.tinted_raster()?;
     let (classes, lattice) = (shown_classes(raster), &*analysis.ground);
     if is_print(scene) && classes.iter().any(|class| class.look.hatching != Hatching::None) {
@@ -59,16 +63,13 @@ fn tint(analysis: &SceneAnalysis, scene: &SceneModel) -> Option<TintPlan> {
     tint.plan(|index| color(index).is_some(), color)
 }
 
-/// The colors of all that [`draw`] draws.
-pub(super) fn colors(scene: &SceneModel) -> impl Iterator<Item = Srgba> {
-    scene.analyses.iter().flat_map(|analysis| {
-        let classes =
-            analysis.hatched_raster().into_iter().flat_map(|raster| shown_classes(raster).into_owned());
-        let of_classes = classes.map(|class| printed(scene, hatch_color(class.look.tint)));
-        let of_features =
-            analysis.shown_features().iter().map(|feature| printed(scene, feature_color(analysis, feature)));
-        of_classes.chain(of_features.flat_map(|color| [color, site_fill(color)]))
-    })
+/// The colors of all that [`draw`] draws of an analysis.
+pub(super) fn colors(analysis: &SceneAnalysis, scene: &SceneModel) -> Vec<Srgba> {
+    let classes = analysis.hatched_raster().into_iter().flat_map(|raster| shown_classes(raster).into_owned());
+    let of_classes = classes.map(|class| printed(scene, hatch_color(class.look.tint)));
+    let of_features =
+        analysis.shown_features().iter().map(|feature| printed(scene, feature_color(analysis, feature)));
+    of_classes.chain(of_features.flat_map(|color| [color, site_fill(color)])).collect()
 }
 
 /// The color of lines on a picture: black on one in black on white.
@@ -86,14 +87,14 @@ fn site_fill(Srgba([red, green, blue, _]): Srgba) -> Srgba {
     Srgba([red, green, blue, SITE_ALPHA])
 }
 
-/// Draws the hatching and the features of analyses and notes their texts.
+/// Draws the hatching and the features of the scene's analyses, and of one that is tried, and notes their texts.
 pub(super) fn draw(
-    scene: &SceneModel,
+    (scene, tried): (&SceneModel, Option<&SceneAnalysis>),
     view: &GraphicView<'_>,
     pen: &mut GraphicPen,
     texts: &mut Vec<PlacedText>,
 ) {
-    for analysis in &scene.analyses {
+    for analysis in scene.analyses.iter().chain(tried) {
         if let Some(raster) = analysis.hatched_raster() {
             let classes = shown_classes(raster);
             HatchedRaster { raster, classes: &classes, analysis, scene }.draw(view, pen);
@@ -132,7 +133,15 @@ impl FeatureDrawing<'_> {
     }
 
     fn stroke(&self, line: &[DVec2], look: LineLook, pen: &mut GraphicPen) {
-        self.view.draw(pen, line, look, self.analysis.feature);
+        let line: Vec<DVec2> = line.iter().map(|&at| self.inside(at)).collect();
+        self.view.draw(pen, &line, look, self.analysis.feature);
+    }
+
+    /// A place so far within the border of the ground that a line there lies on it.
+    fn inside(&self, at: DVec2) -> DVec2 {
+        let extent = self.scene.lattice.extent();
+        let inset_m = (INSIDE_EM * self.view.em_at(at)).min(extent.size().min_element() / 4.0);
+        at.clamp(extent.min + inset_m, extent.max - inset_m)
     }
 
     fn draw_point(
@@ -196,6 +205,7 @@ impl FeatureDrawing<'_> {
         let Some(along) = from.and_then(|from| (tip - *from).try_normalize()) else { return };
         let (tip, base) = (tip + along * (length_m * 0.5), tip - along * (length_m * 0.5));
         let ring = [tip, base + along.perp() * half_m, base - along.perp() * half_m];
+        let ring = ring.map(|at| self.inside(at));
         area::fill(&ring, &[], 1.0, pen.plan(look.color, self.analysis.feature));
     }
 
@@ -214,6 +224,9 @@ impl FeatureDrawing<'_> {
                     true => ring.iter().rev().copied().collect(),
                     false => ring.clone(),
                 }
+            };
+            let turned = |ring: &Vec<DVec2>| -> Vec<DVec2> {
+                turned(ring).into_iter().map(|at| self.inside(at)).collect()
             };
             let holes: Vec<Vec<DVec2>> = holes.iter().map(turned).collect();
             let fill = site_fill(look.color);

@@ -3,6 +3,7 @@
 //! A class is told by its tint and, in black on white, by its hatching. Relief shows through both.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 
 use crate::graphic_colors::{HIDDEN_LINE, SEEN_LINE};
 use sandtable_analysis::outcome::{
@@ -93,6 +94,43 @@ pub fn shown_classes(raster: &OutcomeRaster) -> Cow<'_, [ValueClass]> {
 pub fn class_of(classes: &[ValueClass], value: f32) -> Option<usize> {
     // Not a number is below every class.
     classes.partition_point(|class| class.from <= value).checked_sub(1).filter(|_| !value.is_nan())
+}
+
+/// The classes that the raster of an analysis holds and that pictures show by a tint or hatching, as legends list them.
+pub fn legend_classes(analysis: &SceneAnalysis) -> Vec<ValueClass> {
+    let (tinted, hatched) = (analysis.tinted_raster(), analysis.hatched_raster());
+    let Some(raster) = tinted.or(hatched) else { return Vec::new() };
+    let classes = shown_classes(raster);
+    let mut is_held = vec![false; classes.len()];
+    for index in 0..raster.values.len() {
+        if let Some(class) = class_of(&classes, raster.values.value(index)) {
+            is_held[class] = true;
+        }
+    }
+    let is_shown = |class: &&ValueClass| {
+        tinted.is_some() && class.look.tint[3] > 0
+            || hatched.is_some() && class.look.hatching != Hatching::None
+    };
+    let held = classes.iter().zip(is_held).filter(|(_, is_held)| *is_held).map(|(class, _)| class);
+    let mut listed: Vec<ValueClass> = Vec::new();
+    for class in held.filter(is_shown) {
+        // North is at both ends of aspects.
+        if !listed.iter().any(|other| other.label == class.label && other.look == class.look) {
+            listed.push(class.clone());
+        }
+    }
+    listed
+}
+
+/// What the lines of an analysis are, with their colors, as legends list them: marks of places tell what they are by their
+/// names.
+pub fn legend_lines(analysis: &SceneAnalysis) -> BTreeMap<&'static str, Srgba> {
+    let mut nouns: BTreeMap<&str, Srgba> = BTreeMap::new();
+    for feature in analysis.shown_features() {
+        nouns.entry(feature_noun(feature)).or_insert_with(|| feature_color(analysis, feature));
+    }
+    nouns.retain(|noun, _| !matches!(*noun, "place" | "post" | "outline"));
+    nouns
 }
 
 /// The color of the hatching over a tint.
@@ -221,8 +259,8 @@ pub fn feature_color(analysis: &SceneAnalysis, feature: &OutcomeFeature) -> Srgb
     }
 }
 
-/// The name of what a feature's lines are, for legends.
-pub fn feature_noun(feature: &OutcomeFeature) -> &'static str {
+/// The name of what a feature's lines are.
+fn feature_noun(feature: &OutcomeFeature) -> &'static str {
     match feature.role {
         FeatureRole::Place => "place",
         FeatureRole::Post => "post",

@@ -34,6 +34,7 @@ mod solids;
 pub mod standing;
 mod symbols;
 mod table;
+pub mod tried_analysis;
 mod uprights;
 pub mod voids;
 

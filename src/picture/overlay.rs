@@ -10,19 +10,23 @@ use crate::{add_mesh, analyses, graphics, sight};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh};
 use sandtable_ribbon::drape::drape;
+use sandtable_scene::analyses::SceneAnalysis;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::triangle_surface::TriangleSurface;
 use sandtable_view::camera::Camera;
 
 /// The lines of sight and tactical graphics for an eye that turns around where `camera` is, in drawing order, and their
-/// texts. They are planned on the finest ground.
-pub(super) fn planned(scene: &SceneModel, camera: &Camera) -> (Vec<LinePlan>, Vec<PlacedText>) {
-    if is_empty(scene) {
+/// texts, with those of an analysis that is tried. They are planned on the finest ground.
+pub(super) fn planned(
+    (scene, tried): (&SceneModel, Option<&SceneAnalysis>),
+    camera: &Camera,
+) -> (Vec<LinePlan>, Vec<PlacedText>) {
+    if is_empty(scene) && tried.is_none() {
         return (Vec::new(), Vec::new());
     }
     let view = GraphicView::around(scene, camera);
     let (mut pen, mut texts) = (GraphicPen::default(), Vec::new());
-    analyses::draw(scene, &view, &mut pen, &mut texts);
+    analyses::draw((scene, tried), &view, &mut pen, &mut texts);
     sight::draw(scene, &view, &mut pen, &mut texts);
     let [mut casings, mut lines] = pen.into_plans();
     for ([more_casings, more_lines], more) in graphics::each(scene, &view, GraphicPen::into_plans) {
@@ -35,11 +39,12 @@ pub(super) fn planned(scene: &SceneModel, camera: &Camera) -> (Vec<LinePlan>, Ve
     (casings, texts)
 }
 
-/// The colors of all that [`planned`] plans, each once.
+/// The colors of all that [`planned`] plans of the scene, each once.
 pub(super) fn colors(scene: &SceneModel) -> BTreeSet<[u8; 4]> {
     let lines = sight::line_colors(scene).filter(|_| !scene.sight.is_empty());
     let casing = [CASING].into_iter().filter(|_| !is_empty(scene));
-    let all = lines.chain(graphics::colors(scene)).chain(analyses::colors(scene)).chain(casing);
+    let analyses = scene.analyses.iter().flat_map(|analysis| analyses::colors(analysis, scene));
+    let all = lines.chain(graphics::colors(scene)).chain(analyses).chain(casing);
     all.map(|Srgba(color)| color).collect()
 }
 
@@ -61,7 +66,7 @@ pub(super) fn add(
     }
     add_tints(list, sight::tints(scene), DepthLayer::Draped(TINT_LAYER), displayed);
     progress("drawing graphics");
-    analyses::draw(scene, &view, &mut pen, &mut texts);
+    analyses::draw((scene, None), &view, &mut pen, &mut texts);
     sight::draw(scene, &view, &mut pen, &mut texts);
     let [mut casings, mut lines] = pen.draped(displayed);
     let ([more_casings, more_lines], more) = graphics::draped(scene, &view, displayed);

@@ -7,6 +7,7 @@
 //! ```
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use glam::DVec2;
 
@@ -31,6 +32,7 @@ use sandtable_ribbon::plan::PlanMesh;
 use sandtable_ribbon::texture::RibbonSurface;
 use sandtable_roam::graph::Vertex;
 use sandtable_roam::patched_ground::PatchedGround;
+use sandtable_scene::analyses::SceneAnalysis;
 use sandtable_scene::feature_meshes::Ribbon;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::symbols::LineSymbol;
@@ -67,16 +69,23 @@ impl SeenTint {
     }
 }
 
+/// The sheets of [`GroundSheets`].
+pub(super) const SHEETS: usize = 7;
+
 /// The draped features of a walk by patch, and their materials.
 #[derive(Default)]
 pub struct GroundSheets {
-    head: DrawList,
+    pub(super) head: DrawList,
     looks: BTreeMap<RibbonLook, MaterialId>,
-    borders: Borders,
+    pub(super) borders: Borders,
     ribbons: DrapeSheet,
     symbols: DrapeSheet,
     /// Tints of analyses.
     ground_tints: DrapeSheet,
+    /// The tint of an analysis that is tried.
+    pub(super) tried_tint: DrapeSheet,
+    pub(super) tried_material: Option<MaterialId>,
+    pub(super) tried: Option<Arc<SceneAnalysis>>,
     /// Tints of sight.
     tints: DrapeSheet,
     /// What a user looks at is seen from a place.
@@ -84,7 +93,7 @@ pub struct GroundSheets {
     seen_material: Option<MaterialId>,
     /// Lines of sight and tactical graphics.
     graphics: DrapeSheet,
-    graphic_colors: BTreeMap<[u8; 4], MaterialId>,
+    pub(super) graphic_colors: BTreeMap<[u8; 4], MaterialId>,
     texts: Vec<PlacedText>,
     /// The features whose ribbons their symbols take the place of.
     replaced: BTreeSet<FeatureId>,
@@ -94,11 +103,11 @@ pub struct GroundSheets {
 #[derive(Default)]
 pub(super) struct DrapeSheet {
     pub drapes: Drapes,
-    plans: Vec<SheetPlan>,
+    pub plans: Vec<SheetPlan>,
 }
 
 /// How a plan is drawn.
-struct SheetPlan {
+pub(super) struct SheetPlan {
     material: MaterialId,
     markings: Option<MaterialId>,
     lake: Option<LakeTint>,
@@ -151,10 +160,15 @@ impl GroundSheets {
         let (mut plans, mut shapes) = (Vec::new(), Vec::new());
         for TintPlan { plan, color, texture, feature } in tints {
             let material = post_tint::add_material(&mut self.head, color, texture);
-            plans.push(SheetPlan { material, markings: None, lake: None, layer, feature });
+            plans.push(SheetPlan::tint(material, layer, feature));
             shapes.push(plan);
         }
         DrapeSheet { drapes: Drapes::new(&self.borders, &shapes), plans }
+    }
+
+    /// Whether lines or texts of graphics were planned last, or are to be planned of an analysis that is tried.
+    pub fn has_graphics(&self) -> bool {
+        self.tried.is_some() || !self.graphics.plans.is_empty() || !self.texts.is_empty()
     }
 
     /// The texts of tactical graphics, as they were planned last.
@@ -162,13 +176,14 @@ impl GroundSheets {
         &self.texts
     }
 
-    pub(super) fn sheets(&self) -> [&DrapeSheet; 6] {
-        [&self.ribbons, &self.symbols, &self.ground_tints, &self.tints, &self.seen, &self.graphics]
+    pub(super) fn sheets(&self) -> [&DrapeSheet; SHEETS] {
+        let Self { ribbons, symbols, ground_tints, tried_tint, tints, seen, graphics, .. } = self;
+        [ribbons, symbols, ground_tints, tried_tint, tints, seen, graphics]
     }
 
-    pub(super) fn sheets_mut(&mut self) -> [&mut DrapeSheet; 6] {
-        let Self { ribbons, symbols, ground_tints, tints, seen, graphics, .. } = self;
-        [ribbons, symbols, ground_tints, tints, seen, graphics]
+    pub(super) fn sheets_mut(&mut self) -> [&mut DrapeSheet; SHEETS] {
+        let Self { ribbons, symbols, ground_tints, tried_tint, tints, seen, graphics, .. } = self;
+        [ribbons, symbols, ground_tints, tried_tint, tints, seen, graphics]
     }
 
     /// Adds the texture of a tint to the materials, before the tint is draped.
@@ -189,7 +204,7 @@ impl GroundSheets {
     pub fn lay_tint(&mut self, tint: Option<&SeenTint>) -> Vec<usize> {
         let laid = tint.zip(self.seen_material).map(|(SeenTint(tint), material)| {
             let (layer, feature) = (post_tint::TINT_LAYER, tint.feature);
-            let plans = vec![SheetPlan { material, markings: None, lake: None, layer, feature }];
+            let plans = vec![SheetPlan::tint(material, layer, feature)];
             DrapeSheet { drapes: Drapes::new(&self.borders, [&tint.plan]), plans }
         });
         let before = std::mem::replace(&mut self.seen, laid.unwrap_or_default());
@@ -216,18 +231,12 @@ impl GroundSheets {
     /// Plans the lines of sight and the tactical graphics for an eye that turns around where `camera` is, over the finest
     /// ground. They are not cut yet; returns the patches in which what lies has changed.
     pub fn plan_graphics(&mut self, scene: &SceneModel, camera: &Camera) -> Vec<usize> {
-        let (lines, texts) = overlay::planned(scene, camera);
+        let (lines, texts) = overlay::planned((scene, self.tried.as_deref()), camera);
         self.texts = texts;
         let (mut plans, mut shapes) = (Vec::new(), Vec::new());
         for LinePlan { plan, color, feature } in lines {
             let Some(&material) = self.graphic_colors.get(&color.0) else { continue };
-            plans.push(SheetPlan {
-                material,
-                markings: None,
-                lake: None,
-                layer: graphic_lines::LAYER,
-                feature,
-            });
+            plans.push(SheetPlan::tint(material, graphic_lines::LAYER, feature));
             shapes.push(plan);
         }
         let drapes = Drapes::new(&self.borders, &shapes);
@@ -294,11 +303,14 @@ impl GroundSheets {
     pub fn pieces(&self, patch: usize, camera: &Camera) -> Vec<DrapedPiece> {
         let scale = LineScale::around(camera);
         let (mut pieces, mut symbols) = (Vec::new(), self.symbols.drapes.in_patch(patch).peekable());
-        let mut tints = self.ground_tints.drapes.in_patch(patch).peekable();
+        let ground_tints = [&self.ground_tints, &self.tried_tint]
+            .into_iter()
+            .flat_map(|sheet| sheet.drapes.in_patch(patch).map(|(at, mesh)| (&sheet.plans[at], mesh)));
+        let mut tints = ground_tints.peekable();
         for (at, mesh) in self.ribbons.drapes.in_patch(patch) {
             let plan = &self.ribbons.plans[at];
-            while let Some((at, mesh)) = tints.next_if(|_| plan.layer > GROUND_TINT_LAYER) {
-                self.ground_tints.plans[at].add(mesh.clone(), &mut pieces);
+            while let Some((tint, mesh)) = tints.next_if(|_| plan.layer > GROUND_TINT_LAYER) {
+                tint.add(mesh.clone(), &mut pieces);
             }
             while let Some((at, mesh)) = symbols.next_if(|(at, _)| self.symbols.plans[*at].layer < plan.layer)
             {
@@ -317,7 +329,7 @@ impl GroundSheets {
                 plan.add_with(material, mesh, &mut pieces);
             }
         }
-        tints.for_each(|(at, mesh)| self.ground_tints.plans[at].add(mesh.clone(), &mut pieces));
+        tints.for_each(|(tint, mesh)| tint.add(mesh.clone(), &mut pieces));
         symbols.for_each(|(at, mesh)| self.symbols.plans[at].add(mesh.clone(), &mut pieces));
         for sheet in [&self.tints, &self.seen, &self.graphics] {
             let cut = sheet.drapes.in_patch(patch);
@@ -347,9 +359,14 @@ impl GroundSheets {
         let uppermost = graphics
             .into_iter()
             .chain(
-                [of(&self.ribbons, false), of(&self.symbols, true), of(&self.ground_tints, true)]
-                    .into_iter()
-                    .flatten(),
+                [
+                    of(&self.ribbons, false),
+                    of(&self.symbols, true),
+                    of(&self.ground_tints, true),
+                    of(&self.tried_tint, true),
+                ]
+                .into_iter()
+                .flatten(),
             )
             .max();
         uppermost.map(|(_, feature)| feature)
@@ -397,6 +414,11 @@ impl DrapeSheet {
 }
 
 impl SheetPlan {
+    /// A tint.
+    pub(super) fn tint(material: MaterialId, layer: u8, feature: FeatureId) -> Self {
+        Self { material, markings: None, lake: None, layer, feature }
+    }
+
     fn add(&self, mesh: DrawMesh, pieces: &mut Vec<DrapedPiece>) {
         self.add_with(self.material, mesh, pieces);
     }

@@ -2,19 +2,19 @@
 
 use std::array;
 
-use crate::recut::GroundSheets;
+use crate::recut::{GroundSheets, SHEETS};
 use sandtable_ribbon::patches::{CutDrapes, DrapeParts};
 use sandtable_terrain::triangle_surface::TriangleSurface;
 
 /// The draped features as they are planned now, by sheet.
 #[derive(Clone, Debug)]
-pub struct SheetParts([DrapeParts; 5]);
+pub struct SheetParts([DrapeParts; SHEETS]);
 
 /// The cut features of some patches.
 #[derive(Clone, Debug)]
 pub struct SheetCuts {
     patches: Vec<usize>,
-    sheets: [CutDrapes; 5],
+    sheets: [CutDrapes; SHEETS],
 }
 
 impl SheetParts {

@@ -97,7 +97,8 @@ pub fn analysis_bands<'a>(
     };
     let north_west = origin + DVec2::new(0.0, f64::from(header.height - 1)) * cell;
     let size = (header.width, header.height);
-    let header = node_header((north_west, cell), size, &ground_crs, described(&raster));
+    let (data_type, nodata) = described(&raster.values);
+    let header = node_header((north_west, cell), size, &ground_crs, (raster.name, data_type, nodata));
     Ok(Some(AnalysisBands {
         elevation,
         arguments,
@@ -111,10 +112,10 @@ pub fn analysis_bands<'a>(
 }
 
 /// The name, the type and the value for no data of an outcome's raster.
-pub(crate) fn described(raster: &OutcomeRaster) -> (&'static str, &'static str, f64) {
-    match raster.values {
-        PostValues::Numbers(_) => (raster.name, "Float32", -9999.0),
-        PostValues::Codes(_) => (raster.name, "Byte", f64::from(PostValues::NO_CODE)),
+pub(crate) fn described(values: &PostValues) -> (&'static str, f64) {
+    match values {
+        PostValues::Numbers(_) => ("Float32", -9999.0),
+        PostValues::Codes(_) => ("Byte", f64::from(PostValues::NO_CODE)),
     }
 }
 
@@ -209,7 +210,7 @@ pub struct OutcomeWindows<'a> {
 impl<'a> OutcomeWindows<'a> {
     /// Of an analysis of `ground`.
     pub fn new(outcome: &'a OutcomeRaster, ground: &Lattice, crs: &Crs) -> Self {
-        let (name, data_type, nodata) = described(outcome);
+        let (name, (data_type, nodata)) = (outcome.name, described(&outcome.values));
         let header = post_header(ground, crs, (name, data_type), nodata);
         Self { header, values: &outcome.values }
     }

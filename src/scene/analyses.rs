@@ -232,21 +232,18 @@ pub(super) fn analyze(
     let mut land: Option<Land> = None;
     let mut layers: &[_] = &[];
     let mut analyses = Vec::with_capacity(placed.len());
-    let mut placed = placed.into_iter().peekable();
-    while let Some(PlacedAnalysis { arguments, extent, feature, name, table }) = placed.next() {
+    for PlacedAnalysis { arguments, extent, feature, name, table } in placed {
         let (kind, table) = (arguments.kind(), &document.analyses[table]);
         progress(kind.title);
         let of_kind = match land.take().filter(|_| layers == kind.layers) {
             Some(land) => land,
             None => land_of(scene, kind.layers),
         };
-        layers = kind.layers;
-        // The land is kept for the next analysis where that is of the same layers.
-        let is_next = |next: &PlacedAnalysis| next.arguments.kind().layers == layers;
-        land = placed.peek().is_some_and(is_next).then(|| of_kind.clone());
         let compared =
             |land: &Land| other_ground(table, land, scene, assets, document).map_err(AnalysisFault::Ground);
-        let made = run_within(of_kind, &arguments, extent.as_ref(), compared, &StopFlag::default());
+        let made = run_within(&of_kind, &arguments, extent.as_ref(), compared, &StopFlag::default());
+        layers = kind.layers;
+        land = Some(of_kind);
         let made = made.map_err(|fault| match fault {
             AnalysisFault::Ground(error) => error,
             AnalysisFault::Analysis(error) => failed(document, table, error),
@@ -356,5 +353,8 @@ fn sampled(heights: &HeightService, surface: Surface, land: &Land) -> Option<Arc
         samples
             .extend(answers.iter().map(|answer| answer.height_m().map_or(f32::NAN, |height| height as f32)));
     }
-    Lattice::new(ground.origin(), ground.cell(), columns, samples).map(Arc::new).ok()
+    if samples.iter().all(|sample| sample.is_nan()) {
+        return None;
+    }
+    Lattice::part((ground.origin(), ground.cell()), ground.first(), columns, samples).map(Arc::new).ok()
 }

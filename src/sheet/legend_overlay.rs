@@ -1,6 +1,6 @@
 //! Tactical graphics and layers of sight in the legend.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use sandtable_analysis::outcome::{Hatching, ValueClass};
 use sandtable_annotate::class_legend::{LegendEntry, LegendSwatch};
@@ -9,7 +9,7 @@ use sandtable_description::words::{GraphicSide, RangeExtent, StylePreset, Viewsh
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::FeatureId;
 use sandtable_draw::print_pattern::PrintPattern;
-use sandtable_picture::analysis_look::{class_of, feature_color, feature_noun, hatch_color, shown_classes};
+use sandtable_picture::analysis_look::{hatch_color, legend_classes, legend_lines};
 use sandtable_picture::graphic_colors::{HIDDEN, HIDDEN_LINE, SEEN, SEEN_LINE, graphic_color, side_color};
 use sandtable_render::picture::Rendering;
 use sandtable_scene::analyses::SceneAnalysis;
@@ -98,45 +98,21 @@ fn analysis_entries(analysis: &SceneAnalysis, scene: &SceneModel) -> Vec<LegendE
     let mut entries = Vec::new();
     let shows = |of: &SceneAnalysis| of.hatched_raster().or(of.tinted_raster()).is_some();
     let is_alone = scene.analyses.iter().filter(|other| shows(other)).count() == 1;
-    if let Some(raster) = analysis.hatched_raster().or(analysis.tinted_raster()) {
-        let classes = shown_classes(raster);
-        let mut is_held = vec![false; classes.len()];
-        for index in 0..raster.values.len() {
-            if let Some(class) = class_of(&classes, raster.values.value(index)) {
-                is_held[class] = true;
-            }
-        }
-        let held = classes.iter().zip(is_held).filter(|(_, is_held)| *is_held);
-        let is_tinted = analysis.tinted_raster().is_some();
-        let is_hatched = analysis.hatched_raster().is_some();
-        let shown = held.filter(|(class, _)| {
-            is_tinted && class.look.tint[3] > 0 || is_hatched && class.look.hatching != Hatching::None
-        });
-        for (class, _) in shown {
-            let entry = class_entry(class, analysis, is_alone, scene.preset);
-            // North is on both ends of aspects.
-            if !entries.contains(&entry) {
-                entries.push(entry);
-            }
-        }
-    }
-    let mut nouns: BTreeMap<&str, Srgba> = BTreeMap::new();
-    for feature in analysis.shown_features() {
-        nouns.entry(feature_noun(feature)).or_insert_with(|| match scene.preset {
-            Some(StylePreset::Print) => Srgba::opaque(0, 0, 0),
-            _ => feature_color(analysis, feature),
-        });
-    }
-    // Marks of places tell what they are by their names.
-    nouns.retain(|noun, _| !matches!(*noun, "place" | "post" | "outline"));
+    let classes = legend_classes(analysis);
+    entries.extend(classes.iter().map(|class| class_entry(class, analysis, is_alone, scene.preset)));
+    let nouns = legend_lines(analysis);
     let is_one = nouns.len() == 1 && analysis.outcome.raster.is_none();
     let is_only = scene.analyses.len() == 1;
+    let printed = |color: Srgba| match scene.preset {
+        Some(StylePreset::Print) => Srgba::opaque(0, 0, 0),
+        _ => color,
+    };
     let name = |noun: &str| match (is_one, is_only) {
         (true, _) => analysis.name.clone(),
         (false, true) => capitalized(noun),
         (false, false) => format!("{}: {noun}", analysis.name),
     };
-    entries.extend(nouns.into_iter().map(|(noun, color)| line(&name(noun), color)));
+    entries.extend(nouns.into_iter().map(|(noun, color)| line(&name(noun), printed(color))));
     entries
 }
 

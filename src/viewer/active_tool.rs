@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use crate::measuring::Measuring;
+use crate::place_picking::PlacePicking;
 use sandtable_editing::effect::EditPreview;
 use sandtable_editing::tool::DrawingTool;
 
@@ -13,6 +14,8 @@ pub enum ActiveTool {
     Draw(DrawingTool),
     /// Measures.
     Measure(Measuring),
+    /// Picks positions of an analysis.
+    Pick(PlacePicking),
 }
 
 /// The earth of an edit that is being drawn, and when it was computed.

@@ -7,6 +7,7 @@ use egui::{CentralPanel, Context, Frame, TextureId, Ui};
 use glam::{DVec2, Vec2};
 
 use crate::active_tool::{ActiveTool, ToolPreview};
+use crate::analyzing::Analyzing;
 use crate::awaited_answers::DiskAnswers;
 use crate::commands::{ViewCommand, pressed};
 use crate::drawing_job::DrawingJob;
@@ -35,6 +36,8 @@ use sandtable_editing::editor::OnConflict;
 use sandtable_editing::tool::{DrawingTool, ToolKind};
 use sandtable_editing::viewing::ViewerOptions;
 use sandtable_files::disk;
+use sandtable_picture::tried_analysis::tried_feature;
+use sandtable_scene::feature::FeatureKind;
 use sandtable_view::navigation::pose::{ViewPose, wrapped};
 use sandtable_view::navigation::{NavigationMode, TRANSITION_S};
 
@@ -114,6 +117,7 @@ pub struct ViewerApp {
     pub(super) tool: Option<ActiveTool>,
     pub(super) preview: Option<ToolPreview>,
     pub(super) viewshed: Option<ViewshedOverlay>,
+    pub(super) analyzing: Analyzing,
     pub(super) question: Option<SavingQuestion>,
     pub(super) answers: DiskAnswers,
     pub(super) files: FollowedFiles,
@@ -158,6 +162,7 @@ impl ViewerApp {
             tool: None,
             preview: None,
             viewshed: None,
+            analyzing: Analyzing::default(),
             question: None,
             answers: DiskAnswers::default(),
             files: FollowedFiles::default(),
@@ -225,6 +230,7 @@ impl ViewerApp {
             || self.drawing.is_some()
             || is_relisting
             || is_looking
+            || self.analyzing.is_busy()
             || is_paging
             || self.answers.is_busy()
     }
@@ -292,6 +298,7 @@ impl ViewerApp {
         self.follow_loading(ui);
         self.follow_drawing(ui);
         self.follow_viewshed();
+        self.follow_analysis();
         self.follow_relisting();
         self.follow_paging();
         self.follow_answers();
@@ -354,7 +361,7 @@ impl ViewerApp {
             pick.as_ref().and_then(|pick| opened.exact_pick((&camera, pixel), pick, &self.context));
         self.picked = Some(match pick {
             Some(pick) => PickedText {
-                feature: feature_text(opened, pick.place.feature),
+                feature: feature_text(opened, self.analyzing.tried_name(), pick.place.feature),
                 place: Some(PlaceText::of(&opened.scene, &pick)),
                 part: self.part_of_feature(pick.place.feature),
             },
@@ -478,10 +485,13 @@ impl ViewerApp {
     }
 }
 
-/// A feature by kind and name.
-fn feature_text(opened: &OpenedScene, feature: FeatureId) -> String {
+/// A feature by kind and name; `tried` is the name of an analysis that is not in the scene.
+fn feature_text(opened: &OpenedScene, tried: Option<&str>, feature: FeatureId) -> String {
     let known = feature.index().and_then(|index| opened.scene.features.get(index));
     match known {
+        None if feature == tried_feature(&opened.scene) => {
+            format!("{} {}", FeatureKind::Analysis.noun(1), tried.unwrap_or_default())
+        }
         Some(feature) if feature.name.is_empty() => feature.kind.noun(1).to_owned(),
         Some(feature) => format!("{} {}", feature.kind.noun(1), feature.name),
         None if feature == FeatureId::GROUND => "ground".to_owned(),

@@ -19,13 +19,13 @@ pub(super) const IN_VIEW: Pos2 = pos2(800.0, 520.0);
 pub(super) type AppHarness = Harness<'static, Option<ViewerApp>>;
 
 /// A scene of its own in a folder of its own.
-struct TestScene {
+pub(super) struct TestScene {
     folder: PathBuf,
-    file: PathBuf,
+    pub file: PathBuf,
 }
 
 impl TestScene {
-    fn new(name: &str) -> Self {
+    pub fn new(name: &str) -> Self {
         let folder = env::temp_dir().join(format!("sandtable-{name}-{}", std::process::id()));
         fs::create_dir_all(folder.join("scenes")).expect("a folder");
         fs::create_dir_all(folder.join("assets/jacksboro")).expect("a folder");
@@ -89,12 +89,12 @@ pub(super) fn click(harness: &mut AppHarness, at: Pos2) {
     harness.run_steps(2);
 }
 
-fn key(harness: &mut AppHarness, modifiers: Modifiers, key: Key) {
+pub(super) fn key(harness: &mut AppHarness, modifiers: Modifiers, key: Key) {
     harness.key_press_modifiers(modifiers, key);
     harness.run_steps(3);
 }
 
-fn is_changed(harness: &AppHarness) -> bool {
+pub(super) fn is_changed(harness: &AppHarness) -> bool {
     app(harness).session.as_ref().is_some_and(|session| session.editor.is_changed())
 }
 
@@ -303,7 +303,7 @@ fn a_viewshed_is_tinted_until_it_is_cleared() {
     harness.get_by_label_contains("are seen");
     let is_tinted = |app: &ViewerApp| {
         let list = &app.opened.as_ref().expect("open").list;
-        list.materials.iter().any(|material| material.name == "sight")
+        list.materials.iter().any(|material| material.name == "tint" && material.texture.is_some())
     };
     assert!(is_tinted(app(&harness)));
     key(&mut harness, Modifiers::NONE, Key::Escape);

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use egui::Ui;
 
+use crate::analyzing::Analyzing;
 use crate::app::{OpeningFailure, ViewerApp};
 use crate::lettering;
 use crate::loading::{LoadedFile, opening_error};
@@ -136,6 +137,7 @@ impl ViewerApp {
                 self.camera_number = 0;
                 (self.tree, self.picked, self.tool) = (TreePanel::default(), None, None);
                 self.viewshed = None;
+                self.analyzing = Analyzing::default();
                 self.notices.clear();
                 self.recent.add(&path);
             }
@@ -172,6 +174,7 @@ impl ViewerApp {
         };
         drop_apart(before);
         self.renew_viewshed();
+        self.renew_analysis();
     }
 
     fn watch_files(&mut self, files: &[PathBuf]) {

@@ -102,6 +102,10 @@ impl ViewerApp {
                     ui.spinner();
                     ui.label("looking around");
                 }
+                if self.analyzing.is_busy() {
+                    ui.spinner();
+                    ui.label("analyzing");
+                }
                 if self.opened.as_ref().is_some_and(|opened| opened.is_relisting()) {
                     ui.spinner();
                     ui.label("setting light and models");
@@ -144,6 +148,7 @@ impl ViewerApp {
     fn show_sections(&mut self, ui: &mut Ui) {
         self.show_picked(ui);
         self.show_tools(ui);
+        self.show_analyses(ui);
         let Some(opened) = &mut self.opened else { return };
         let (mut exaggeration, mut light) = (None, None);
         let header = |title: &str| CollapsingHeader::new(RichText::new(title).strong()).id_salt(title);

@@ -6,7 +6,8 @@
 //!   │                         ├─ loading ─► scene              on a thread, with progress; and on others:
 //!   │                         ├─ opened scene: walk, camera       relisting: what stands, its light; shadowing; drawing:
 //!   │                         │                                   pictures; reaching: nested spheres; paging: terrain on
-//!   │                         │                                   disk; disk_answers: its heights; all of them: worker
+//!   │                         │                                   disk; disk_answers: its heights; analyzing: what a user
+//!   │                         │                                   tries; all of them: worker
 //!   └─────► graphics ◄── changes of the ground, camera         wgpu: the surface, the scene, the panels over it
 //! ```
 //!
@@ -14,6 +15,10 @@
 //! walk what changed. `window` lends it a surface and the clock.
 
 mod active_tool;
+mod analysis_listing;
+mod analyzing;
+#[cfg(test)]
+mod analyzing_tests;
 mod app;
 #[cfg(test)]
 mod app_tests;
@@ -45,6 +50,7 @@ mod paging_tests;
 mod panels;
 mod picked_part;
 mod place;
+mod place_picking;
 mod reaching;
 mod recent;
 mod relisting;

@@ -19,6 +19,7 @@ use crate::lettering::font;
 use crate::line_piece::LinePicture;
 use crate::name_lines::{LabelLines, LineName, NameKey, graphic_names};
 use crate::opened::OpenedScene;
+use sandtable_picture::placed_text::PlacedText;
 use sandtable_view::camera::Camera;
 
 /// Names that are not shown are tried in turns of so many frames: trying takes longer than holding.
@@ -85,7 +86,9 @@ impl LineNames {
         let before = std::mem::take(&mut self.states);
         let mut shown = 0;
         let is_turn = |turn: usize| turn % TURNS as usize == self.frame as usize % TURNS as usize;
-        let graphics = graphic_names(opened.walk.graphic_texts(), picture);
+        let is_shown = |text: &PlacedText| !opened.hidden.contains(&text.feature);
+        let shown_texts = opened.walk.graphic_texts().iter().filter(|text| is_shown(text));
+        let graphics = graphic_names(shown_texts, picture);
         let labels = self.order.iter().enumerate().filter_map(|(turn, &index)| {
             let is_known = before.contains_key(&NameKey::Label(index));
             let lines = self.courses[index].as_ref().filter(|_| is_known || is_turn(turn))?;

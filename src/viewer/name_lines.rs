@@ -105,9 +105,12 @@ impl LabelLines {
 }
 
 /// The texts of graphics as names: along their lines, or level at their places.
-pub fn graphic_names(texts: &[PlacedText], picture: &LinePicture<'_>) -> Vec<LineName> {
+pub fn graphic_names<'a>(
+    texts: impl Iterator<Item = &'a PlacedText>,
+    picture: &LinePicture<'_>,
+) -> Vec<LineName> {
     let mut names = Vec::new();
-    for (index, text) in texts.iter().enumerate() {
+    for (index, text) in texts.enumerate() {
         let Srgba([red, green, blue, _]) = text.color;
         let mut add = |number: usize, lines: Vec<Vec<Vec3>>, side: NameSide| {
             let lines = Arc::new(lines);

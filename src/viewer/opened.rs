@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
+use crate::analysis_listing::AnalysisListing;
 use crate::finer_ground::FinerGround;
 use crate::paging::PagedTerrain;
 use crate::scene_jobs::{Reaching, Relisting};
@@ -77,6 +78,8 @@ pub struct OpenedScene {
     /// Unit vector toward the sun of the next list.
     pub(super) wanted_sun: Vec3,
     pub(super) hidden: BTreeSet<FeatureId>,
+    /// The scene's analyses in the panel.
+    pub analyses: Vec<AnalysisListing>,
     /// What the renderer is to take over.
     pub(super) load: Option<SceneLoad>,
     /// The next list, while it is made.
@@ -190,6 +193,7 @@ impl OpenedScene {
             list_eye: camera.eye(),
             wanted_sun: walk.to_sun(),
             hidden: view.hidden.clone(),
+            analyses: scene.analyses.iter().map(AnalysisListing::new).collect(),
             load: Some(SceneLoad::unprepared(&list)),
             relisting: None,
             reaching: None,

@@ -15,6 +15,8 @@
 //! | `hide KIND`, `show KIND` | hides or shows features of a kind, such as `roads` |
 //! | `viewshed X,Y` | tints what is seen from a place |
 //! | `edit crater X,Y RADIUS` | digs |
+//! | `analyze KIND KEY=VALUE …` | makes an analysis and shows it; a value may have spaces |
+//! | `keep`, `discard` | writes that analysis into the scene, or takes it away |
 //! | `undo`, `redo`, `save`, `snapshot` | as the keys do |
 //! | `quit` | closes the window, without edits that are not saved: a moved sun is one |
 //! | `resize WxH` | gives the window a size in pixels |
@@ -68,6 +70,17 @@ pub enum ScriptCommand {
         /// Whether they are shown.
         shown: bool,
     },
+    /// Makes an analysis and shows it.
+    Analyze {
+        /// Its kind.
+        kind: String,
+        /// Arguments by their names.
+        arguments: Vec<(String, String)>,
+    },
+    /// Writes the analysis that is shown into the scene.
+    KeepAnalysis,
+    /// Takes it away.
+    DiscardAnalysis,
     /// Gives the window a size.
     Resize(u32, u32),
 }
@@ -82,7 +95,7 @@ pub struct ScriptError {
 }
 
 const EXPECTED: &str = "wait N, key NAME, fly X,Y,Z X,Y,Z N, camera NAME, pick X,Y, sun AZIMUTH,ALTITUDE, heights FACTOR, \
-                        hide KIND, show KIND, viewshed X,Y, edit crater X,Y RADIUS, undo, redo, save, snapshot, resize WxH or quit";
+                        hide KIND, show KIND, viewshed X,Y, edit crater X,Y RADIUS, analyze KIND KEY=VALUE, keep, discard, undo, redo, save, snapshot, resize WxH or quit";
 
 /// The commands of a script, each with its line as it is written.
 ///
@@ -123,6 +136,11 @@ fn command(words: &[&str]) -> Option<ScriptCommand> {
             let side = |text: &str| text.parse().ok().filter(|side| (1..=16_384).contains(side));
             ScriptCommand::Resize(side(width)?, side(height)?)
         }
+        ["analyze", kind, ..] => {
+            ScriptCommand::Analyze { kind: (*kind).to_owned(), arguments: arguments(&words[2..])? }
+        }
+        ["keep"] => ScriptCommand::KeepAnalysis,
+        ["discard"] => ScriptCommand::DiscardAnalysis,
         ["undo"] => ScriptCommand::Run(ViewCommand::Undo),
         ["redo"] => ScriptCommand::Run(ViewCommand::Redo),
         ["save"] => ScriptCommand::Run(ViewCommand::Save),
@@ -130,6 +148,22 @@ fn command(words: &[&str]) -> Option<ScriptCommand> {
         ["quit"] => ScriptCommand::Run(ViewCommand::Quit),
         _ => return None,
     })
+}
+
+/// Arguments by their names; a word without `=` goes on with the value before.
+fn arguments(words: &[&str]) -> Option<Vec<(String, String)>> {
+    let mut arguments: Vec<(String, String)> = Vec::new();
+    for word in words {
+        match word.split_once('=') {
+            Some((name, value)) if !name.is_empty() => arguments.push((name.to_owned(), value.to_owned())),
+            _ => {
+                let (_, value) = arguments.last_mut()?;
+                value.push(' ');
+                value.push_str(word);
+            }
+        }
+    }
+    Some(arguments)
 }
 
 fn frames(text: &str) -> Option<u32> {
@@ -168,10 +202,15 @@ mod tests {
     #[test]
     fn every_command_is_read() {
         let text = "# a comment\n\nwait 3\nkey Ctrl+Shift+Z\nfly 1,2,3 4,5,6 60\ncamera from the south\npick 10,20\n\
-                    edit crater 7,8 30\nresize 640x480\nundo\nsun 120,30\nheights 2\nhide tactical graphics\nshow roads\nquit\n";
+                    edit crater 7,8 30\nresize 640x480\nundo\nsun 120,30\nheights 2\nhide tactical graphics\nshow roads\nquit\n\
+                    analyze time from=16S GF 49000 17500 vehicle=foot\nkeep\ndiscard\n";
         let commands: Vec<ScriptCommand> =
             parse_script(text).expect("sound").into_iter().map(|(_, command)| command).collect();
-        assert_eq!(commands.len(), 13);
+        assert_eq!(commands.len(), 16);
+        let argument = |name: &str, text: &str| (name.to_owned(), text.to_owned());
+        let arguments = vec![argument("from", "16S GF 49000 17500"), argument("vehicle", "foot")];
+        assert_eq!(commands[13], ScriptCommand::Analyze { kind: "time".to_owned(), arguments });
+        assert_eq!(commands[14..], [ScriptCommand::KeepAnalysis, ScriptCommand::DiscardAnalysis]);
         assert_eq!(commands[1], ScriptCommand::Run(ViewCommand::Redo));
         let (eye, target) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, 5.0, 6.0));
         assert_eq!(commands[2], ScriptCommand::Fly { eye, target, frames: 60 });
@@ -196,6 +235,9 @@ mod tests {
             "pick nan,1",
             "key W",
             "jump",
+            "analyze",
+            "analyze slope degrees",
+            "keep all",
         ] {
             let error = parse_script(&format!("wait 1\n{line}\n")).expect_err(line).to_string();
             assert!(error.starts_with(&format!("line 2: '{line}' is not a command")), "{error}");

@@ -112,9 +112,10 @@ impl ScriptRun {
         if let Some((line, notices)) = self.awaited.take() {
             let said: Vec<String> = app.notice_texts().skip(notices).map(str::to_owned).collect();
             let camera = app.snapshot_camera.take();
+            let analysis = line.starts_with("analyze ").then(|| app.analyzing.report());
             let LongestFrame { gap_ms, own_ms } = std::mem::take(&mut self.longest[0]);
             self.done.push(json!({
-                "command": line, "said": said, "camera": camera,
+                "command": line, "said": said, "camera": camera, "analysis": analysis,
                 "longest_gap_ms": gap_ms, "longest_own_ms": own_ms,
             }));
         }
@@ -188,6 +189,9 @@ impl ScriptRun {
             }
             ScriptCommand::Heights(factor) => app.exaggerate(factor),
             ScriptCommand::Viewshed(at) => app.look_around(at),
+            ScriptCommand::Analyze { kind, arguments } => app.analyze_by_name(&kind, &arguments),
+            ScriptCommand::KeepAnalysis => app.keep_analysis(),
+            ScriptCommand::DiscardAnalysis => app.discard_analysis(),
             ScriptCommand::Visibility { kind, shown } => {
                 if let Some(opened) = &mut app.opened {
                     let features = (FeatureId::GROUND.0 + 1..).map(FeatureId).zip(&opened.scene.features);

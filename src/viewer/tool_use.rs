@@ -35,6 +35,8 @@ enum ToolLine {
     Outline,
     /// As a line, without its vertices.
     Ring,
+    /// Not at all.
+    Places,
 }
 
 impl ToolLine {
@@ -79,6 +81,11 @@ impl ViewerApp {
                 }
                 return;
             }
+            (Some(ActiveTool::Pick(picking)), _) => {
+                picking.click(at);
+                self.note_picked();
+                return;
+            }
             (Some(ActiveTool::Draw(tool)), Some(session)) => tool.click(at.to_array(), &session.settings),
             _ => None,
         };
@@ -91,6 +98,10 @@ impl ViewerApp {
         let edit = match (&mut self.tool, &self.session) {
             (Some(ActiveTool::Measure(measuring)), _) => {
                 measuring.finish();
+                None
+            }
+            (Some(ActiveTool::Pick(_)), _) => {
+                self.tool = None;
                 None
             }
             (Some(ActiveTool::Draw(tool)), Some(session)) => tool.finish(&session.settings),
@@ -129,6 +140,7 @@ impl ViewerApp {
     pub(super) fn note_outcome(&mut self, outcome: EditOutcome) {
         self.preview = None;
         self.renew_viewshed();
+        self.analyzing.outdate();
         if outcome == EditOutcome::Rebuild {
             self.rebuild();
         }
@@ -145,6 +157,7 @@ impl ViewerApp {
     pub(super) fn leave_tool(&mut self) -> bool {
         match self.tool.take() {
             None => false,
+            Some(ActiveTool::Pick(_)) => true,
             Some(ActiveTool::Draw(tool)) => {
                 self.tool = tool.is_begun().then(|| ActiveTool::Draw(DrawingTool::new(tool.kind)));
                 true
@@ -162,11 +175,13 @@ impl ViewerApp {
         let is_taken = match &mut self.tool {
             Some(ActiveTool::Draw(tool)) => tool.take_back(),
             Some(ActiveTool::Measure(measuring)) => measuring.take_back(),
+            Some(ActiveTool::Pick(picking)) => picking.take_back(),
             None => false,
         };
         if is_taken {
             self.preview = None;
             self.measure_again();
+            self.note_picked();
         }
     }
 
@@ -174,6 +189,7 @@ impl ViewerApp {
     pub(super) fn tool_hint(&self) -> &'static str {
         match &self.tool {
             Some(ActiveTool::Draw(tool)) => tool.hint(),
+            Some(ActiveTool::Pick(picking)) => picking.hint(),
             Some(ActiveTool::Measure(measuring)) => match measuring.kind {
                 MeasureKind::Line | MeasureKind::Area => "Click along it; a double click ends it",
                 MeasureKind::Sight => "Click where the eye is, then at what it looks at",
@@ -245,6 +261,11 @@ impl ViewerApp {
             Some(ActiveTool::Measure(measuring)) => {
                 (measuring.points.clone(), ToolLine::closed(measuring.kind == MeasureKind::Area), None)
             }
+            Some(ActiveTool::Pick(picking)) => {
+                let (points, is_closed) = picking.outline(hovered);
+                let shape = if picking.is_joined() { ToolLine::closed(is_closed) } else { ToolLine::Places };
+                (points, shape, None)
+            }
         };
         draw_line(&ui.painter_at(rect), rect, (opened, &camera), &points, shape);
         if let (Some(radius_m), Some(center)) = (radius_m, points.last()) {
@@ -294,7 +315,7 @@ fn draw_line(
     let legs = points.windows(2).map(|pair| (pair[0], pair[1])).chain(closing);
     let strokes =
         [Stroke::new(4.0, Color32::from_black_alpha(150)), Stroke::new(2.0, Color32::from_rgb(255, 214, 64))];
-    for (from, to) in legs {
+    for (from, to) in legs.filter(|_| shape != ToolLine::Places) {
         let piece = |step: u16| on_screen(from.lerp(to, f64::from(step) / f64::from(LEG_PIECES)));
         let places: Vec<Option<Pos2>> = (0..=LEG_PIECES).map(piece).collect();
         for stroke in strokes {

@@ -12,6 +12,7 @@ use sandtable_geom::aabb::Aabb;
 use sandtable_picture::placed_text::PlacedText;
 use sandtable_picture::recut::{GroundSheets, SeenTint};
 use sandtable_picture::sheet_cuts::{SheetCuts, SheetParts};
+use sandtable_picture::tried_analysis::TriedAnalysis;
 use sandtable_ribbon::patches::StalePatch;
 use sandtable_roam::dynamic::DynamicTerrain;
 use sandtable_roam::graph::Vertex;
@@ -67,8 +68,10 @@ pub(super) struct LaidGround {
     planned: Option<Vec3>,
     /// A tint that is laid when a list has its texture.
     tint: Option<SeenTint>,
-    /// How many tints there were.
-    tints: u32,
+    /// An analysis that is laid when a list has its materials.
+    tried: Option<TriedAnalysis>,
+    /// How many tints and analyses that are tried there were.
+    additions: u32,
 }
 
 impl LaidGround {
@@ -82,7 +85,8 @@ impl LaidGround {
             waiting: 0,
             planned: None,
             tint: None,
-            tints: 0,
+            tried: None,
+            additions: 0,
         }
     }
 
@@ -97,19 +101,40 @@ impl LaidGround {
         self.sheets.add_texture(&mut tint);
         self.head = Arc::new(self.sheets.head().clone());
         self.tint = Some(tint);
-        self.tints += 1;
+        self.additions += 1;
     }
 
-    /// The number of tints so far.
-    pub fn tints(&self) -> u32 {
-        self.tints
+    /// Adds the materials of an analysis that is tried; the one before goes.
+    pub fn add_tried(&mut self, mut tried: TriedAnalysis) {
+        self.clear_tried();
+        self.sheets.add_tried(&mut tried);
+        self.head = Arc::new(self.sheets.head().clone());
+        self.tried = Some(tried);
+        self.additions += 1;
     }
 
-    /// Lays the last tint over the ground.
-    pub fn lay_tint(&mut self) {
+    /// The number of times that materials were added so far.
+    pub fn additions(&self) -> u32 {
+        self.additions
+    }
+
+    /// Lays the last tint, and the last analysis that is tried, over the ground.
+    pub fn lay_added(&mut self) {
         if let Some(tint) = self.tint.take() {
             self.replan(|sheets| sheets.lay_tint(Some(&tint)));
         }
+        if let Some(tried) = self.tried.take() {
+            self.replan(|sheets| sheets.lay_tried(Some(&tried)));
+            // Its lines are planned in the next update.
+            self.planned = None;
+        }
+    }
+
+    /// Takes the analysis away that is tried.
+    pub fn clear_tried(&mut self) {
+        self.tried = None;
+        self.replan(|sheets| sheets.lay_tried(None));
+        self.planned = None;
     }
 
     /// Takes the tint away.
@@ -240,8 +265,8 @@ impl LaidGround {
 
     /// Plans symbols and graphics for the camera where it has moved by a share of its height above the ground.
     fn plan_lines(&mut self, scene: &SceneModel, lattice: &Lattice, camera: &Camera) {
-        let has_graphics =
-            !(scene.graphics.is_empty() && scene.sight.is_empty() && scene.analyses.is_empty());
+        let has_graphics = self.sheets.has_graphics()
+            || !(scene.graphics.is_empty() && scene.sight.is_empty() && scene.analyses.is_empty());
         if scene.symbols.is_empty() && !has_graphics {
             return;
         }

@@ -10,6 +10,7 @@
 //! renderer is to receive it, and what it cost. What stands on the ground is a draw list that is made once
 //! ([`Walk::static_list`]).
 
+pub mod analysis_task;
 mod check;
 pub mod disk_ground;
 pub mod edit;
@@ -46,6 +47,7 @@ use sandtable_picture::models::{PlacementMove, PlacementMoves, moved_box};
 use sandtable_picture::placed_text::PlacedText;
 use sandtable_picture::recut::SeenTint;
 use sandtable_picture::standing;
+use sandtable_picture::tried_analysis::TriedAnalysis;
 use sandtable_roam::culling::{Culling, InView};
 use sandtable_roam::dynamic::{DynamicOptions, DynamicTerrain, ErrorMeasure, Radius};
 use sandtable_roam::refine::deferred::Deferred;
@@ -243,6 +245,17 @@ impl Walk {
     /// Takes the tint away.
     pub fn clear_tint(&mut self) {
         self.laid.clear_tint();
+    }
+
+    /// Lays an analysis that is tried over the ground, instead of the one before; it is seen from [`Walk::take_standing`] of a
+    /// list on that a task makes from now on.
+    pub fn lay_analysis(&mut self, tried: TriedAnalysis) {
+        self.laid.add_tried(tried);
+    }
+
+    /// Takes the analysis away that is tried.
+    pub fn clear_analysis(&mut self) {
+        self.laid.clear_tried();
     }
 
     /// Where the camera's spheres are seen from. Parallel rays come from very far away.

@@ -26,8 +26,8 @@ pub struct StandingTask {
     to_sun: Vec3,
     head: Arc<DrawList>,
     edits: ReliefEdits,
-    /// How many tints the materials are of.
-    tints: u32,
+    /// How many additions the materials are of.
+    additions: u32,
 }
 
 impl StandingTask {
@@ -54,7 +54,7 @@ impl Walk {
             to_sun,
             head: Arc::clone(self.laid.head()),
             edits: self.map.edits().clone(),
-            tints: self.laid.tints(),
+            additions: self.laid.additions(),
         }
     }
 
@@ -66,8 +66,8 @@ impl Walk {
             let elevations = Arc::clone(self.elevations());
             self.map.take_over(map, &task.edits, &elevations);
         }
-        if task.tints == self.laid.tints() {
-            self.laid.lay_tint();
+        if task.additions == self.laid.additions() {
+            self.laid.lay_added();
         }
     }
 }
@@ -110,7 +110,7 @@ mod tests {
             }
             let is_tint = |index: usize| {
                 let material = list.materials.get(index);
-                material.is_some_and(|material| material.name == "sight" && material.texture.is_some())
+                material.is_some_and(|material| material.name == "tint" && material.texture.is_some())
             };
             pieces.iter().filter(|piece| is_tint(piece.material.0 as usize)).count()
         };

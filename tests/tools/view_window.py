@@ -99,7 +99,9 @@ def scripted(display, scene):
     script = scene.with_name("script.txt")
     script.write_text(
         "wait 5\nfly 749000,4016500,1500 749500,4018000,500 30\npick 400,400\nedit crater 749000,4017500 60\nwait 3\n"
-        "undo\nwait 3\nsnapshot\nsun 120,30\nundo\nhide roads\nshow roads\nviewshed 749000,4017500\nresize 900x600\nwait 5\nquit\n"
+        "undo\nwait 3\nsnapshot\nsun 120,30\nundo\nhide roads\nshow roads\nviewshed 749000,4017500\n"
+        "analyze obstacles vehicle=wheeled\nwait 5\ndiscard\nanalyze time from=749000,4017500 extent=748500,4017000,750500,4018500\n"
+        "keep\nhide analyses\nshow analyses\nundo\nresize 900x600\nwait 5\nquit\n"
     )
     before = scene.read_text()
     command = [PROGRAM, "view", str(scene), "--script", str(script), "--json"]
@@ -110,8 +112,16 @@ def scripted(display, scene):
     by_command = {entry["command"].split()[0]: entry for entry in report["commands"]}
     if by_command["edit"]["moved"]["cut_m3"] < 100:
         fail(f"the crater moved no earth: {by_command['edit']}")
-    if any(entry.get("said") for command, entry in by_command.items() if command in ["sun", "hide", "show", "viewshed"]):
+    quiet = ["sun", "hide", "show", "viewshed", "analyze", "keep", "discard"]
+    if any(entry.get("said") for command, entry in by_command.items() if command in quiet):
         fail(f"the window complains: {report['commands']}")
+    analyses = [entry["analysis"] for entry in report["commands"] if entry["command"].startswith("analyze ")]
+    if [analysis.get("kind") for analysis in analyses] != ["obstacles", "time"]:
+        fail(f"the analyses were not made: {analyses}")
+    command = [PROGRAM, "analyze", "obstacles", str(scene), "--vehicle", "wheeled", "--json"]
+    printed = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    if [figure["value"] for figure in printed["figures"]] != list(analyses[0]["figures"].values()):
+        fail(f"the window has other figures than the command: {printed['figures']}, {analyses[0]['figures']}")
     if not by_command["pick"]["picked"]["place"]:
         fail(f"nothing was picked: {by_command['pick']}")
     if report["frames"] < 40 or report["ground_triangles"] < 1000:

@@ -143,7 +143,7 @@ pub(super) fn spread(
     let mut told = 0_usize;
     while let Some(index) = ready.pop() {
         told += 1;
-        if told % (1 << 16) == 0 && stop.is_stopped() {
+        if told.is_multiple_of(1 << 16) && stop.is_stopped() {
             return Err(AnalysisError::Stopped);
         }
         for (step, other) in neighbors(index as usize, columns, rows) {

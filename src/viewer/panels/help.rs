@@ -14,6 +14,10 @@ const POINTER: [(&str, &str); 6] = [
     ("Double click", "Go there"),
 ];
 
+/// What the panel of analyses does.
+const ANALYSES: &str = "Analyses, at the side: choose a kind, pick its places by clicks on the ground or type them, run it. Keep \
+     writes it into the scene; Discard takes it away.";
+
 /// Draws the keys and what the pointer does.
 pub fn help_panel(ui: &mut Ui) {
     ScrollArea::vertical().auto_shrink([true, true]).show(ui, |ui| {
@@ -37,6 +41,7 @@ pub fn help_panel(ui: &mut Ui) {
             }
         });
         ui.label("Shift makes a held key four times as fast. Tab goes through the panels; Esc comes back.");
+        ui.label(ANALYSES);
     });
 }
 
@@ -61,5 +66,6 @@ mod tests {
             harness.get_by_label(binding.says);
         }
         harness.get_by_label("Ctrl+Shift+Z, Ctrl+Y");
+        harness.get_by_label(ANALYSES);
     }
 }

@@ -1,0 +1,203 @@
+//! Analyses of the ground as it is now, tried before they are kept in the scene.
+
+use std::sync::Arc;
+
+use crate::Walk;
+use sandtable_analysis::extent::PlacedOutcome;
+use sandtable_analysis::land::Land;
+use sandtable_catalog::kind::AnalysisKind;
+use sandtable_catalog::parameter::ParameterForm;
+use sandtable_picture::tried_analysis::TriedAnalysis;
+use sandtable_query::analysis::{AnalyzeError, Analyzed, WrittenArgument, analyze};
+use sandtable_query::dataset::Dataset;
+use sandtable_scene::assets::Assets;
+use sandtable_scene::land::land_of;
+use sandtable_scene::scene_model::SceneModel;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::stop_flag::StopFlag;
+
+/// The word for the elevation of the scene before its earthworks.
+const SOURCE: &str = "source";
+
+/// The task of making an analysis on another thread. While it is kept, the next edit copies the heights.
+pub struct AnalysisTask {
+    scene: Arc<SceneModel>,
+    elevations: Arc<Lattice>,
+    kind: &'static AnalysisKind,
+    name: String,
+    arguments: Vec<WrittenArgument>,
+}
+
+impl Walk {
+    /// The task of an analysis that a legend calls `name`. Two numbers of an argument are a position in the scene's system.
+    pub fn analysis_task(
+        &self,
+        (kind, name): (&'static AnalysisKind, String),
+        arguments: Vec<WrittenArgument>,
+    ) -> AnalysisTask {
+        let (scene, elevations) = (Arc::clone(self.scene()), Arc::clone(self.elevations()));
+        AnalysisTask { scene, elevations, kind, name, arguments }
+    }
+}
+
+impl AnalysisTask {
+    /// Makes the analysis, with the values of `sandtable analyze` of a scene file. `assets` are the files that the scene may
+    /// read. `progress` is called with the name of each step as it begins.
+    ///
+    /// # Errors
+    /// See [`AnalyzeError`]; [`AnalyzeError::Argument`] of a file that the scene may not read.
+    pub fn run(
+        &self,
+        assets: &Assets,
+        stop: &StopFlag,
+        progress: &dyn Fn(&'static str),
+    ) -> Result<TriedAnalysis, AnalyzeError> {
+        let Self { scene, kind, .. } = self;
+        let arguments: Vec<WrittenArgument> = self
+            .arguments
+            .iter()
+            .map(|argument| self.resolved(argument, assets))
+            .collect::<Result<_, _>>()?;
+        progress("gathering the land");
+        let land = Land { ground: Arc::clone(&self.elevations), ..land_of(scene, kind.layers) };
+        progress("analyzing");
+        let dataset = Dataset::from_scene("the scene", scene);
+        let Analyzed { ground, outcome, .. } =
+            analyze(&dataset, land, (*kind, &arguments), &scene.crs, stop)?;
+        progress("laying it over the ground");
+        Ok(TriedAnalysis::new(kind, self.name.clone(), PlacedOutcome { ground, outcome }, scene))
+    }
+
+    /// The argument with the path of the file that it names, which scene files name from their own folder.
+    fn resolved(&self, argument: &WrittenArgument, assets: &Assets) -> Result<WrittenArgument, AnalyzeError> {
+        let WrittenArgument { name, text } = argument;
+        let is_file = self.kind.parameter(name).is_some_and(|known| known.form == ParameterForm::Ground);
+        if !is_file || text == SOURCE || text.is_empty() {
+            return Ok(argument.clone());
+        }
+        let refused = |problem: String| AnalyzeError::Argument { name: name.clone(), problem };
+        let path = assets.resolve(text).map_err(|error| refused(error.to_string()))?;
+        let text = path.to_str().ok_or_else(|| refused("its path is not Unicode".to_owned()))?.to_owned();
+        Ok(WrittenArgument { name: name.clone(), text })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::WalkOptions;
+    use glam::DVec2;
+    use sandtable_analysis::outcome::PostValues;
+    use sandtable_draw::list::DrawList;
+    use sandtable_editing::viewing::open_to_view;
+    use sandtable_picture as picture;
+    use sandtable_picture::tried_analysis::tried_feature;
+    use sandtable_scene::scene_file::open_scene_land;
+    use std::path::Path;
+
+    const SCENE: &str = concat!(env!("SANDTABLE_ROOT"), "scenes/road.toml");
+
+    fn walk() -> Walk {
+        let editor = open_to_view(Path::new(SCENE), &[]).expect("readable");
+        let scene = editor.source().build(&|_| ()).expect("sound");
+        Walk::new(Arc::new(scene), WalkOptions::default())
+    }
+
+    fn written(arguments: &[(&str, &str)]) -> Vec<WrittenArgument> {
+        let one = |&(name, text): &(&str, &str)| WrittenArgument { name: name.into(), text: text.into() };
+        arguments.iter().map(one).collect()
+    }
+
+    fn tried(walk: &Walk, kind: &str, arguments: &[(&str, &str)]) -> Result<TriedAnalysis, AnalyzeError> {
+        let kind = sandtable_catalog::kind(kind).expect("a kind");
+        let task = walk.analysis_task((kind, kind.title.to_owned()), written(arguments));
+        let assets = Assets::new(Path::new(SCENE), &[]).expect("a folder");
+        task.run(&assets, &StopFlag::default(), &|_| ())
+    }
+
+    fn bits(values: &PostValues) -> Vec<u32> {
+        (0..values.len()).map(|index| values.value(index).to_bits()).collect()
+    }
+
+    #[test]
+    fn a_tried_analysis_has_the_bits_of_the_command() {
+        let walk = walk();
+        let of_command = open_scene_land(Path::new(SCENE), &[], &|_| ()).expect("sound");
+        let dataset = Dataset::from_scene("road", &of_command);
+        let from = "749000,4017500";
+        let tries: [(&str, &[(&str, &str)]); 5] = [
+            ("slope", &[]),
+            ("obstacles", &[("vehicle", "wheeled")]),
+            ("time", &[("from", from), ("extent", "748500,4017000,750500,4018500")]),
+            ("flow", &[]),
+            ("slope", &[("unit", "degrees"), ("extent", "16S GF 49000 17500; 16S GF 50000 18500")]),
+        ];
+        for (name, arguments) in tries {
+            let kind = sandtable_catalog::kind(name).expect("a kind");
+            let land = land_of(&of_command, kind.layers);
+            let wanted =
+                analyze(&dataset, land, (kind, &written(arguments)), &of_command.crs, &StopFlag::default())
+                    .expect(name);
+            let found = tried(&walk, name, arguments).expect(name);
+            let found = found.analysis();
+            assert_eq!(found.ground.map_extent(), wanted.ground.map_extent(), "{name}");
+            assert_eq!(found.outcome.figures, wanted.outcome.figures, "{name}");
+            let values = |outcome: &sandtable_analysis::outcome::Outcome| {
+                bits(&outcome.raster.as_ref().expect("a raster").values)
+            };
+            assert_eq!(values(&found.outcome), values(&wanted.outcome), "{name}");
+        }
+    }
+
+    #[test]
+    fn a_ground_that_the_scene_may_not_read_is_refused_by_its_key() {
+        let kind = sandtable_catalog::kinds()
+            .find_map(|kind| {
+                let of_ground = |known: &&sandtable_catalog::parameter::AnalysisParameter| {
+                    known.form == ParameterForm::Ground
+                };
+                Some((kind.name, kind.parameters.iter().find(of_ground)?.name))
+            })
+            .expect("a kind that compares grounds");
+        let refused = tried(&walk(), kind.0, &[(kind.1, "../../../etc/passwd")]).err().expect("refused");
+        assert!(refused.to_string().starts_with(&format!("`{}`: ", kind.1)), "{refused}");
+    }
+
+    #[test]
+    fn a_tried_analysis_is_drawn_with_a_list_of_its_materials_and_taken_away() {
+        let mut walk = walk();
+        let scene = Arc::clone(walk.scene());
+        let camera = picture::camera(&scene, &scene.cameras[0], (640, 400)).expect("sound");
+        let at = DVec2::new(749_000.0, 4_017_500.0);
+        let from = format!("{},{}", at.x, at.y);
+        let arguments = [("from", from.as_str())];
+        walk.lay_analysis(tried(&walk, "time", &arguments).expect("an outcome"));
+        let feature = tried_feature(&scene);
+        let drawn = |walk: &mut Walk| {
+            let mut colors = std::collections::BTreeSet::new();
+            for _ in 0..200 {
+                let frame = walk.update(&camera).expect("in memory");
+                let pieces = frame.changes.drapes.into_iter().flat_map(|patch| patch.pieces);
+                colors.extend(pieces.filter(|piece| piece.feature == feature).map(|piece| piece.material.0));
+                if frame.statistics.waiting_patches == 0 {
+                    break;
+                }
+            }
+            colors
+        };
+        assert!(drawn(&mut walk).is_empty(), "not before a list has its materials");
+        let task = walk.standing_task(walk.to_sun());
+        let list: DrawList = task.list(&camera, &|_| ());
+        walk.take_standing(&task, &list);
+        let materials = drawn(&mut walk);
+        assert!(materials.len() > 1, "a tint and lines: {materials:?}");
+        assert!(materials.iter().all(|&number| (number as usize) < list.materials.len()));
+        let is_tint = |&number: &u32| list.materials[number as usize].texture.is_some();
+        assert!(materials.iter().any(is_tint));
+        walk.check();
+        walk.clear_analysis();
+        walk.forget_handed();
+        assert!(drawn(&mut walk).is_empty(), "taken away");
+        walk.check();
+    }
+}
