@@ -260,7 +260,7 @@ pub fn feature_color(analysis: &SceneAnalysis, feature: &OutcomeFeature) -> Srgb
 }
 
 /// The name of what a feature's lines are.
-fn feature_noun(feature: &OutcomeFeature) -> &'static str {
+pub fn feature_noun(feature: &OutcomeFeature) -> &'static str {
     match feature.role {
         FeatureRole::Place => "place",
         FeatureRole::Post => "post",
