@@ -189,6 +189,35 @@ mod tests {
         assert!(at_border.expect("part").outcome.notes.is_empty());
     }
 
+    proptest::proptest! {
+        #[test]
+        fn no_text_breaks_an_extent(text in "[-0-9.,;e ]{0,40}|\\PC{0,30}") {
+            let ground = Lattice::from_raster(&rough()).expect("north up");
+            if let Ok(extent) = LandExtent::parse(&text, &Crs::local(), &Crs::local())
+                && let Ok(posts) = extent.posts(&ground)
+            {
+                assert!(posts.last.column < COLUMNS && posts.last.row < ROWS);
+                let land = Land::bare(Arc::new(ground), Crs::local());
+                let _ = land_part(&land, posts).map(|part| extent.masked(part));
+            }
+        }
+
+        #[test]
+        fn corners_of_any_size_give_posts_of_the_land_or_a_reason(
+            corners in proptest::array::uniform4(-1e3_f64..1e3), scale in -3_i32..300,
+        ) {
+            let ground = Lattice::from_raster(&rough()).expect("north up");
+            let of = |index: usize| ground.origin()[index % 2] + corners[index] * 10_f64.powi(scale);
+            let text = format!("{},{},{},{}", of(0), of(1), of(2), of(3));
+            if let Ok(extent) = LandExtent::parse(&text, &Crs::local(), &Crs::local()) {
+                match extent.posts(&ground) {
+                    Ok(posts) => assert!(posts.last.column < COLUMNS && posts.last.row < ROWS),
+                    Err(reason) => assert!(!reason.is_empty()),
+                }
+            }
+        }
+    }
+
     #[test]
     fn grid_references_and_degrees_state_an_extent_of_land_in_meters() {
         let zone = Crs::from_epsg(32616).expect("known");

@@ -48,6 +48,13 @@ def test_an_extent_has_the_bits_of_the_whole(dem):
     np.testing.assert_array_equal(same.to_numpy(), part.to_numpy())
 
 
+def test_the_accessor_analyzes_an_array(dem):
+    pytest.importorskip("sandtable.xarray")
+    array = rioxarray.open_rasterio(JACKSBORO).squeeze("band")
+    slope = array.sandtable.analyze("slope", extent=EXTENT, crs="EPSG:32616")
+    np.testing.assert_array_equal(slope, dem.analyze("slope", extent=EXTENT, crs="EPSG:32616"))
+
+
 def test_codes_are_bytes_and_figures_are_attributes(dem):
     overlay = dem.analyze("obstacles", extent=EXTENT, crs="EPSG:32616")
     assert overlay.dtype == np.uint8 and set(np.unique(overlay)) <= {0, 1, 2, 255}
@@ -96,6 +103,20 @@ def test_a_scene_knows_what_lies_on_its_ground(program):
     assert overlay.attrs["notes"] == said["notes"]
     bare = sandtable.Dem.open(ROAD).analyze("obstacles")
     assert len(bare.attrs["notes"][0]) > len("".join(overlay.attrs["notes"][:1]))
+
+
+def test_an_exaggerated_scene_is_analyzed_true_to_scale(program, tmp_path):
+    (tmp_path / JACKSBORO.name).write_bytes(JACKSBORO.read_bytes())
+    scenes = []
+    for times in (1, 3):
+        path = tmp_path / f"times{times}.toml"
+        path.write_text(f'[terrain]\ndem = "{JACKSBORO.name}"\nvertical_exaggeration = {times}\n')
+        scenes.append(sandtable.Scene.open(path))
+    np.testing.assert_array_equal(scenes[1].analyze("slope"), scenes[0].analyze("slope"))
+    said = json.loads(program("analyze", "obstacles", tmp_path / "times3.toml", "--json"))
+    for _ in range(2):
+        values = scenes[1].analyze("obstacles").attrs["figure_values"]
+        assert values == [figure["value"] for figure in said["figures"]]
 
 
 def test_what_is_wrong_is_named(dem):
