@@ -63,8 +63,10 @@ mod tests {
     use crate::analysis::{AnalyzeError, Analyzed, WrittenArgument, analyze, bare_land};
     use crate::dataset::Dataset;
     use crate::windowed_elevation::WindowedElevation;
+    use sandtable_analysis::extent::ground_part;
+    use sandtable_analysis::land::Land;
     use sandtable_raster::raster::{Raster, Samples, north_up_nodes};
-    use sandtable_terrain::lattice::Post;
+    use sandtable_terrain::lattice::{Lattice, Post};
     use sandtable_terrain::stop_flag::StopFlag;
     use std::sync::Arc;
 
@@ -193,12 +195,12 @@ mod tests {
         #[test]
         fn no_text_breaks_an_extent(text in "[-0-9.,;e ]{0,40}|\\PC{0,30}") {
             let ground = Lattice::from_raster(&rough()).expect("north up");
-            if let Ok(extent) = LandExtent::parse(&text, &Crs::local(), &Crs::local())
+            if let Ok(extent) = parse(&text, &Crs::local(), &Crs::local())
                 && let Ok(posts) = extent.posts(&ground)
             {
                 assert!(posts.last.column < COLUMNS && posts.last.row < ROWS);
-                let land = Land::bare(Arc::new(ground), Crs::local());
-                let _ = land_part(&land, posts).map(|part| extent.masked(part));
+                let part = ground_part(&Arc::new(ground), posts);
+                let _ = part.map(|part| extent.masked(Land::bare(part, Crs::local())));
             }
         }
 
@@ -209,7 +211,7 @@ mod tests {
             let ground = Lattice::from_raster(&rough()).expect("north up");
             let of = |index: usize| ground.origin()[index % 2] + corners[index] * 10_f64.powi(scale);
             let text = format!("{},{},{},{}", of(0), of(1), of(2), of(3));
-            if let Ok(extent) = LandExtent::parse(&text, &Crs::local(), &Crs::local()) {
+            if let Ok(extent) = parse(&text, &Crs::local(), &Crs::local()) {
                 match extent.posts(&ground) {
                     Ok(posts) => assert!(posts.last.column < COLUMNS && posts.last.row < ROWS),
                     Err(reason) => assert!(!reason.is_empty()),
