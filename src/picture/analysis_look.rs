@@ -112,7 +112,14 @@ pub fn legend_classes(analysis: &SceneAnalysis) -> Vec<ValueClass> {
             || hatched.is_some() && class.look.hatching != Hatching::None
     };
     let held = classes.iter().zip(is_held).filter(|(_, is_held)| *is_held).map(|(class, _)| class);
-    held.filter(is_shown).cloned().collect()
+    let mut listed: Vec<ValueClass> = Vec::new();
+    for class in held.filter(is_shown) {
+        // North is at both ends of aspects.
+        if !listed.iter().any(|other| other.label == class.label && other.look == class.look) {
+            listed.push(class.clone());
+        }
+    }
+    listed
 }
 
 /// What the lines of an analysis are, with their colors, as legends list them: marks of places tell what they are by their

@@ -98,13 +98,8 @@ fn analysis_entries(analysis: &SceneAnalysis, scene: &SceneModel) -> Vec<LegendE
     let mut entries = Vec::new();
     let shows = |of: &SceneAnalysis| of.hatched_raster().or(of.tinted_raster()).is_some();
     let is_alone = scene.analyses.iter().filter(|other| shows(other)).count() == 1;
-    for class in legend_classes(analysis) {
-        let entry = class_entry(&class, analysis, is_alone, scene.preset);
-        // North is on both ends of aspects.
-        if !entries.contains(&entry) {
-            entries.push(entry);
-        }
-    }
+    let classes = legend_classes(analysis);
+    entries.extend(classes.iter().map(|class| class_entry(class, analysis, is_alone, scene.preset)));
     let nouns = legend_lines(analysis);
     let is_one = nouns.len() == 1 && analysis.outcome.raster.is_none();
     let is_only = scene.analyses.len() == 1;

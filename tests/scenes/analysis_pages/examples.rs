@@ -276,9 +276,9 @@ pub const EXAMPLES: &[Example] = &[
     Example {
         kind: "drop-zones",
         land: ExampleLand::Caryville,
-        arguments: &[("jumpers", "12"), ("count", "3")],
+        arguments: &[("jumpers", "12"), ("heading", "90"), ("count", "2")],
         shows: MEADOWS,
-        caption: "Three zones for a pass of twelve jumpers, each along its best heading.",
+        caption: "Two zones for a pass of twelve jumpers, from west to east.",
     },
     Example {
         kind: "sites",
@@ -339,9 +339,9 @@ pub const EXAMPLES: &[Example] = &[
     Example {
         kind: "dam-break",
         land: ExampleLand::Elevation,
-        arguments: &[("dam", "16S GF 54000 18600; 16S GF 54000 19700"), ("level_m", "320"), ("way_km", "12")],
-        shows: [755_500.0, 4_018_600.0, 95_000.0],
-        caption: "A dam in a narrow part of the valley: the water that it holds, and the depths below it where it fails.",
+        arguments: &[("dam", "36.256N 84.273W; 36.272N 84.273W"), ("level_m", "500"), ("way_km", "8")],
+        shows: [743_400.0, 4_015_500.0, 55_000.0],
+        caption: "A dam in a mountain valley: the water that it holds in the east, and the depths below it where it fails.",
     },
     Example {
         kind: "cut-fill",

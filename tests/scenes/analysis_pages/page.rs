@@ -217,7 +217,7 @@ fn parameter_row(parameter: &AnalysisParameter) -> String {
 }
 
 fn values(form: ParameterForm) -> String {
-    let range = |least: f64, greatest: f64| format!("from {least} to {greatest}");
+    let range = |least: f64, greatest: f64| format!("from {} to {}", bound(least), bound(greatest));
     match form {
         ParameterForm::Number { least, greatest } => format!("number {}", range(least, greatest)),
         ParameterForm::Numbers { least, greatest } => format!("rising numbers {}", range(least, greatest)),
@@ -232,6 +232,11 @@ fn values(form: ParameterForm) -> String {
         ParameterForm::Vehicle => "[vehicle](movement.md#vehicles)".to_owned(),
         ParameterForm::Ground => "elevation file or `source`".to_owned(),
     }
+}
+
+/// A bound of a range, a large one by its power of ten.
+fn bound(number: f64) -> String {
+    if number.abs() >= 1e7 { format!("{number:e}") } else { number.to_string() }
 }
 
 /// What the example gave.
@@ -292,7 +297,11 @@ fn given_raster(raster: &OutcomeRaster) -> String {
             Hatching::Dots => "dotted",
             Hatching::Level => "level lines",
         };
-        let from = if class.from.is_finite() { class.from.to_string() } else { String::new() };
+        let from = match class.from {
+            from if !from.is_finite() => String::new(),
+            from if from > 0.0 && from < 1e-6 => "above 0".to_owned(),
+            from => from.to_string(),
+        };
         let _ = writeln!(text, "  | {from} | {} | {hatching} |", class.label);
     }
     text.push('\n');
