@@ -132,4 +132,22 @@ mod tests {
         by_task.check();
         assert!(by_task.ground_z(DVec2::splat(500.0)).is_some());
     }
+
+    #[test]
+    fn lines_of_graphics_and_analyses_lie_on_the_ground_of_a_task() {
+        let editor = open_to_view(Path::new(concat!(env!("SANDTABLE_ROOT"), "scenes/obstacles.toml")), &[])
+            .expect("readable");
+        let scene = Arc::new(editor.source().build(&|_| ()).expect("sound"));
+        let options = WalkOptions { renewal: ReachRenewal::ByTask, ..WalkOptions::default() };
+        let mut walk = Walk::new(Arc::clone(&scene), options);
+        let camera =
+            |height: u32| picture::camera(&scene, &scene.cameras[0], (height * 2, height)).expect("sound");
+        walk.update(&camera(300)).expect("in memory");
+        for height in [2400, 300] {
+            let task = walk.reach_task(&camera(height)).expect("of another size");
+            walk.take_reach(task.ground());
+            walk.update(&camera(height)).expect("in memory");
+            walk.check();
+        }
+    }
 }

@@ -105,7 +105,7 @@ def scripted(display, scene):
     )
     before = scene.read_text()
     command = [PROGRAM, "view", str(scene), "--script", str(script), "--json"]
-    done = subprocess.run(command, env=display.environment, capture_output=True, text=True, timeout=300)
+    done = subprocess.run(command, env=display.environment, capture_output=True, text=True, timeout=600)
     if done.returncode != 0:
         fail(f"the script ended with {done.returncode}: {done.stderr}")
     report = json.loads(done.stdout)
@@ -120,7 +120,7 @@ def scripted(display, scene):
         fail(f"the analyses were not made: {analyses}")
     command = [PROGRAM, "analyze", "obstacles", str(scene), "--vehicle", "wheeled", "--json"]
     printed = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
-    if [figure["value"] for figure in printed["figures"]] != list(analyses[0]["figures"].values()):
+    if {figure["name"]: figure["value"] for figure in printed["figures"]} != analyses[0]["figures"]:
         fail(f"the window has other figures than the command: {printed['figures']}, {analyses[0]['figures']}")
     if not by_command["pick"]["picked"]["place"]:
         fail(f"nothing was picked: {by_command['pick']}")

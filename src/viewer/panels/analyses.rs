@@ -136,7 +136,7 @@ fn listing_body(ui: &mut Ui, listing: &AnalysisListing, number: usize) {
 
 fn table_rows(ui: &mut Ui, table: &ListedTable, id: (usize, usize)) {
     ui.label(&table.title);
-    ScrollArea::both().id_salt(("scrolled", id)).max_height(TABLE_HEIGHT).show(ui, |ui| {
+    ScrollArea::both().id_salt(("scrolled", id)).max_height(TABLE_HEIGHT).min_scrolled_height(TABLE_HEIGHT).show(ui, |ui| {
         Grid::new(("table", id)).num_columns(table.columns.len()).striped(true).show(ui, |ui| {
             for heading in &table.columns {
                 ui.weak(heading);
