@@ -45,9 +45,9 @@ pub enum AnalyzeError {
     #[error("`{name}`: {problem}")]
     Argument { name: String, problem: String },
     #[error(transparent)]
-    Query(#[from] QueryError),
+    Query(Box<QueryError>),
     #[error(transparent)]
-    Ground(#[from] GroundError),
+    Ground(Box<GroundError>),
     /// The ground to compare with cannot be opened.
     #[error("`{name}`")]
     Other { name: String, source: Box<OpenError> },
@@ -59,6 +59,18 @@ pub enum AnalyzeError {
          `--extent` limits the land"
     )]
     Whole { kind: &'static str },
+}
+
+impl From<QueryError> for AnalyzeError {
+    fn from(error: QueryError) -> Self {
+        Self::Query(error.into())
+    }
+}
+
+impl From<GroundError> for AnalyzeError {
+    fn from(error: GroundError) -> Self {
+        Self::Ground(error.into())
+    }
 }
 
 impl AnalyzeError {

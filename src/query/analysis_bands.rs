@@ -77,7 +77,7 @@ pub fn analysis_bands<'a>(
     if is_part || !kind.layers.is_empty() || kind.yields != AnalysisYield::Raster {
         return Ok(None);
     }
-    let failed = |error| AnalyzeError::Query(dataset.without_ground(error));
+    let failed = |error| AnalyzeError::from(dataset.without_ground(error));
     let ground_crs = elevation.ground_crs().map_err(failed)?;
     let arguments = read(kind, written, crs, &ground_crs)?;
     let header = elevation.plan().map_err(failed)?.header();

@@ -97,7 +97,7 @@ fn an_analysis_lies_under_water_and_roads_and_over_what_covers_the_ground() {
                   [[road]]\nwidth = 30\npoints = [[5100, 8000], [6900, 8000]]\n";
     let scene = scene(&format!("{OBSTACLES}{tables}{PLAN}")).expect("a sound scene");
     let drawn = drawn(&scene);
-    let place = |of: &dyn Fn(&DrawItem) -> bool| drawn.drawn.list.items.iter().position(|item| of(item));
+    let place = |of: &dyn Fn(&DrawItem) -> bool| drawn.drawn.list.items.iter().position(of);
     let feature = scene.analyses[0].feature;
     let tint = place(&|item| item.feature == feature && item.layer == DepthLayer::Draped(0)).expect("a tint");
     let kind = |item: &DrawItem| item.feature.index().and_then(|index| scene.features.get(index));

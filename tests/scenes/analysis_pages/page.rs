@@ -102,7 +102,7 @@ fn vehicles() -> String {
         let vehicle = Vehicle::built_in(name).expect("it is built in");
         let slopes = [vehicle.slope_up_percent, vehicle.slope_down_percent, vehicle.slope_across_percent];
         let slopes = slopes.map(|[free, greatest]| format!("{free}, {greatest}")).join(" | ");
-        let roads = vehicle.road_speed_kmh.map(|speed| short(speed)).join(", ");
+        let roads = vehicle.road_speed_kmh.map(short).join(", ");
         let Vehicle { ford_m, gap_m, step_m, width_m, stem_m, .. } = vehicle;
         let _ = writeln!(
             text,
