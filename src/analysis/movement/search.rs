@@ -114,8 +114,8 @@ impl TravelFront<'_, '_> {
             }
             let to = from.wrapping_add_signed(step.offset);
             let before_s = self.time_s(to);
-            // No step is better than none at all.
-            if before_s <= time_s {
+            // No step is quicker than its least time.
+            if before_s <= time_s + step.least_s {
                 continue;
             }
             let arrival_s = time_s + ground.seconds(from, column, row, step);

@@ -77,6 +77,8 @@ pub(super) struct TravelStep {
     /// The two posts that it passes between or beside; unused for the four straight ones.
     flanks: [isize; 2],
     pub length_m: f32,
+    /// The least seconds that it takes anywhere on the ground.
+    pub least_s: f32,
 }
 
 impl<'a> TravelGround<'a> {
@@ -111,6 +113,8 @@ impl<'a> TravelGround<'a> {
         let (least_pace, greatest_pace) =
             (finite().fold(f32::INFINITY, f32::min), finite().fold(0.0, f32::max));
         let grades = GradeTable::new(vehicle, is_langmuir);
+        // A ten-thousandth less, for rounding.
+        let least_s_per_m = least_pace * grades.least() * 0.9999;
         let columns = ground.columns() as isize;
         let steps = NEIGHBORS.map(|[east, north]| {
             let offset = |east: i32, north: i32| north as isize * columns + east as isize;
@@ -120,7 +124,14 @@ impl<'a> TravelGround<'a> {
                 _ => [offset(east, 0), offset(0, north)],
             };
             let length_m = (ground.cell() * DVec2::new(f64::from(east), f64::from(north))).length() as f32;
-            TravelStep { columns: east, rows: north, offset: offset(east, north), flanks, length_m }
+            TravelStep {
+                columns: east,
+                rows: north,
+                offset: offset(east, north),
+                flanks,
+                length_m,
+                least_s: length_m * least_s_per_m,
+            }
         });
         Ok(Self { ground, posts, grades, steps: steps.into(), least_pace, greatest_pace, slowed: Vec::new() })
     }
