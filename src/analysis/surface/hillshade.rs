@@ -28,13 +28,13 @@ pub(crate) fn hillshade(
     let altitude = arguments.number("altitude").to_radians();
     let stretch = arguments.number("exaggeration") as f32;
     let values = if arguments.word("light") == "multidirectional" {
-        let suns = AZIMUTHS_DEG.map(|azimuth| Sun::new(azimuth.to_radians(), altitude));
+        let suns = AZIMUTHS_DEG.map(|azimuth| ShadingSun::new(azimuth.to_radians(), altitude));
         by_window(&land.ground, stop, |window| {
             let slopes = gradient.of(window).map(|slope| slope * stretch);
             from_four(&suns, slopes)
         })?
     } else {
-        let sun = Sun::new(arguments.number("azimuth").to_radians(), altitude);
+        let sun = ShadingSun::new(arguments.number("azimuth").to_radians(), altitude);
         by_window(&land.ground, stop, |window| {
             let slopes = gradient.of(window).map(|slope| slope * stretch);
             1.0 + 254.0 * (sun.facing(slopes) / stretched(slopes))
@@ -63,7 +63,7 @@ fn classes() -> Vec<ValueClass> {
 
 /// A direction from which light comes.
 #[derive(Clone, Copy)]
-struct Sun {
+struct ShadingSun {
     /// The direction to it.
     east: f32,
     north: f32,
@@ -72,7 +72,7 @@ struct Sun {
     azimuth: [f32; 2],
 }
 
-impl Sun {
+impl ShadingSun {
     fn new(azimuth: f64, altitude: f64) -> Self {
         let (level, plan) = (libm::cos(altitude), [libm::sin(azimuth), libm::cos(azimuth)]);
         Self {
@@ -98,14 +98,14 @@ fn stretched([east, north]: [f32; 2]) -> f32 {
 
 /// The light of four suns.
 #[inline(always)]
-fn from_four(suns: &[Sun; 4], slopes: [f32; 2]) -> f32 {
+fn from_four(suns: &[ShadingSun; 4], slopes: [f32; 2]) -> f32 {
     let [east, north] = slopes;
     let steepness = east * east + north * north;
     if steepness == 0.0 {
         return 1.0 + 254.0 * suns[0].up;
     }
     // The cosine of the angle between the fall line and an azimuth, times the slope.
-    let along = |sun: &Sun| east * sun.azimuth[0] + north * sun.azimuth[1];
+    let along = |sun: &ShadingSun| east * sun.azimuth[0] + north * sun.azimuth[1];
     let weighted = suns.iter().map(|sun| along(sun) * along(sun) * sun.facing(slopes)).sum::<f32>();
     1.0 + 127.0 * weighted / (steepness * stretched(slopes))
 }
