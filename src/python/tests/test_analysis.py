@@ -36,7 +36,8 @@ def test_a_raster_has_the_values_and_the_place_of_the_programs(program, dem, tmp
     np.testing.assert_allclose(slope.x, written.x, rtol=0, atol=1e-6)
     np.testing.assert_allclose(slope.y, written.y, rtol=0, atol=1e-6)
     assert slope.dims == ("y", "x") and slope.name == "slope" and slope.rio.crs.to_epsg() == 32616
-    assert slope.attrs["units"] == "°" and len(slope.attrs["classes"]) == len(slope.attrs["class_from"])
+    assert slope.attrs["crs"] == "EPSG:32616" and slope.attrs["units"] == "°"
+    assert len(slope.attrs["classes"]) == len(slope.attrs["class_from"])
     assert "Horn" in slope.attrs["source"] and slope.attrs["limits"]
 
 
