@@ -13,6 +13,10 @@ For each elevation file, a line with sizes, counts and CRCs of results; no eleva
   steepest, pysheds has it too (checked here). In flats, the lowest of the mask of ResolveFlats of RichDEM (Barnes et al.
   2014b), sides before diagonals. Codes 1 to 8, 0 off the land, 255 without data.
 * `cells`: FlowAccumulation of RichDEM along these directions, and the same of pyflwdir (checked here), as u32.
+* `orders`: how many cells of streams of 200 cells and more have Strahler's order 1, 2 and so on, by pyflwdir.
+* `hand`: their height above nearest drainage by pyflwdir as f32, NaN where a cell drains to no stream.
+* `east`, `north`: the sums of the cosines and sines of D-infinity (Tarboton 1997) over the inner cells with lower ground
+  beside them and no hole; where one fall is the steepest, pysheds has the same angles (checked here).
 """
 
 import sys
@@ -139,6 +143,7 @@ def check_with_pysheds(filled, cell, codes, single):
     view = ViewFinder(affine=affine, shape=heights.shape, nodata=np.float64(-9999.0), crs=Proj("epsg:32633"))
     raster = Raster(heights, viewfinder=view)
     grid = Grid.from_raster(raster)
+    angles = np.array(grid.flowdir(raster, routing="dinf", flats=-1, pits=-2, nodata_out=np.float64(np.nan)))[::-1]
     found = np.array(grid.flowdir(raster, flats=-1, pits=-2, nodata_out=np.int64(0)))[::-1]
     inner = single.copy()
     inner[[0, -1]] = False
@@ -149,7 +154,61 @@ def check_with_pysheds(filled, cell, codes, single):
     wanted = np.zeros(codes.shape, dtype="i8")
     for number, step in enumerate(STEPS):
         wanted[codes == number + 1] = ESRI[step]
-    return int((found != wanted)[inner].sum()), int(inner.sum())
+    off = np.abs((angles - tarboton(filled, cell) + np.pi) % (2 * np.pi) - np.pi)
+    return int((found != wanted)[inner].sum()), int((off > 1e-9)[inner].sum()), int(inner.sum())
+
+
+def tarboton(filled, cell):
+    """The angle of the steepest of eight triangles, from the east counter-clockwise; NaN where none falls."""
+    steepest = np.zeros(filled.shape)
+    angles = np.full(filled.shape, np.nan)
+    for number in range(8):
+        following = (number + 1) % 8
+        side, diagonal = (number, following) if number % 2 == 0 else (following, number)
+        beside, corner = (shifted(filled, STEPS[step], np.nan) for step in (side, diagonal))
+        along, across = (filled - beside) / cell[0], (beside - corner) / cell[1]
+        angle = np.arctan2(across, along)
+        fall = np.hypot(along, across)
+        fall = np.where(angle < 0, along, fall)
+        fall = np.where(angle > np.pi / 4, (filled - corner) / np.hypot(*cell), fall)
+        angle = np.clip(angle, 0, np.pi / 4)
+        from_east = side * np.pi / 4 + (angle if number % 2 == 0 else -angle)
+        better = fall > steepest
+        steepest[better] = fall[better]
+        angles[better] = from_east[better]
+    return angles
+
+
+def sums_of_angles(filled, cell, falling):
+    inner = falling.copy()
+    inner[[0, -1]] = False
+    inner[:, [0, -1]] = False
+    for step in STEPS:
+        inner &= ~np.isnan(shifted(filled, step, np.nan))
+    angles = tarboton(filled, cell)[inner]
+    return np.cos(angles).sum(), np.sin(angles).sum()
+
+
+def streams(filled, codes):
+    """The numbers of stream cells by order, and heights above them."""
+    import pyflwdir
+
+    esri = np.full(codes.shape, 247, dtype="u1")
+    esri[codes[::-1] == 0] = 0
+    for number, step in enumerate(STEPS):
+        esri[codes[::-1] == number + 1] = ESRI[step]
+    directions = pyflwdir.from_array(esri, ftype="d8", check_ftype=False)
+    is_stream = directions.upstream_area(unit="cell") >= 200
+    orders = directions.stream_order(type="strahler", mask=is_stream)[is_stream]
+    heights = np.where(np.isnan(filled), -9999.0, filled)[::-1]
+    above = directions.hand(drain=is_stream, elevtn=heights).astype("f4")
+    reaches, to = is_stream.ravel().copy(), directions.idxs_ds.copy()
+    to = np.where(to < 0, np.arange(to.size), to)
+    for _ in range(32):
+        reaches |= reaches[to]
+        to = to[to]
+    above = np.where(reaches.reshape(codes.shape), above, np.float32(np.nan))[::-1]
+    return ",".join(map(str, np.bincount(orders)[1:])), above
 
 
 def accumulate(codes):
@@ -186,15 +245,17 @@ def crc(grid, kind):
 
 
 def main(folder):
-    print("file\tcolumns\trows\tcell\theights\traised\tfilled\tone\tseveral\tflat\tdirections\tmost\tcells")
+    print("file\tcolumns\trows\tcell\theights\traised\tfilled\tone\tseveral\tflat\tdirections\tmost\tcells\torders\thand\teast\tnorth")
     for name in FILES:
         heights, cell = read(os.path.join(folder, name))
         assert f"{cell[0]:g}" == f"{cell[1]:g}", "the test takes square cells"
         filled = fill(heights)
         codes, single, several, flat = directions(filled, cell)
-        unequal, compared = check_with_pysheds(filled, cell, codes, single)
+        unequal, angles, compared = check_with_pysheds(filled, cell, codes, single)
+        orders, above = streams(filled, codes)
+        east, north = sums_of_angles(filled, cell, single | several)
         cells, off = accumulate(codes)
-        print(f"{name}: pysheds differs at {unequal} of {compared} cells, pyflwdir at {off}", file=sys.stderr)
+        print(f"{name}: pysheds differs at {unequal} of {compared} cells, its angles at {angles}, pyflwdir at {off}", file=sys.stderr)
         row = [
             name,
             heights.shape[1],
@@ -209,6 +270,10 @@ def main(folder):
             crc(codes, "u1"),
             int(cells.max()),
             crc(cells, "u4"),
+            orders,
+            crc(above, "f4"),
+            f"{east:.4f}",
+            f"{north:.4f}",
         ]
         print("\t".join(map(str, row)))
 

@@ -64,9 +64,9 @@ impl<'a> InfiniteFlow<'a> {
             let (fall, slant) = match () {
                 _ if beside <= 0.0 || beside.is_nan() => (along, (1.0, 0.0)),
                 _ if along <= 0.0 || beside * run >= along * across => {
-                    ((own - around[diagonal]) / run.hypot(across), (run, across))
+                    ((own - around[diagonal]) / libm::hypot(run, across), (run, across))
                 }
-                _ => ((along * along + beside * beside).sqrt(), (along, beside)),
+                _ => (libm::hypot(along, beside), (along, beside)),
             };
             if fall > steepest.0 {
                 steepest = (fall, step, slant);

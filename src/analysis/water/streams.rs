@@ -30,6 +30,18 @@ impl StreamNet {
         }
         Self { order, entering }
     }
+
+    /// The orders at the posts of streams.
+    pub fn orders(&self, drainage: &Drainage) -> Vec<StreamOrder> {
+        let mut orders = vec![StreamOrder::default(); self.entering.len()];
+        for &index in &self.order {
+            let own = orders[index as usize];
+            if let Some(to) = drainage.to(index as usize) {
+                orders[to].join(own);
+            }
+        }
+        orders
+    }
 }
 
 /// The number of posts that make up an area in m², at least 1.
@@ -39,7 +51,7 @@ pub(crate) fn least_posts(ground: &Lattice, area_m2: f64) -> f64 {
 
 /// The orders of a stream at a post.
 #[derive(Clone, Copy, Default)]
-struct StreamOrder {
+pub(crate) struct StreamOrder {
     /// The highest of Strahler's orders (1957) of the streams that enter, and how many have it.
     highest: u8,
     times: u8,
@@ -49,7 +61,7 @@ struct StreamOrder {
 
 impl StreamOrder {
     /// Strahler's: 1 at a source; one more than the highest that enter where two have it.
-    fn strahler(self) -> u8 {
+    pub fn strahler(self) -> u8 {
         match (self.highest, self.times) {
             (0, _) => 1,
             (highest, 1) => highest,
@@ -58,7 +70,7 @@ impl StreamOrder {
     }
 
     /// Shreve's: the number of sources above.
-    fn shreve(self) -> u32 {
+    pub fn shreve(self) -> u32 {
         self.magnitude.max(1)
     }
 
@@ -87,13 +99,7 @@ pub(crate) fn streams(
     let drainage = water.drained(stop)?;
     let net = StreamNet::new(&drainage, &land.ground, arguments.number("area_m2"));
     let is_shreve = arguments.word("order") == "shreve";
-    let mut orders = vec![StreamOrder::default(); net.entering.len()];
-    for &index in &net.order {
-        let own = orders[index as usize];
-        if let Some(to) = drainage.to(index as usize) {
-            orders[to].join(own);
-        }
-    }
+    let orders = net.orders(&drainage);
     let mut features = Vec::new();
     let (mut total_km, mut highest, mut sources) = (0.0, 0, 0_u32);
     for &start in &net.order {
