@@ -72,7 +72,9 @@ impl Blend {
             if seen != 0 {
                 let nearness = face.nearness(frame.pattern.centroid_in(x, y, seen));
                 let index = self.index(x, y);
-                insert(&mut self.pixels[index], Fragment { face: piece.face, nearness, mask: seen }, face);
+                let fragment = Fragment { face: piece.face, nearness, mask: seen };
+                let reach_beside = |other: FaceId| face.reach.max(frame.geometry.face(other).reach);
+                insert(&mut self.pixels[index], fragment, reach_beside);
             }
         });
     }
@@ -102,9 +104,10 @@ impl Blend {
     }
 }
 
-/// Inserts a fragment of `face` before the first of a pixel's fragments that does not lie in front of it.
-fn insert(pixel: &mut Vec<Fragment>, fragment: Fragment, face: &ScreenFace) {
-    let in_front = |other: &Fragment| other.nearness > fragment.nearness * face.reach;
+/// Inserts a fragment before the first of a pixel's fragments that does not lie in front of it, farther than the reach of
+/// either: of two drapes in one plane the later lies over the earlier, also where one of them is a sliver.
+fn insert(pixel: &mut Vec<Fragment>, fragment: Fragment, reach_beside: impl Fn(FaceId) -> f32) {
+    let in_front = |other: &Fragment| other.nearness > fragment.nearness * reach_beside(other.face);
     let place = pixel.iter().position(|other| !in_front(other)).unwrap_or(pixel.len());
     if place < MOST_LAYERS {
         pixel.insert(place, fragment);
