@@ -1,12 +1,9 @@
 //! The time that a vehicle takes from places to every post, or to a goal: shortest ways over the steps of the ground.
 //!
 //! Times are sums of f32. Such a sum never falls as a summand rises, so the least time of each post is one number, whatever
-//! the order in which posts are reached: threads share the posts of a bucket. The way back is found from the times alone,
-//! ties by the order of neighbors.
-
-use std::sync::atomic::{AtomicU32, Ordering};
-
-use rayon::prelude::*;
+//! the order in which posts are reached. The way back is found from the times alone, ties by the order of neighbors.
+//!
+//! One thread does it: sharing the posts of a bucket between two gained nothing when it was measured.
 
 use crate::movement::queue::{BucketQueue, QueuedPost};
 use crate::movement::travel::{TravelGround, is_on};
@@ -14,9 +11,6 @@ use sandtable_terrain::stop_flag::StopFlag;
 
 /// The posts taken from the queue between two looks at the stop flag.
 const POSTS_PER_LOOK: usize = 1 << 16;
-
-/// The fewest posts of a bucket that threads share: fewer take no longer than the sharing.
-const LEAST_SHARED_POSTS: usize = 1024;
 
 /// What a journey ends at.
 #[derive(Clone, Copy)]
@@ -66,10 +60,10 @@ impl OnwardTime {
 /// A post that was reached, with when it is expected at the goal.
 type ReachedPost = (QueuedPost, f32);
 
-/// A search over the ground. Times are the bits of f32, which rise with the times.
+/// A search over the ground.
 struct TravelFront<'a, 'b> {
     ground: &'a TravelGround<'b>,
-    times: &'a [AtomicU32],
+    times: Vec<f32>,
     onward: Option<OnwardTime>,
     goal: TravelGoal<'a>,
     ends_s: f32,
@@ -79,17 +73,12 @@ impl TravelFront<'_, '_> {
     /// Whether the search ends at this post: it then goes no further than posts that are as near.
     fn ends_at(&mut self, post: QueuedPost) -> bool {
         let Some(goals) = self.goal.any_of else { return false };
-        let is_end = self.time_s(post.index as usize) == post.time_s
+        let is_end = self.times[post.index as usize] == post.time_s
             && goals.binary_search(&(post.index as usize)).is_ok();
         if is_end {
             self.ends_s = self.ends_s.min(post.time_s);
         }
         is_end
-    }
-
-    #[inline]
-    fn time_s(&self, index: usize) -> f32 {
-        f32::from_bits(self.times[index].load(Ordering::Relaxed))
     }
 
     #[inline]
@@ -99,12 +88,12 @@ impl TravelFront<'_, '_> {
 
     /// Goes on from a post to its neighbors; what is reached sooner than before is added to `reached`.
     #[inline]
-    fn go_on(&self, post: QueuedPost, reached: &mut Vec<ReachedPost>) {
+    fn go_on(&mut self, post: QueuedPost, reached: &mut Vec<ReachedPost>) {
         let ground = self.ground;
         let (columns, rows) = (ground.ground.columns(), ground.ground.rows());
         let (from, time_s) = (post.index as usize, post.time_s);
         let (column, row) = ((post.index % columns) as i32, (post.index / columns) as i32);
-        if self.time_s(from) != time_s || time_s + self.onward_s(column, row) > self.ends_s {
+        if self.times[from] != time_s || time_s + self.onward_s(column, row) > self.ends_s {
             return;
         }
         let is_inner = column >= 2 && row >= 2 && column + 2 < columns as i32 && row + 2 < rows as i32;
@@ -113,7 +102,7 @@ impl TravelFront<'_, '_> {
                 continue;
             }
             let to = from.wrapping_add_signed(step.offset);
-            let before_s = self.time_s(to);
+            let before_s = self.times[to];
             // No step is quicker than its least time.
             if before_s <= time_s + step.least_s {
                 continue;
@@ -124,10 +113,8 @@ impl TravelFront<'_, '_> {
             }
             let expected_s = arrival_s + self.onward_s(column + step.columns, row + step.rows);
             if expected_s <= self.ends_s {
-                let bits = arrival_s.to_bits();
-                if self.times[to].fetch_min(bits, Ordering::Relaxed) > bits {
-                    reached.push((QueuedPost { index: to as u32, time_s: arrival_s }, expected_s));
-                }
+                self.times[to] = arrival_s;
+                reached.push((QueuedPost { index: to as u32, time_s: arrival_s }, expected_s));
             }
         }
     }
@@ -138,24 +125,19 @@ impl TravelGround<'_> {
     /// the quickest way to the nearest of its posts have their times, and others may have later ones: the search looks first
     /// where the least time on to the goal is the least (Hart, Nilsson and Raphael 1968).
     pub fn times(&self, starts: &[usize], goal: TravelGoal<'_>, stop: &StopFlag) -> Vec<f32> {
-        // On a thread of the pool, which shares a bucket without waking up for each.
-        rayon::scope(|_| self.search(starts, goal, stop))
-    }
-
-    fn search(&self, starts: &[usize], goal: TravelGoal<'_>, stop: &StopFlag) -> Vec<f32> {
         if !self.least_pace.is_finite() {
             return vec![f32::INFINITY; self.posts.len()];
         }
         let onward = goal.any_of.and_then(|posts| OnwardTime::new(self, posts));
         let mut queue = self.queue(onward.is_some());
-        let infinity = f32::INFINITY.to_bits();
-        let times: Vec<AtomicU32> = (0..self.posts.len()).map(|_| AtomicU32::new(infinity)).collect();
+        let times = vec![f32::INFINITY; self.posts.len()];
+        let mut front = TravelFront { ground: self, times, onward, goal, ends_s: goal.most_s };
         for &start in starts.iter().filter(|&&start| self.is_open(start)) {
-            if times[start].swap(0, Ordering::Relaxed) != 0 {
+            if front.times[start] > 0.0 {
+                front.times[start] = 0.0;
                 queue.push(QueuedPost { index: start as u32, time_s: 0.0 }, 0.0);
             }
         }
-        let mut front = TravelFront { ground: self, times: &times, onward, goal, ends_s: goal.most_s };
         let mut reached = Vec::new();
         let mut looks = 0usize;
         while let Some(bucket) = queue.take_bucket() {
@@ -166,28 +148,15 @@ impl TravelGround<'_> {
                     break;
                 }
             }
-            if goal.any_of.is_none() && bucket.len() >= LEAST_SHARED_POSTS {
-                // Posts of a bucket do not better each other, and least times are the same in any order.
-                let share = (bucket.len() / (2 * rayon::current_num_threads())).max(LEAST_SHARED_POSTS / 4);
-                let parts = bucket.par_chunks(share).map(|posts| {
-                    let mut reached = Vec::with_capacity(posts.len() * 2);
-                    posts.iter().for_each(|&post| front.go_on(post, &mut reached));
-                    reached
-                });
-                let parts: Vec<Vec<ReachedPost>> = parts.collect();
-                parts.into_iter().flatten().for_each(|(post, expected_s)| queue.push(post, expected_s));
-            } else {
-                for &post in &bucket {
-                    if front.ends_at(post) {
-                        continue;
-                    }
+            for &post in &bucket {
+                if !front.ends_at(post) {
                     front.go_on(post, &mut reached);
                 }
-                reached.drain(..).for_each(|(post, expected_s)| queue.push(post, expected_s));
             }
+            reached.drain(..).for_each(|(post, expected_s)| queue.push(post, expected_s));
             queue.give_back(bucket);
         }
-        times.into_iter().map(|time| f32::from_bits(time.into_inner())).collect()
+        front.times
     }
 
     /// A queue for the steps on this ground.
