@@ -106,8 +106,9 @@ fn an_analysis_is_kept_with_the_same_bits_undone_and_made_again() {
     assert_eq!(opened.analyses[0].figures, tried.figures);
     let wanted = of_kind(&opened.scene, "time");
     let found = kept.outcome.raster.as_ref().expect("a raster");
-    for index in 0..found.values.len() {
-        assert_eq!(found.values.value(index).to_bits(), wanted[index], "post {index}");
+    assert_eq!(found.values.len(), wanted.len());
+    for (index, wanted) in wanted.iter().enumerate() {
+        assert_eq!(found.values.value(index).to_bits(), *wanted, "post {index}");
     }
     harness.get_by_label("Analyses").click();
     harness.run_steps(3);

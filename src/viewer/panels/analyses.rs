@@ -136,20 +136,24 @@ fn listing_body(ui: &mut Ui, listing: &AnalysisListing, number: usize) {
 
 fn table_rows(ui: &mut Ui, table: &ListedTable, id: (usize, usize)) {
     ui.label(&table.title);
-    ScrollArea::both().id_salt(("scrolled", id)).max_height(TABLE_HEIGHT).min_scrolled_height(TABLE_HEIGHT).show(ui, |ui| {
-        Grid::new(("table", id)).num_columns(table.columns.len()).striped(true).show(ui, |ui| {
-            for heading in &table.columns {
-                ui.weak(heading);
-            }
-            ui.end_row();
-            for row in table.rows.iter().take(MOST_ROWS) {
-                for cell in row {
-                    ui.label(cell);
+    ScrollArea::both()
+        .id_salt(("scrolled", id))
+        .max_height(TABLE_HEIGHT)
+        .min_scrolled_height(TABLE_HEIGHT)
+        .show(ui, |ui| {
+            Grid::new(("table", id)).num_columns(table.columns.len()).striped(true).show(ui, |ui| {
+                for heading in &table.columns {
+                    ui.weak(heading);
                 }
                 ui.end_row();
-            }
+                for row in table.rows.iter().take(MOST_ROWS) {
+                    for cell in row {
+                        ui.label(cell);
+                    }
+                    ui.end_row();
+                }
+            });
         });
-    });
     if table.rows.len() > MOST_ROWS {
         ui.weak(format!("and {} more: sandtable analyze prints all", table.rows.len() - MOST_ROWS));
     }
