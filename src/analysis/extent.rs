@@ -44,50 +44,83 @@ pub struct PlacedOutcome {
     pub outcome: Outcome,
 }
 
-/// Runs an analysis on an extent of the land; on all of it without one. `compared` gives the ground to compare with on the posts of
-/// a part of the land.
+/// Runs an analysis on an extent of the land; on all of it without one. `compared` gives the ground to compare with on the
+/// posts of a part of the land.
 ///
 /// # Errors
 /// As [`run`]; those of `compared`; [`AnalysisError::Argument`] of an extent off the land.
 pub fn run_within<E: From<AnalysisError>>(
-    land: Land,
+    land: &Land,
     arguments: &AnalysisArguments,
     extent: Option<&LandExtent>,
-    compared: impl FnOnce(&Land) -> Result<Option<Arc<Lattice>>, E>,
+    compared: impl Fn(&Land) -> Result<Option<Arc<Lattice>>, E>,
     stop: &StopFlag,
 ) -> Result<PlacedOutcome, E> {
-    let wrong = |problem: String| AnalysisError::argument(EXTENT.name, problem);
-    let Some(extent) = extent else {
-        let land = Land { other_ground: compared(&land)?, ..land };
-        let outcome = run(&land, arguments, stop)?;
-        return Ok(PlacedOutcome { ground: land.ground, outcome });
+    let Some(extent) = extent else { return run_all(land, arguments, compared, stop) };
+    let posts = extent.posts(&land.ground).map_err(wrong)?;
+    let mut placed = if arguments.reach_posts(land.ground.cell()).is_some() {
+        run_part(land, arguments, (posts, Some(extent)), compared, stop)?
+    } else {
+        let land = land_part(land, posts).map_err(no_lattice)?;
+        run_all(&extent.masked(land).map_err(wrong)?, arguments, compared, stop)?
     };
-    let lattice = |error: LatticeError| wrong(error.to_string());
-    let is_beyond = extent.is_beyond(&land.ground);
-    let needed = extent.needed_posts(arguments, &land.ground).map_err(wrong)?;
-    let mut land = land_part(land, needed).map_err(lattice)?;
-    let is_cut = arguments.reach_posts(land.ground.cell()).is_none();
-    if is_cut {
-        land = extent.masked(land).map_err(wrong)?;
+    if extent.is_beyond(&land.ground) {
+        placed.outcome.notes.push("`extent` reaches beyond the land; nothing is known there".into());
     }
-    land.other_ground = compared(&land)?;
-    let mut outcome = run(&land, arguments, stop)?;
-    let mut ground = land.ground;
-    if !is_cut {
-        let posts = extent.posts(&ground).map_err(wrong)?;
-        let part = ground_part(&ground, posts).map_err(lattice)?;
-        outcome.raster = outcome.raster.take().map(|raster| {
-            let mut raster = raster_part(raster, &ground, posts);
-            extent.mask(&mut raster, &part);
-            outcome.figures = raster_figures(arguments.kind(), &raster, &part);
-            raster
-        });
-        ground = part;
-    }
-    if is_beyond {
-        outcome.notes.push("`extent` reaches beyond the land; nothing is known there".into());
+    Ok(placed)
+}
+
+/// Runs an analysis of a kind that can be parted on posts of the land with as much around them as their values need, and keeps
+/// theirs, those in the extent.
+///
+/// # Errors
+/// As [`run`], and those of `compared`.
+pub fn run_part<E: From<AnalysisError>>(
+    land: &Land,
+    arguments: &AnalysisArguments,
+    (posts, extent): (PostRect, Option<&LandExtent>),
+    compared: impl Fn(&Land) -> Result<Option<Arc<Lattice>>, E>,
+    stop: &StopFlag,
+) -> Result<PlacedOutcome, E> {
+    let reach = arguments.reach_posts(land.ground.cell()).unwrap_or(0);
+    let needed = posts.grown((reach, reach), &land.ground);
+    let placed = match needed == PostRect::all(&land.ground) {
+        true => run_all(land, arguments, compared, stop)?,
+        false => run_all(&land_part(land, needed).map_err(no_lattice)?, arguments, compared, stop)?,
+    };
+    let from =
+        |post: Post| Post { column: post.column - needed.first.column, row: post.row - needed.first.row };
+    let posts = PostRect { first: from(posts.first), last: from(posts.last) };
+    let ground = ground_part(&placed.ground, posts).map_err(no_lattice)?;
+    let PlacedOutcome { ground: around, mut outcome } = placed;
+    if let Some(raster) = outcome.raster.take() {
+        let mut raster = raster_part(raster, &around, posts);
+        extent.into_iter().for_each(|extent| extent.mask(&mut raster, &ground));
+        outcome.figures = raster_figures(arguments.kind(), &raster, &ground);
+        outcome.raster = Some(raster);
     }
     Ok(PlacedOutcome { ground, outcome })
+}
+
+/// Runs an analysis on all of the land.
+fn run_all<E: From<AnalysisError>>(
+    land: &Land,
+    arguments: &AnalysisArguments,
+    compared: impl Fn(&Land) -> Result<Option<Arc<Lattice>>, E>,
+    stop: &StopFlag,
+) -> Result<PlacedOutcome, E> {
+    let other = compared(land)?;
+    let compared = other.map(|other| Land { other_ground: Some(other), ..land.clone() });
+    let outcome = run(compared.as_ref().unwrap_or(land), arguments, stop)?;
+    Ok(PlacedOutcome { ground: Arc::clone(&land.ground), outcome })
+}
+
+fn wrong(problem: String) -> AnalysisError {
+    AnalysisError::argument(EXTENT.name, problem)
+}
+
+fn no_lattice(error: LatticeError) -> AnalysisError {
+    wrong(error.to_string())
 }
 
 impl LandExtent {
@@ -202,23 +235,26 @@ pub fn ground_part(ground: &Arc<Lattice>, posts: PostRect) -> Result<Arc<Lattice
     }
 }
 
-/// The land of these posts; lines that leave it stay whole.
+/// The land of these posts; lines that leave it stay whole, and there is no other ground.
 ///
 /// # Errors
 /// As [`Lattice::cut_to_held`].
-fn land_part(land: Land, posts: PostRect) -> Result<Land, LatticeError> {
-    if posts == PostRect::all(&land.ground) {
-        return Ok(land);
-    }
-    let ground = ground_part(&land.ground, posts)?;
+fn land_part(land: &Land, posts: PostRect) -> Result<Land, LatticeError> {
     let columns = land.ground.columns() as usize;
     Ok(Land {
-        ground,
-        cover: land.cover.map(|values| values_part(&values, columns, posts)),
-        water: land.water.map(|values| values_part(&values, columns, posts)),
-        woods: land.woods.map(|values| values_part(&values, columns, posts)),
-        obstacles_m: land.obstacles_m.map(|values| values_part(&values, columns, posts)),
-        ..land
+        ground: ground_part(&land.ground, posts)?,
+        crs: land.crs.clone(),
+        cover: land.cover.as_ref().map(|values| values_part(values, columns, posts)),
+        roads: land.roads.clone(),
+        water: land.water.as_ref().map(|values| values_part(values, columns, posts)),
+        woods: land.woods.as_ref().map(|values| values_part(values, columns, posts)),
+        obstacles_m: land.obstacles_m.as_ref().map(|values| values_part(values, columns, posts)),
+        crossings: land.crossings.clone(),
+        knows_crossings: land.knows_crossings,
+        gaps: land.gaps.clone(),
+        steps: land.steps.clone(),
+        vehicles: land.vehicles.clone(),
+        other_ground: None,
     })
 }
 

@@ -24,4 +24,6 @@ pub mod run;
 pub mod surface;
 #[cfg(test)]
 mod test_land;
+#[cfg(test)]
+mod test_places;
 pub mod water;

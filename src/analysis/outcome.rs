@@ -150,6 +150,8 @@ pub enum FeatureRole {
     Route,
     /// A corridor or an avenue: an arrow as wide as the ground.
     Corridor,
+    /// What is carried from one place to another: a thin arrow.
+    Haul,
     /// A line of equal value.
     Isoline,
     /// A stream; its property `order` gives its width.

@@ -22,7 +22,7 @@ const WIDEST_EM: f32 = 15.0;
 const SYMBOL_PX: f32 = 21.0;
 const BLACK: Srgba = Srgba::opaque(0, 0, 0);
 /// More classes are not listed: a legend that is longer than what it explains is not read.
-const MOST: usize = 24;
+const MOST: usize = 32;
 
 /// A class of what a picture shows.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,20 +71,45 @@ pub enum LegendSwatch {
 
 /// The legend with its upper left corner at the origin; `None` without classes.
 pub(crate) fn compose(entries: &[LegendEntry], composer: &mut Composer) -> Option<Drawing> {
+    compose_part(entries.get(..MOST).unwrap_or(entries), true, composer)
+}
+
+/// The legend in parts that are at most `height` pixels high, the first with its head.
+pub(crate) fn compose_parts(entries: &[LegendEntry], height: f32, composer: &mut Composer) -> Vec<Drawing> {
+    let entries = entries.get(..MOST).unwrap_or(entries);
+    let lead = lead(composer);
+    let head = composer.sheet.padding() * 2.0 + composer.style(16.0, TextStyle::MEDIUM).cap_px();
+    // A part without a head has a line more.
+    let lines = (((height - head) / lead).floor() as usize).max(1);
+    let (first, rest) = entries.split_at(lines.min(entries.len()));
+    let parts = std::iter::once(first).chain(rest.chunks(lines + 1)).enumerate();
+    parts.filter_map(|(number, part)| compose_part(part, number == 0, composer)).collect()
+}
+
+/// The distance of baselines.
+fn lead(composer: &Composer) -> f32 {
+    let style = composer.style(15.0, TextStyle::REGULAR);
+    composer.sheet.px(LEAD).max(style.size_px * 1.25)
+}
+
+fn compose_part(entries: &[LegendEntry], has_head: bool, composer: &mut Composer) -> Option<Drawing> {
     if entries.is_empty() {
         return None;
     }
     let sheet = composer.sheet;
     let (head_style, style) =
         (composer.style(16.0, TextStyle::MEDIUM), composer.style(15.0, TextStyle::REGULAR));
-    let head = composer.line("Legend", head_style);
     let padding = sheet.padding();
-    let mut drawing = Drawing::default();
-    let mut baseline = (padding + head_style.cap_px()).round();
-    drawing.write(&head, Vec2::new(padding, baseline), INK);
+    let (mut drawing, mut width, lead) = (Drawing::default(), 0.0_f32, lead(composer));
+    // Without a head the first class stands where it would.
+    let mut baseline = (padding + head_style.cap_px()).round() - if has_head { 0.0 } else { lead };
+    if has_head {
+        let head = composer.line("Legend", head_style);
+        drawing.write(&head, Vec2::new(padding, baseline), INK);
+        width = head.advance;
+    }
     let swatch = SWATCH * sheet.scale;
-    let (mut width, lead) = (head.advance, sheet.px(LEAD).max(style.size_px * 1.25));
-    for entry in entries.iter().take(MOST) {
+    for entry in entries {
         let Some(line) = composer.fitted(&entry.name, style, style.size_px * WIDEST_EM) else { continue };
         baseline = (baseline + lead).round();
         let middle = baseline - style.cap_px() * 0.5;
@@ -185,6 +210,18 @@ mod tests {
         let step = height(3, &mut composer) - height(2, &mut composer);
         assert!((step - LEAD).abs() < 1.5, "{step}");
         assert_eq!(height(MOST, &mut composer), height(MOST + 50, &mut composer));
+    }
+
+    #[test]
+    fn a_legend_in_parts_has_every_class_once_and_parts_that_are_low_enough() {
+        let mut composer = Composer::new(1920, 1080);
+        let entries: Vec<LegendEntry> = (0..20).map(|number| entry(&format!("class {number}"))).collect();
+        let parts = compose_parts(&entries, 200.0, &mut composer);
+        assert!(parts.len() > 2 && parts.iter().all(|part| part.bounds().size().y <= 200.0));
+        let names: Vec<&str> =
+            parts.iter().flat_map(|part| &part.texts).map(|text| text.text.as_str()).collect();
+        let wanted: Vec<&str> = entries.iter().map(|entry| entry.name.as_str()).collect();
+        assert_eq!(names, wanted);
     }
 
     #[test]

@@ -146,7 +146,7 @@ fn draw_lines(drawing: &mut Drawing, lines: &[String], area: PixelBox, composer:
     }
 }
 
-/// Fills the columns from the top.
+/// Fills the columns from the top: each piece stands in the first column that has room for it.
 fn fill_columns(
     margin: &mut SetMargin,
     notes: &MarginNotes,
@@ -154,48 +154,46 @@ fn fill_columns(
     composer: &mut Composer,
 ) {
     let gap = composer.sheet.px(GAP);
-    let mut columns = notes.frame.columns.iter().copied();
-    let Some(mut free) = columns.next() else { return };
+    let mut columns = notes.frame.columns.clone();
+    let Some(first) = columns.first().copied() else { return };
+    let (width, height) = (first.size().x, first.size().y);
     let arrow = annotations.north.as_ref().map(|arrow| {
         let arrow = north::NorthArrow { foreshortening: arrow.foreshortening.max(LEAST_TILT), ..*arrow };
         north::compose(&arrow, CaptionPlace::Beside, composer)
     });
     let norths = notes.norths.as_ref().map(|norths| Some(norths::compose(norths, composer)));
     let ramp = annotations.legend.as_ref().map(|legend| legend::compose(legend, composer));
-    let classes = Some(&annotations.classes).filter(|classes| !classes.is_empty());
-    let classes = classes.map(|classes| class_legend::compose(classes, composer));
-    let locator = notes.locator.as_ref().map(|locator| Some(locator::compose(locator, composer)));
-    let width = free.size().x;
-    let tables = notes
-        .tables
-        .iter()
-        .map(|table| (FurnitureKind::Table, Some(margin_table::compose(table, width, composer))));
-    let tables: Vec<(FurnitureKind, Option<Option<Drawing>>)> = tables.collect();
-    let first = [
-        (FurnitureKind::NorthArrow, arrow),
-        (FurnitureKind::Legend, ramp),
-        (FurnitureKind::Classes, classes),
-        (FurnitureKind::Norths, norths),
-    ];
-    let all = first.into_iter().chain(tables).chain([(FurnitureKind::Locator, locator)]);
-    for (kind, piece) in all {
-        let Some(piece) = piece else { continue };
+    let of_one = [(FurnitureKind::NorthArrow, arrow), (FurnitureKind::Legend, ramp)];
+    let mut pieces: Vec<(FurnitureKind, Option<Drawing>)> =
+        of_one.into_iter().filter_map(|(kind, piece)| Some((kind, piece?))).collect();
+    // A legend that is longer than what is left goes on in the next column.
+    let taken: f32 =
+        pieces.iter().flat_map(|(_, piece)| piece).map(|piece| piece.bounds().size().y + gap).sum();
+    let left = if columns.len() > 1 && height - taken < height / 3.0 { height } else { height - taken };
+    let classes = class_legend::compose_parts(&annotations.classes, left, composer);
+    match have_room(&classes, &pieces, &columns, gap) {
+        true => pieces.extend(classes.into_iter().map(|part| (FurnitureKind::Classes, Some(part)))),
+        // Part of a legend would explain part of the picture.
+        false => margin.left_out.push(FurnitureKind::Classes),
+    }
+    pieces.extend(norths.map(|norths| (FurnitureKind::Norths, norths)));
+    for table in &notes.tables {
+        pieces.push((FurnitureKind::Table, margin_table::compose(table, width, composer)));
+    }
+    pieces.extend(
+        notes.locator.as_ref().map(|of| (FurnitureKind::Locator, Some(locator::compose(of, composer)))),
+    );
+    for (kind, piece) in pieces {
         let Some(piece) = piece else {
             margin.left_out.push(kind);
             continue;
         };
         let bounds = piece.bounds();
         let size = bounds.size();
-        while size.y > free.size().y {
-            match columns.next() {
-                Some(next) => free = next,
-                None => break,
-            }
-        }
-        if size.cmpgt(free.size() + 1.0).any() {
+        let Some(free) = columns.iter_mut().find(|column| has_room(size, column)) else {
             margin.left_out.push(kind);
             continue;
-        }
+        };
         // What is drawn on the locator's relief may reach a little beyond it.
         let origin = if kind == FurnitureKind::Locator { Vec2::ONE } else { -bounds.min };
         let by = (free.min + origin).round();
@@ -205,4 +203,28 @@ fn fill_columns(
         margin.drawing.append(piece.moved(by));
         free.min.y += size.y + gap;
     }
+}
+
+fn has_room(size: Vec2, column: &PixelBox) -> bool {
+    !size.cmpgt(column.size() + 1.0).any()
+}
+
+/// Whether all `parts` have room in the columns after the pieces before them.
+fn have_room(
+    parts: &[Drawing],
+    before: &[(FurnitureKind, Option<Drawing>)],
+    columns: &[PixelBox],
+    gap: f32,
+) -> bool {
+    let mut columns = columns.to_vec();
+    let mut place = |piece: &Drawing| {
+        let size = piece.bounds().size();
+        let free = columns.iter_mut().find(|column| has_room(size, column));
+        free.map(|free| free.min.y += size.y + gap).is_some()
+    };
+    // A piece before that has no room is left out.
+    before.iter().filter_map(|(_, piece)| piece.as_ref()).for_each(|piece| {
+        place(piece);
+    });
+    parts.iter().all(place)
 }

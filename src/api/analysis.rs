@@ -17,6 +17,7 @@ use sandtable_query::analysis::{AnalyzeError, Analyzed, WrittenArgument, analyze
 use sandtable_query::dataset::Dataset;
 use sandtable_scene::land::land_of;
 use sandtable_scene::scene_file::open_scene_true_to_scale;
+use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::vertical_scale::VerticalScale;
 use sandtable_terrain::stop_flag::StopFlag;
 
@@ -66,7 +67,7 @@ pub fn analysis_kinds() -> String {
 fn asked(
     name: &str,
     arguments: &[(&str, &str)],
-) -> Result<(&'static AnalysisKind, Vec<WrittenArgument>), AnalysisFailure> {
+) -> Result<(&'static AnalysisKind, Vec<WrittenArgument>), Error> {
     let kind = kind(name).ok_or_else(|| AnalysisFailure::Kind(name.to_owned()))?;
     let written = |&(name, text): &(&str, &str)| WrittenArgument { name: name.into(), text: text.into() };
     Ok((kind, arguments.iter().map(written).collect()))
@@ -102,18 +103,26 @@ impl Scene {
     /// [`Error::Analysis`]; [`Error::OpenScene`] where its heights are exaggerated and it cannot be opened again.
     pub fn analyze(&self, kind: &str, arguments: &[(&str, &str)], crs: &Crs) -> Result<Analysis, Error> {
         let (kind, arguments) = asked(kind, arguments)?;
-        let opened;
-        let model = match self.model.scale == VerticalScale(1.0) {
-            true => &self.model,
-            false => {
-                opened = open_scene_true_to_scale(&self.path, &self.allowed, &|_| ())?;
-                &opened
-            }
-        };
+        let model = self.true_to_scale()?;
         let dataset = Dataset::from_scene(&self.path.display().to_string(), model);
         let land = land_of(model, kind.layers);
         let analyzed = analyze(&dataset, land, (kind, &arguments), crs, &StopFlag::default());
         Ok(Analysis { kind, analyzed: analyzed.map_err(failed)?, arguments })
+    }
+}
+
+impl Scene {
+    /// The scene with heights true to scale: opened again and kept, where the file exaggerates them.
+    fn true_to_scale(&self) -> Result<&SceneModel, Error> {
+        if self.model.scale == VerticalScale(1.0) {
+            return Ok(&self.model);
+        }
+        if let Some(kept) = self.true_to_scale.get() {
+            return Ok(kept);
+        }
+        let opened = open_scene_true_to_scale(&self.path, &self.allowed, &|_| ())?;
+        // Another thread that was first opened the same.
+        Ok(self.true_to_scale.get_or_init(|| Box::new(opened)))
     }
 }
 

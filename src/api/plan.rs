@@ -39,7 +39,7 @@ impl WorkPlan {
         Ok(Self { plan: Arc::new(ShardPlan::open(folder.as_ref())?), idle: Mutex::default() })
     }
 
-    /// What is made: `heights`, `viewsheds`, `atlas` or `tiles`.
+    /// What is made: `heights`, `viewsheds`, `atlas`, `tiles` or `analysis`.
     pub fn product(&self) -> &'static str {
         self.plan.product.word()
     }

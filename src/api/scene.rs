@@ -1,6 +1,7 @@
 //! Scenes, their views and pictures.
 
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use crate::api::error::Error;
 use sandtable_description::finding::Finding;
@@ -19,6 +20,8 @@ pub struct Scene {
     /// Where it was opened, and the folders that it may read.
     pub(crate) path: PathBuf,
     pub(crate) allowed: Vec<PathBuf>,
+    /// The scene true to scale, where an analysis has needed it and its heights are exaggerated.
+    pub(crate) true_to_scale: OnceLock<Box<scene::scene_model::SceneModel>>,
 }
 
 /// The options for opening a scene.
@@ -90,7 +93,12 @@ impl Scene {
     }
 
     fn of(model: scene::scene_model::SceneModel, path: &Path, options: &SceneOptions<'_>) -> Self {
-        Self { model, path: path.to_owned(), allowed: options.allowed.to_vec() }
+        Self {
+            model,
+            path: path.to_owned(),
+            allowed: options.allowed.to_vec(),
+            true_to_scale: OnceLock::new(),
+        }
     }
 
     /// Notes for the user about the build: features off the model, missing textures, earth moved.

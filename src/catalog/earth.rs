@@ -138,7 +138,7 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
                 "The distance between stations.",
             ),
         ],
-        yields: AnalysisYield::Table,
+        yields: AnalysisYield::Features,
         reach: AnalysisReach::Whole,
         layers: &[],
         source: "Trapezoid sections, volumes by average end areas",

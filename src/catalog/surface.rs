@@ -69,8 +69,8 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
                 "light",
                 &["sun", "multidirectional"],
                 "sun",
-                "Where light comes from: `sun` from its azimuth, `multidirectional` from 225°, 270°, 315° and 360°, each the \
-                 more the more the ground slopes along it; `azimuth` then has no effect.",
+                "Where light comes from: `sun` from its azimuth, `multidirectional` from 225°, 270°, 315° and 360°, each \
+                 weighted by how nearly the ground falls along it; `azimuth` then has no effect.",
             ),
             AnalysisParameter::number(
                 "azimuth",

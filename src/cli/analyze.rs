@@ -76,14 +76,10 @@ impl FromArgMatches for AnalyzeCommand {
         let missing = || clap::Error::raw(ErrorKind::MissingSubcommand, "name a kind of analysis");
         let (name, matches) = matches.subcommand().ok_or_else(missing)?;
         let kind = kind(name).ok_or_else(missing)?;
-        let written = |parameter: &AnalysisParameter| {
-            let text = matches.get_one::<String>(parameter.name)?;
-            Some(WrittenArgument { name: parameter.name.to_owned(), text: text.clone() })
-        };
         Ok(Self {
             kind,
             dataset: DatasetArguments::from_arg_matches(matches)?,
-            arguments: kind.all_parameters().filter_map(written).collect(),
+            arguments: written(kind, matches),
             output: matches.get_one::<PathBuf>("output").cloned(),
         })
     }
@@ -94,18 +90,32 @@ impl FromArgMatches for AnalyzeCommand {
     }
 }
 
+/// The arguments of a kind that are stated.
+pub fn written(kind: &AnalysisKind, matches: &ArgMatches) -> Vec<WrittenArgument> {
+    let written = |parameter: &AnalysisParameter| {
+        let text = matches.get_one::<String>(parameter.name)?;
+        Some(WrittenArgument { name: parameter.name.to_owned(), text: text.clone() })
+    };
+    kind.all_parameters().filter_map(written).collect()
+}
+
 /// The command of a kind.
 fn kind_command(kind: &'static AnalysisKind) -> Command {
-    let command = DatasetArguments::augment_args(Command::new(kind.name))
-        .about(kind.summary.trim_end_matches('.'))
-        .after_help(format!("Source: {}.\nLimits: {}", kind.source, kind.limits.join(" ")));
     let output = Arg::new("output")
         .short('o')
         .long("output")
         .value_name("OUT")
         .value_parser(clap::value_parser!(PathBuf))
         .help("Write the answer to this file: a map as .png, a raster as .tif or .asc, features as .gpkg or .geojson");
-    kind.all_parameters().fold(command, |command, parameter| command.arg(option(parameter))).arg(output)
+    bare_command(kind).arg(output)
+}
+
+/// The command of a kind without an output.
+pub fn bare_command(kind: &'static AnalysisKind) -> Command {
+    let command = DatasetArguments::augment_args(Command::new(kind.name))
+        .about(kind.summary.trim_end_matches('.'))
+        .after_help(format!("Source: {}.\nLimits: {}", kind.source, kind.limits.join(" ")));
+    kind.all_parameters().fold(command, |command, parameter| command.arg(option(parameter)))
 }
 
 /// The option of a parameter.

@@ -28,6 +28,7 @@ mod output;
 mod output_format;
 mod pick;
 mod plan;
+mod plan_analysis;
 mod positions;
 mod profile;
 mod progress;

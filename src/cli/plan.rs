@@ -10,6 +10,7 @@ use crate::error::CliError;
 use crate::height::PointQueryArguments;
 use crate::options::{AccessArguments, DatasetArguments, HeightArguments, SceneArguments};
 use crate::output::print;
+use crate::plan_analysis::{self, PlanAnalysisCommand};
 use crate::values::{choice, number};
 use crate::viewshed::SightConditions;
 use sandtable_description::document::PAPER_DPI;
@@ -39,6 +40,9 @@ pub enum PlanCommand {
     Atlas(PlanAtlasArguments),
     /// Terrain tiles for globes and maps in browsers: quantized-mesh, terrain-RGB
     Tiles(PlanTilesArguments),
+    /// A terrain analysis whose values depend on the land around them, as `analyze` writes its raster
+    #[command(subcommand)]
+    Analysis(PlanAnalysisCommand),
 }
 
 #[derive(Debug, Args)]
@@ -123,14 +127,15 @@ pub struct PlanTilesArguments {
     output: PathBuf,
 }
 
+/// The shards and the folder of a plan.
 #[derive(Debug, Args)]
-struct PlanOptions {
+pub struct PlanOptions {
     /// About how many shards there are to be [default: as many as take some seconds each]
     #[arg(long, value_name = "N")]
-    shards: Option<NonZeroU64>,
+    pub shards: Option<NonZeroU64>,
     /// The folder of the plan
     #[arg(short, long, value_name = "PLAN")]
-    output: PathBuf,
+    pub output: PathBuf,
 }
 
 pub fn run(command: &PlanCommand) -> Result<(), CliError> {
@@ -139,6 +144,7 @@ pub fn run(command: &PlanCommand) -> Result<(), CliError> {
         PlanCommand::Viewsheds(arguments) => run_viewsheds(arguments),
         PlanCommand::Atlas(arguments) => run_atlas(arguments),
         PlanCommand::Tiles(arguments) => run_tiles(arguments),
+        PlanCommand::Analysis(command) => plan_analysis::run(command),
     }
 }
 
@@ -225,11 +231,13 @@ fn open<'a>(
     Ok((QueriedDataset { path: dataset.file.clone(), dataset: opened, crs }, &plan.output))
 }
 
-fn planned(dataset: &DatasetArguments, folder: &Path) -> PlannedDataset {
+/// The dataset of a plan in `folder`.
+pub fn planned(dataset: &DatasetArguments, folder: &Path) -> PlannedDataset {
     PlannedDataset::new(&dataset.file, &dataset.options(), dataset.crs.as_ref(), folder)
 }
 
-fn report(folder: &Path, product: &str, shards: usize, is_json: bool) -> Result<(), CliError> {
+/// Says what was planned.
+pub fn report(folder: &Path, product: &str, shards: usize, is_json: bool) -> Result<(), CliError> {
     let plan = folder.display().to_string();
     if is_json {
         return print(&format!("{:#}\n", json!({ "plan": plan, "product": product, "shards": shards })));

@@ -6,6 +6,7 @@
 use std::sync::LazyLock;
 
 use crate::bounds::Bounds::{self, Above, Within};
+use crate::color::Color;
 use crate::declaration::{KeyDeclaration, KeyKind, Presence};
 use crate::finding_code::FindingCode;
 use crate::key;
@@ -14,7 +15,7 @@ use crate::stated::Stated;
 use crate::table::Table;
 use crate::table_key;
 use crate::value::KeyValue;
-use crate::words::{BuiltInVehicle, WordDeclaration};
+use crate::words::{AnalysisDraw, BuiltInVehicle, WordDeclaration};
 use sandtable_base::message::suggest::listed;
 use sandtable_catalog::kind::AnalysisKind;
 use sandtable_catalog::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
@@ -29,6 +30,10 @@ table! {
         /// What is analyzed; decides the keys of the table besides these. `sandtable analyze KIND --help` tells of each kind
         /// its source and its limits.
         kind: Stated<&'static AnalysisKind> = key::analysis_kind(), required;
+        /// What pictures show of it.
+        draw: AnalysisDraw = key::word::<AnalysisDraw>(), default "all";
+        /// Color of its lines, areas and marks.
+        color: Option<Color> = key::color(), otherwise "by what they are; routes and avenues in turn";
         /// Coordinate system of positions.
         crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`";
         /// The parameters of the kind.
@@ -60,7 +65,7 @@ table! {
         width_m: Option<f64> = key::number(SIZE, "m"), otherwise "by `like`";
         /// The diameter of stems that it pushes over.
         stem_m: Option<f64> = key::number(SIZE, "m"), otherwise "by `like`";
-        /// Its mass.
+        /// Its mass with its load.
         mass_t: Option<f64> = key::number(SIZE, "t"), otherwise "by `like`";
     }
     check(reader) {

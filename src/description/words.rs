@@ -68,6 +68,15 @@ words! {
         Absolute = "absolute": "its origin is at elevation `height`",
     }
 
+    /// What a picture shows of an analysis.
+    enum AnalysisDraw {
+        All = "all": "tints and hatching of its classes, its lines, areas and marks",
+        Tints = "tints": "the same without hatching",
+        Hatching = "hatching": "the same without tints, to lie over another analysis",
+        Features = "features": "its lines, areas and marks",
+        Nothing = "nothing": "nothing but its tables beside a picture with a margin",
+    }
+
     /// A vehicle whose numbers are built in, or people on foot.
     enum BuiltInVehicle {
         Wheeled = "wheeled": "an armored personnel carrier on wheels",

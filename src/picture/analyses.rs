@@ -21,7 +21,16 @@ use sandtable_scene::sight_layers::heading;
 /// The radius of marks of places in text heights.
 const MARK_EM: f64 = 0.5;
 
-/// The half width and the length of an avenue's head in text heights.
+/// How far from the border of the ground lines end, in text heights: farther than they are wide.
+const INSIDE_EM: f64 = 0.3;
+
+/// How far below its place a name begins in text heights: the mark stays free.
+const NAME_EM: f64 = 0.8;
+
+/// The width of an avenue's line, in pixels of a picture 1080 lines high.
+const AVENUE_PX: f64 = 5.0;
+
+/// The half width and the length of an avenue's head in text heights; those of thinner lines are smaller.
 const HEAD_EM: [f64; 2] = [0.9, 1.7];
 
 /// The share of light that the fill of a site stops, of 255.
@@ -34,7 +43,7 @@ pub(super) fn tints(scene: &SceneModel) -> Vec<TintPlan> {
 
 /// The tint of an analysis of the scene's land; `None` where it has none.
 pub(super) fn tint(analysis: &SceneAnalysis, scene: &SceneModel) -> Option<TintPlan> {
-    let raster = analysis.outcome.raster.as_ref()?;
+    let raster = analysis.tinted_raster()?;
     let (classes, lattice) = (shown_classes(raster), &*analysis.ground);
     if is_print(scene) && classes.iter().any(|class| class.look.hatching != Hatching::None) {
         return None;
@@ -56,10 +65,10 @@ pub(super) fn tint(analysis: &SceneAnalysis, scene: &SceneModel) -> Option<TintP
 
 /// The colors of all that [`draw`] draws of an analysis.
 pub(super) fn colors(analysis: &SceneAnalysis, scene: &SceneModel) -> Vec<Srgba> {
-    let outcome = &analysis.outcome;
-    let classes = outcome.raster.iter().flat_map(|raster| shown_classes(raster).into_owned());
+    let classes = analysis.hatched_raster().into_iter().flat_map(|raster| shown_classes(raster).into_owned());
     let of_classes = classes.map(|class| printed(scene, hatch_color(class.look.tint)));
-    let of_features = outcome.features.iter().map(|feature| printed(scene, feature_color(analysis, feature)));
+    let of_features =
+        analysis.shown_features().iter().map(|feature| printed(scene, feature_color(analysis, feature)));
     of_classes.chain(of_features.flat_map(|color| [color, site_fill(color)])).collect()
 }
 
@@ -86,12 +95,12 @@ pub(super) fn draw(
     texts: &mut Vec<PlacedText>,
 ) {
     for analysis in scene.analyses.iter().chain(tried) {
-        if let Some(raster) = &analysis.outcome.raster {
+        if let Some(raster) = analysis.hatched_raster() {
             let classes = shown_classes(raster);
             HatchedRaster { raster, classes: &classes, analysis, scene }.draw(view, pen);
         }
         let drawing = FeatureDrawing { analysis, view, scene, origin: scene.lattice.origin() };
-        analysis.outcome.features.iter().for_each(|feature| drawing.draw(feature, pen, texts));
+        analysis.shown_features().iter().for_each(|feature| drawing.draw(feature, pen, texts));
     }
 }
 
@@ -124,7 +133,15 @@ impl FeatureDrawing<'_> {
     }
 
     fn stroke(&self, line: &[DVec2], look: LineLook, pen: &mut GraphicPen) {
-        self.view.draw(pen, line, look, self.analysis.feature);
+        let line: Vec<DVec2> = line.iter().map(|&at| self.inside(at)).collect();
+        self.view.draw(pen, &line, look, self.analysis.feature);
+    }
+
+    /// A place so far within the border of the ground that a line there lies on it.
+    fn inside(&self, at: DVec2) -> DVec2 {
+        let extent = self.scene.lattice.extent();
+        let inset_m = (INSIDE_EM * self.view.em_at(at)).min(extent.size().min_element() / 4.0);
+        at.clamp(extent.min + inset_m, extent.max - inset_m)
     }
 
     fn draw_point(
@@ -141,6 +158,7 @@ impl FeatureDrawing<'_> {
             let up_deg = self.view.up_azimuth_deg(at);
             let corner = |turn: u32| at + heading(up_deg + 120.0 * f64::from(turn)) * radius_m * 1.4;
             self.stroke(&[0, 1, 2, 3].map(corner), look, pen);
+            area::fill(&[2, 1, 0].map(corner), &[], 1.0, pen.plan(look.color, self.analysis.feature));
         } else {
             self.stroke(&circle(at, radius_m), look, pen);
         }
@@ -156,8 +174,14 @@ impl FeatureDrawing<'_> {
         texts: &mut Vec<PlacedText>,
     ) {
         self.stroke(line, look, pen);
-        if feature.role == FeatureRole::Corridor {
+        if let FeatureRole::Corridor | FeatureRole::Haul = feature.role {
             self.draw_head(line, look, pen);
+        }
+        if feature.role == FeatureRole::Route {
+            let at = line[line.len() / 2];
+            let name = self.analysis.name.clone();
+            let text = level_text(self.view, at, name, look.color, self.analysis.feature);
+            texts.push(PlacedText { course: PlacedCourse::Once(self.view.pieces(line)), ..text });
         }
         match feature.role {
             FeatureRole::Isoline | FeatureRole::Stream | FeatureRole::FormLine | FeatureRole::Link => {
@@ -176,11 +200,12 @@ impl FeatureDrawing<'_> {
     fn draw_head(&self, line: &[DVec2], look: LineLook, pen: &mut GraphicPen) {
         let Some((&tip, before)) = line.split_last() else { return };
         let Some(em_m) = self.view.em_m(&[tip]) else { return };
-        let [half_m, length_m] = HEAD_EM.map(|em| em * em_m);
+        let [half_m, length_m] = HEAD_EM.map(|em| em * em_m * (look.width_px / AVENUE_PX));
         let from = before.iter().rev().find(|at| at.distance(tip) >= length_m).or(line.first());
         let Some(along) = from.and_then(|from| (tip - *from).try_normalize()) else { return };
         let (tip, base) = (tip + along * (length_m * 0.5), tip - along * (length_m * 0.5));
         let ring = [tip, base + along.perp() * half_m, base - along.perp() * half_m];
+        let ring = ring.map(|at| self.inside(at));
         area::fill(&ring, &[], 1.0, pen.plan(look.color, self.analysis.feature));
     }
 
@@ -199,6 +224,9 @@ impl FeatureDrawing<'_> {
                     true => ring.iter().rev().copied().collect(),
                     false => ring.clone(),
                 }
+            };
+            let turned = |ring: &Vec<DVec2>| -> Vec<DVec2> {
+                turned(ring).into_iter().map(|at| self.inside(at)).collect()
             };
             let holes: Vec<Vec<DVec2>> = holes.iter().map(turned).collect();
             let fill = site_fill(look.color);
@@ -236,7 +264,7 @@ impl FeatureDrawing<'_> {
             return;
         }
         let down = heading(self.view.up_azimuth_deg(at)) * -self.view.em_at(at);
-        let toward = self.view.on_ground(at + down);
+        let (at, toward) = (at + down * NAME_EM, self.view.on_ground(at + down * 2.0));
         texts.push(PlacedText { toward, ..self.text(feature, at, color) });
     }
 }
@@ -246,13 +274,17 @@ fn width_px(feature: &OutcomeFeature) -> f64 {
     match feature.role {
         FeatureRole::Place | FeatureRole::Post => 2.4,
         FeatureRole::Route => 4.2,
-        FeatureRole::Corridor => 5.0,
-        FeatureRole::Isoline => 1.2,
+        FeatureRole::Corridor => AVENUE_PX,
+        FeatureRole::Haul => 2.4,
+        FeatureRole::Isoline => match property(feature, "is_index") {
+            Some(PropertyValue::Truth(true)) => 2.2,
+            _ => 1.2,
+        },
         FeatureRole::Stream => match property(feature, "order") {
             Some(PropertyValue::Whole(order)) => 1.0 + 0.7 * (*order).clamp(1, 8) as f64,
             _ => 1.7,
         },
-        FeatureRole::FormLine => 2.0,
+        FeatureRole::FormLine => 2.8,
         FeatureRole::Site | FeatureRole::Outline => 2.2,
         FeatureRole::Link => 2.6,
     }

@@ -35,6 +35,19 @@ const RAMP: [[u8; 3]; CLASSES] = [
     [253, 231, 37],
 ];
 
+/// The tints of classes on both sides of 0, from far below to far above; what is near 0 is pale.
+const SIDES: [[u8; 4]; 6] = [
+    [33, 102, 172, 165],
+    [67, 147, 195, 125],
+    [146, 197, 222, 50],
+    [244, 165, 130, 50],
+    [214, 96, 77, 125],
+    [178, 24, 43, 165],
+];
+
+/// Values are told by their side of 0 where the smaller side reaches at least this share as far as the larger one.
+const TWO_SIDED: f32 = 0.2;
+
 /// Square meters in a square kilometer.
 const KM2: f32 = 1e6;
 
@@ -83,8 +96,10 @@ pub fn class_of(classes: &[ValueClass], value: f32) -> Option<usize> {
     classes.partition_point(|class| class.from <= value).checked_sub(1).filter(|_| !value.is_nan())
 }
 
-/// The classes that a raster holds and that a picture shows by a tint or hatching, as legends list them.
-pub fn legend_classes(raster: &OutcomeRaster) -> Vec<ValueClass> {
+/// The classes that the raster of an analysis holds and that pictures show by a tint or hatching, as legends list them.
+pub fn legend_classes(analysis: &SceneAnalysis) -> Vec<ValueClass> {
+    let (tinted, hatched) = (analysis.tinted_raster(), analysis.hatched_raster());
+    let Some(raster) = tinted.or(hatched) else { return Vec::new() };
     let classes = shown_classes(raster);
     let mut is_held = vec![false; classes.len()];
     for index in 0..raster.values.len() {
@@ -92,15 +107,26 @@ pub fn legend_classes(raster: &OutcomeRaster) -> Vec<ValueClass> {
             is_held[class] = true;
         }
     }
+    let is_shown = |class: &&ValueClass| {
+        tinted.is_some() && class.look.tint[3] > 0
+            || hatched.is_some() && class.look.hatching != Hatching::None
+    };
     let held = classes.iter().zip(is_held).filter(|(_, is_held)| *is_held).map(|(class, _)| class);
-    held.filter(|class| class.look.tint[3] > 0 || class.look.hatching != Hatching::None).cloned().collect()
+    let mut listed: Vec<ValueClass> = Vec::new();
+    for class in held.filter(is_shown) {
+        // North is at both ends of aspects.
+        if !listed.iter().any(|other| other.label == class.label && other.look == class.look) {
+            listed.push(class.clone());
+        }
+    }
+    listed
 }
 
 /// What the lines of an analysis are, with their colors, as legends list them: marks of places tell what they are by their
 /// names.
 pub fn legend_lines(analysis: &SceneAnalysis) -> BTreeMap<&'static str, Srgba> {
     let mut nouns: BTreeMap<&str, Srgba> = BTreeMap::new();
-    for feature in &analysis.outcome.features {
+    for feature in analysis.shown_features() {
         nouns.entry(feature_noun(feature)).or_insert_with(|| feature_color(analysis, feature));
     }
     nouns.retain(|noun, _| !matches!(*noun, "place" | "post" | "outline"));
@@ -120,6 +146,9 @@ fn round_classes(raster: &OutcomeRaster) -> Vec<ValueClass> {
     values.sort_by(f32::total_cmp);
     let at = |share: f64| values.get(((values.len() as f64 - 1.0) * share) as usize).copied();
     let (Some(low), Some(middle), Some(high)) = (at(0.02), at(0.5), at(0.98)) else { return Vec::new() };
+    if low < 0.0 && (-low).min(high) >= TWO_SIDED * (-low).max(high) {
+        return sides((-low).max(high), raster.unit);
+    }
     let greatest = (0..raster.values.len()).map(|index| raster.values.value(index)).fold(high, f32::max);
     let (froms, tints) = match middle > 0.0 && greatest / middle > LOGARITHMIC {
         true => (powers(middle, greatest), WATERS),
@@ -147,13 +176,38 @@ fn round_classes(raster: &OutcomeRaster) -> Vec<ValueClass> {
     froms.iter().enumerate().map(class).collect()
 }
 
+/// Classes on both sides of 0 that part most values within `reach` of it.
+fn sides(reach: f32, unit: &str) -> Vec<ValueClass> {
+    let step = round_step(f64::from(reach) / 3.0) as f32;
+    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+    let class = |(index, tint): (usize, [u8; 4])| {
+        let (from, to) = (step * (index as f32 - 3.0), step * (index as f32 - 2.0));
+        match index {
+            0 => {
+                ValueClass::new(f32::NEG_INFINITY, format!("below {}{unit}", short(to)), tint, Hatching::None)
+            }
+            5 => ValueClass::new(from, format!("{}{unit} and more", short(from)), tint, Hatching::None),
+            _ => {
+                let label = format!("{} to {}{unit}", short(from), short(to));
+                ValueClass::new(from, label, tint, Hatching::None)
+            }
+        }
+    };
+    SIDES.into_iter().enumerate().map(class).collect()
+}
+
+/// 1, 2 or 5 times a power of ten, at least `rough`.
+fn round_step(rough: f64) -> f64 {
+    let power = libm::pow(10.0, libm::log10(rough).floor());
+    let step = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * power).into_iter().find(|step| *step >= rough);
+    step.unwrap_or(10.0 * power)
+}
+
 /// Round numbers from below `low` to `high`, at most [`CLASSES`] of them.
 fn steps(low: f32, high: f32) -> Vec<f32> {
     let (low, high) = (f64::from(low), f64::from(high));
     let rough = ((high - low) / (CLASSES as f64 - 1.0)).max(low.abs().max(1.0) * 1e-6);
-    let power = libm::pow(10.0, libm::log10(rough).floor());
-    let step = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * power).into_iter().find(|step| *step >= rough);
-    let step = step.unwrap_or(10.0 * power);
+    let step = round_step(rough);
     let first = (low / step).floor();
     let count = ((high / step).floor() - first) as usize + 1;
     (0..count.clamp(1, CLASSES)).map(|index| ((first + index as f64) * step) as f32).collect()
@@ -179,9 +233,12 @@ fn short(number: f32) -> String {
 
 /// The color of the lines of a feature of an analysis.
 pub fn feature_color(analysis: &SceneAnalysis, feature: &OutcomeFeature) -> Srgba {
+    if let Some(color) = analysis.color {
+        return color;
+    }
     match feature.role {
         FeatureRole::Place | FeatureRole::Post | FeatureRole::Outline => PLACE,
-        FeatureRole::Route | FeatureRole::Corridor => WAYS[analysis.number % WAYS.len()],
+        FeatureRole::Route | FeatureRole::Corridor | FeatureRole::Haul => WAYS[analysis.number % WAYS.len()],
         FeatureRole::Isoline => ISOLINE,
         FeatureRole::Stream => STREAM,
         FeatureRole::FormLine => {
@@ -203,13 +260,14 @@ pub fn feature_color(analysis: &SceneAnalysis, feature: &OutcomeFeature) -> Srgb
 }
 
 /// The name of what a feature's lines are.
-fn feature_noun(feature: &OutcomeFeature) -> &'static str {
+pub fn feature_noun(feature: &OutcomeFeature) -> &'static str {
     match feature.role {
         FeatureRole::Place => "place",
         FeatureRole::Post => "post",
         FeatureRole::Outline => "outline",
         FeatureRole::Route => "route",
         FeatureRole::Corridor => "avenue",
+        FeatureRole::Haul => "haul",
         FeatureRole::Isoline => "line of equal value",
         FeatureRole::Stream => "stream",
         FeatureRole::FormLine => {
@@ -264,6 +322,19 @@ mod tests {
         assert_eq!(class_of(&classes, -5.0), Some(0));
         assert_eq!(class_of(&classes, 250.0), Some(2));
         assert_eq!(class_of(&classes, f32::NAN), None);
+    }
+
+    #[test]
+    fn values_on_both_sides_of_0_are_told_by_their_side() {
+        let raster = raster((-100..=100).map(|value| value as f32 * 0.6).collect());
+        let classes = shown_classes(&raster);
+        let froms: Vec<f32> = classes.iter().skip(1).map(|class| class.from).collect();
+        assert_eq!(froms, [-40.0, -20.0, 0.0, 20.0, 40.0]);
+        assert_eq!(
+            [0, 1, 5].map(|index| &*classes[index].label),
+            ["below -40 m", "-40 to -20 m", "40 m and more"]
+        );
+        assert_eq!(class_of(&classes, -999.0), Some(0));
     }
 
     #[test]

@@ -23,6 +23,9 @@ const WIDTH_PX: f64 = 1.1;
 /// The same in black on white, which a copier keeps.
 const PRINT_WIDTH_PX: f64 = 1.8;
 
+/// How far inside the border of the land lines end, in text heights: as wide as they are, they lie on the ground.
+const INSIDE_EM: f64 = 0.15;
+
 /// The length of a dot in text heights: it is as long as wide.
 const DOT_EM: f64 = 0.09;
 const DOT_WIDTH_PX: f64 = 1.8;
@@ -110,7 +113,9 @@ impl HatchedRaster<'_> {
     /// The stretches of a line that are hatched.
     fn stretches(&self, line: i64, lines: &HatchLines<'_>, shows: impl Fn(Hatching) -> bool) -> Vec<Stretch> {
         let start = lines.middle + lines.along.perp() * (line as f64 * lines.apart_m());
-        let Some([from_m, to_m]) = within(&self.extent(), start, lines.along, lines.radius_m) else {
+        let Some([from_m, to_m]) =
+            within(&self.extent().grown(-INSIDE_EM * lines.em_m), start, lines.along, lines.radius_m)
+        else {
             return Vec::new();
         };
         let step_m = self.analysis.ground.cell().min_element().max(lines.em_m * 0.25);

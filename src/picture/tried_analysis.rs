@@ -8,6 +8,7 @@ use crate::recut::{DrapeSheet, GroundSheets, SheetPlan};
 use crate::{analyses, graphic_lines};
 use sandtable_analysis::extent::PlacedOutcome;
 use sandtable_catalog::kind::AnalysisKind;
+use sandtable_description::words::AnalysisDraw;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::FeatureId;
 use sandtable_ribbon::patches::Drapes;
@@ -29,6 +30,8 @@ impl TriedAnalysis {
             name,
             kind,
             number: scene.analyses.len(),
+            draw: AnalysisDraw::All,
+            color: None,
             feature: tried_feature(scene),
             ground: placed.ground,
             outcome: placed.outcome,

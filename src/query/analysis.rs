@@ -10,21 +10,22 @@ use crate::analysis_extent;
 use crate::dataset::{Dataset, DatasetOptions, OpenError, QueryError};
 use crate::ground::{GroundError, QueriedGround};
 use crate::positions::{PositionArgument, position_list};
-use crate::post_raster::post_header;
+use crate::post_raster::{part_header, post_header};
 use crate::windowed_elevation::GroundReach;
 use sandtable_analysis::arguments::{AnalysisArguments, ArgumentValue};
 use sandtable_analysis::error::AnalysisError;
-use sandtable_analysis::extent::{LandExtent, ground_part, run_within};
+use sandtable_analysis::extent::{LandExtent, PlacedOutcome, ground_part, run_part, run_within};
 use sandtable_analysis::land::Land;
-use sandtable_analysis::outcome::{Outcome, OutcomeRaster};
+use sandtable_analysis::outcome::{Outcome, OutcomeRaster, PostValues};
 use sandtable_base::message::suggest::{quoted, remedy};
-use sandtable_catalog::kind::AnalysisKind;
+use sandtable_catalog::kind::{AnalysisKind, AnalysisReach};
 use sandtable_catalog::parameter::{AnalysisParameter, EXTENT, ParameterDefault, ParameterForm};
 use sandtable_geom::crs::{Crs, CrsError};
 use sandtable_raster::raster::{Raster, Samples};
-use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_scene::analyses::interpolation_between;
+use sandtable_terrain::lattice::{Lattice, LatticeError, Post};
 use sandtable_terrain::post_rect::PostRect;
-use sandtable_terrain::query::{Interpolation, Surface};
+use sandtable_terrain::query::Surface;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// An argument as users write it, and its parameter's name.
@@ -44,14 +45,32 @@ pub enum AnalyzeError {
     #[error("`{name}`: {problem}")]
     Argument { name: String, problem: String },
     #[error(transparent)]
-    Query(#[from] QueryError),
+    Query(Box<QueryError>),
     #[error(transparent)]
-    Ground(#[from] GroundError),
+    Ground(Box<GroundError>),
     /// The ground to compare with cannot be opened.
     #[error("`{name}`")]
     Other { name: String, source: Box<OpenError> },
     #[error(transparent)]
     Analysis(#[from] AnalysisError),
+    /// A kind that reaches everywhere cannot be cut into parts.
+    #[error(
+        "{kind} cannot be cut into parts: land from everywhere has an effect on its values; run `analyze {kind}`, where \
+         `--extent` limits the land"
+    )]
+    Whole { kind: &'static str },
+}
+
+impl From<QueryError> for AnalyzeError {
+    fn from(error: QueryError) -> Self {
+        Self::Query(error.into())
+    }
+}
+
+impl From<GroundError> for AnalyzeError {
+    fn from(error: GroundError) -> Self {
+        Self::Ground(error.into())
+    }
 }
 
 impl AnalyzeError {
@@ -60,7 +79,7 @@ impl AnalyzeError {
         match self {
             Self::Argument { name, .. } | Self::Other { name, .. } => Some(name),
             Self::Analysis(error) => error.key(),
-            Self::Query(_) | Self::Ground(_) => None,
+            Self::Query(_) | Self::Ground(_) | Self::Whole { .. } => None,
         }
     }
 
@@ -102,6 +121,11 @@ pub fn bare_land(
         return Ok(Land::bare(frame.lattice, frame.crs));
     }
     let posts = posts_of((kind, arguments), crs, (&frame.lattice, &frame.crs))?;
+    bare_posts(dataset, &frame, posts)
+}
+
+/// The land of posts of the ground of a dataset, of which `frame` holds a few, without what lies on it.
+fn bare_posts(dataset: &Dataset, frame: &QueriedGround, posts: PostRect) -> Result<Land, AnalyzeError> {
     let corners = [posts.first, posts.last].map(|post| frame.lattice.map_position(post));
     let ground = dataset.ground(&GroundReach { crs: &frame.crs, at: &corners, around_m: 0.0 })?;
     let part = ground_part(&ground.lattice, posts).map_err(GroundError::from)?;
@@ -121,8 +145,11 @@ pub fn needed_posts(
     posts_of(analysis, crs, (&frame.lattice, &frame.crs))
 }
 
-/// The ground with a few of its posts, or all where they are in memory.
-fn frame(dataset: &Dataset) -> Result<QueriedGround, QueryError> {
+/// The ground of a dataset with a few of its posts, or all where they are in memory.
+///
+/// # Errors
+/// There is no ground.
+pub fn frame(dataset: &Dataset) -> Result<QueriedGround, QueryError> {
     dataset.ground(&GroundReach { crs: &dataset.crs(), at: &[], around_m: 0.0 })
 }
 
@@ -183,18 +210,121 @@ pub fn analyze_among(
 ) -> Result<Analyzed, AnalyzeError> {
     let extent = extent(arguments, crs, &land.crs)?;
     let arguments = read(kind, arguments, crs, &land.crs)?;
-    let land_crs = land.crs.clone();
-    let compared = |land: &Land| {
-        let of_ground = |parameter: &&AnalysisParameter| parameter.form == ParameterForm::Ground;
-        let Some(parameter) = kind.parameters.iter().find(of_ground) else { return Ok(None) };
-        let file = arguments.word(parameter.name);
-        if file.is_empty() {
-            return Ok(None);
+    let compared = |land: &Land| compared(grounds, &arguments, land);
+    let PlacedOutcome { ground, outcome } = run_within(&land, &arguments, extent.as_ref(), compared, stop)?;
+    Ok(Analyzed { ground, crs: land.crs, outcome })
+}
+
+/// An analysis of a kind that can be cut into parts: what makes the values of any posts of the ground of a dataset.
+pub struct PartedAnalysis {
+    arguments: AnalysisArguments,
+    extent: Option<LandExtent>,
+    /// The ground with a few of its posts, or all.
+    frame: QueriedGround,
+    /// The land, where it is in memory.
+    land: Option<Land>,
+}
+
+impl PartedAnalysis {
+    /// Prepares an analysis of a dataset; `land` is that of a scene, for a kind that uses what lies on its ground.
+    ///
+    /// # Errors
+    /// [`AnalyzeError::Whole`], and as [`bare_land`].
+    pub fn new(
+        dataset: &Dataset,
+        land: Option<Land>,
+        (kind, arguments): (&'static AnalysisKind, &[WrittenArgument]),
+        crs: &Crs,
+    ) -> Result<Self, AnalyzeError> {
+        check_parts(kind)?;
+        let frame = frame(dataset)?;
+        let extent = extent(arguments, crs, &frame.crs)?;
+        let arguments = read(kind, arguments, crs, &frame.crs)?;
+        let bare = || Land::bare(Arc::clone(&frame.lattice), frame.crs.clone());
+        let land = land.or_else(|| frame.lattice.holds_all().then(bare));
+        Ok(Self { arguments, extent, frame, land })
+    }
+
+    /// The frame of the ground: its lattice may hold a few posts alone.
+    pub fn frame(&self) -> &QueriedGround {
+        &self.frame
+    }
+
+    /// From how many posts around a part the land has an effect on its values.
+    pub fn reach(&self) -> u32 {
+        self.arguments.reach_posts(self.frame.lattice.cell()).unwrap_or(0)
+    }
+
+    /// The posts of all parts together, counted in the whole ground.
+    ///
+    /// # Errors
+    /// [`AnalyzeError::Argument`] of an extent.
+    pub fn posts(&self) -> Result<PostRect, AnalyzeError> {
+        match &self.extent {
+            None => Ok(PostRect::all(&self.frame.lattice)),
+            Some(extent) => extent.posts(&self.frame.lattice).map_err(of_extent),
         }
-        other_ground((parameter.name, &file), grounds, land).map(Some)
+    }
+
+    /// The values at `posts`, counted in the whole ground: those of the analysis of all of it, to the last bit.
+    ///
+    /// # Errors
+    /// See [`AnalyzeError`].
+    ///
+    /// # Panics
+    /// Where the posts reach beyond the ground.
+    pub fn part(
+        &self,
+        dataset: &Dataset,
+        posts: PostRect,
+        stop: &StopFlag,
+    ) -> Result<Analyzed, AnalyzeError> {
+        let compared = |land: &Land| compared((dataset, OtherGrounds::Files), &self.arguments, land);
+        let cut = self.extent.as_ref();
+        let part = |land: &Land, posts: PostRect| {
+            let placed = run_part(land, &self.arguments, (posts, cut), compared, stop)?;
+            Ok(Analyzed { ground: placed.ground, crs: land.crs.clone(), outcome: placed.outcome })
+        };
+        if let Some(land) = &self.land {
+            return part(land, posts);
+        }
+        let needed = posts.grown((self.reach(), self.reach()), &self.frame.lattice);
+        part(&bare_posts(dataset, &self.frame, needed)?, within(posts, needed))
+    }
+}
+
+/// Checks that a kind can be cut into parts.
+///
+/// # Errors
+/// [`AnalyzeError::Whole`].
+pub fn check_parts(kind: &'static AnalysisKind) -> Result<(), AnalyzeError> {
+    match kind.reach {
+        AnalysisReach::Whole => Err(AnalyzeError::Whole { kind: kind.name }),
+        _ => Ok(()),
+    }
+}
+
+/// Posts of the whole counted in a part of it.
+fn within(posts: PostRect, part: PostRect) -> PostRect {
+    let from = |post: Post| Post { column: post.column - part.first.column, row: post.row - part.first.row };
+    PostRect { first: from(posts.first), last: from(posts.last) }
+}
+
+/// The ground that an analysis compares with, at the posts of the land; `None` for one that states none.
+fn compared(
+    grounds: (&Dataset, OtherGrounds<'_>),
+    arguments: &AnalysisArguments,
+    land: &Land,
+) -> Result<Option<Arc<Lattice>>, AnalyzeError> {
+    let mut parameters = arguments.kind().parameters.iter();
+    let Some(parameter) = parameters.find(|parameter| parameter.form == ParameterForm::Ground) else {
+        return Ok(None);
     };
-    let placed = run_within(land, &arguments, extent.as_ref(), compared, stop)?;
-    Ok(Analyzed { ground: placed.ground, crs: land_crs, outcome: placed.outcome })
+    let file = arguments.word(parameter.name);
+    if file.is_empty() {
+        return Ok(None);
+    }
+    other_ground((parameter.name, &file), grounds, land).map(Some)
 }
 
 /// The word for the elevation of a dataset before its scene's earthworks.
@@ -221,17 +351,22 @@ fn other_ground(
             (find(file).ok_or_else(unknown)?, Surface::Ground)
         }
     };
+    let interpolation = interpolation_between(surface, &land.ground);
     let (columns, rows) = (land.ground.columns(), land.ground.rows());
     let mut heights = Vec::with_capacity(columns as usize * rows as usize);
     for row in 0..rows {
         let at: Vec<DVec2> =
             (0..columns).map(|column| land.ground.map_position(Post { column, row })).collect();
-        let answers = other.heights(surface, Interpolation::default(), &land.crs, &at)?;
+        let answers = other.heights(surface, interpolation, &land.crs, &at)?;
         heights
             .extend(answers.iter().map(|answer| answer.height_m().map_or(f32::NAN, |height| height as f32)));
     }
     let none = |_| AnalyzeError::argument(name, format!("{file} has no ground at the posts of the land"));
-    Lattice::new(land.ground.origin(), land.ground.cell(), columns, heights).map(Arc::new).map_err(none)
+    if heights.iter().all(|height| height.is_nan()) {
+        return Err(none(LatticeError::Empty));
+    }
+    let frame = (land.ground.origin(), land.ground.cell());
+    Lattice::part(frame, land.ground.first(), columns, heights).map(Arc::new).map_err(none)
 }
 
 /// The arguments of a kind from what users wrote, without the extent, positions brought from `crs` to `land_crs`.
@@ -334,13 +469,33 @@ fn points(text: &str, least: usize, crs: &Crs, land_crs: &Crs) -> Result<Argumen
 
 /// The raster of an outcome, north up, its samples at the posts of `ground`.
 pub fn raster(outcome: &OutcomeRaster, ground: &Lattice, crs: &Crs) -> Raster {
-    let (name, data_type, nodata) = described(outcome);
-    let columns = ground.columns() as usize;
-    let samples = (0..ground.rows() as usize)
+    posts_raster(&outcome.values, outcome.name, (ground, PostRect::all(ground)), crs)
+}
+
+/// The raster of values at posts of a ground, north up; `name` is its driver.
+fn posts_raster(
+    values: &PostValues,
+    name: &'static str,
+    (ground, posts): (&Lattice, PostRect),
+    crs: &Crs,
+) -> Raster {
+    let columns = posts.width();
+    let samples = (0..posts.height())
         .rev()
-        .flat_map(|row| (row * columns..(row + 1) * columns).map(|index| outcome.values.value(index)));
-    let header = post_header(ground, crs, (name, data_type), nodata);
+        .flat_map(|row| (row * columns..(row + 1) * columns).map(|index| values.value(index)));
+    let header = posts_header(values, name, (ground, posts), crs);
     Raster { samples: Samples::F32(samples.collect()), ..header }
+}
+
+/// The raster of values of the type of `values` at posts of a ground, north up, without its samples.
+pub fn posts_header(
+    values: &PostValues,
+    name: &'static str,
+    place: (&Lattice, PostRect),
+    crs: &Crs,
+) -> Raster {
+    let (data_type, nodata) = described(values);
+    part_header(place, crs, (name, data_type), nodata)
 }
 
 /// The raster of the heights of a ground, north up.

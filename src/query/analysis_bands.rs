@@ -77,7 +77,7 @@ pub fn analysis_bands<'a>(
     if is_part || !kind.layers.is_empty() || kind.yields != AnalysisYield::Raster {
         return Ok(None);
     }
-    let failed = |error| AnalyzeError::Query(dataset.without_ground(error));
+    let failed = |error| AnalyzeError::from(dataset.without_ground(error));
     let ground_crs = elevation.ground_crs().map_err(failed)?;
     let arguments = read(kind, written, crs, &ground_crs)?;
     let header = elevation.plan().map_err(failed)?.header();
@@ -97,7 +97,8 @@ pub fn analysis_bands<'a>(
     };
     let north_west = origin + DVec2::new(0.0, f64::from(header.height - 1)) * cell;
     let size = (header.width, header.height);
-    let header = node_header((north_west, cell), size, &ground_crs, described(&raster));
+    let (data_type, nodata) = described(&raster.values);
+    let header = node_header((north_west, cell), size, &ground_crs, (raster.name, data_type, nodata));
     Ok(Some(AnalysisBands {
         elevation,
         arguments,
@@ -111,10 +112,10 @@ pub fn analysis_bands<'a>(
 }
 
 /// The name, the type and the value for no data of an outcome's raster.
-pub(crate) fn described(raster: &OutcomeRaster) -> (&'static str, &'static str, f64) {
-    match raster.values {
-        PostValues::Numbers(_) => (raster.name, "Float32", -9999.0),
-        PostValues::Codes(_) => (raster.name, "Byte", f64::from(PostValues::NO_CODE)),
+pub(crate) fn described(values: &PostValues) -> (&'static str, f64) {
+    match values {
+        PostValues::Numbers(_) => ("Float32", -9999.0),
+        PostValues::Codes(_) => ("Byte", f64::from(PostValues::NO_CODE)),
     }
 }
 
@@ -209,7 +210,7 @@ pub struct OutcomeWindows<'a> {
 impl<'a> OutcomeWindows<'a> {
     /// Of an analysis of `ground`.
     pub fn new(outcome: &'a OutcomeRaster, ground: &Lattice, crs: &Crs) -> Self {
-        let (name, data_type, nodata) = described(outcome);
+        let (name, (data_type, nodata)) = (outcome.name, described(&outcome.values));
         let header = post_header(ground, crs, (name, data_type), nodata);
         Self { header, values: &outcome.values }
     }
@@ -265,7 +266,7 @@ mod tests {
                 continue;
             };
             kinds += 1;
-            let land = bare_land(&kept).expect("ground");
+            let land = bare_land(&kept, (kind, &[]), &kept.crs()).expect("ground");
             let whole = analyze(&kept, land, (kind, &[]), &kept.crs(), &stop).expect(kind.name);
             let raster = whole.outcome.raster.as_ref().expect(kind.name);
             let mut of_whole = OutcomeWindows::new(raster, &whole.ground, &whole.crs);
@@ -285,7 +286,12 @@ mod tests {
 
     #[test]
     fn all_of_elevation_on_disk_is_the_land_of_an_analysis() {
-        let [on_disk, kept] = [0, u64::MAX].map(|most_kept| bare_land(&dataset(most_kept)).expect("ground"));
+        let kind = sandtable_catalog::kind("slope").expect("a kind");
+        let land = |most_kept: u64| {
+            let dataset = dataset(most_kept);
+            bare_land(&dataset, (kind, &[]), &dataset.crs()).expect("ground")
+        };
+        let [on_disk, kept] = [0, u64::MAX].map(land);
         assert_eq!(on_disk.ground.heights().len(), kept.ground.heights().len());
         assert!(
             on_disk

@@ -63,8 +63,10 @@ mod tests {
     use crate::analysis::{AnalyzeError, Analyzed, WrittenArgument, analyze, bare_land};
     use crate::dataset::Dataset;
     use crate::windowed_elevation::WindowedElevation;
+    use sandtable_analysis::extent::ground_part;
+    use sandtable_analysis::land::Land;
     use sandtable_raster::raster::{Raster, Samples, north_up_nodes};
-    use sandtable_terrain::lattice::Post;
+    use sandtable_terrain::lattice::{Lattice, Post};
     use sandtable_terrain::stop_flag::StopFlag;
     use std::sync::Arc;
 
@@ -171,7 +173,7 @@ mod tests {
     fn an_extent_off_the_land_or_between_posts_is_refused_by_its_name() {
         let off = refusal("0,0,10,10");
         assert!(
-            off.starts_with("`extent`: ") && off.contains("from 500000,4000000 to 500590,4000490"),
+            off.starts_with("`extent` ") && off.contains("from 500000,4000000 to 500590,4000490"),
             "{off}"
         );
         assert!(refusal("500001,4000001,500009,4000009").contains("fewer than two posts a side"));
@@ -187,6 +189,35 @@ mod tests {
         assert!(found.outcome.notes.iter().any(|note| note.contains("beyond the land")));
         let at_border = analyzed(&kept(), "slope", &[("extent", "500000,4000000,500100,4000100")]);
         assert!(at_border.expect("part").outcome.notes.is_empty());
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn no_text_breaks_an_extent(text in "[-0-9.,;e ]{0,40}|\\PC{0,30}") {
+            let ground = Lattice::from_raster(&rough()).expect("north up");
+            if let Ok(extent) = parse(&text, &Crs::local(), &Crs::local())
+                && let Ok(posts) = extent.posts(&ground)
+            {
+                assert!(posts.last.column < COLUMNS && posts.last.row < ROWS);
+                let part = ground_part(&Arc::new(ground), posts);
+                let _ = part.map(|part| extent.masked(Land::bare(part, Crs::local())));
+            }
+        }
+
+        #[test]
+        fn corners_of_any_size_give_posts_of_the_land_or_a_reason(
+            corners in proptest::array::uniform4(-1e3_f64..1e3), scale in -3_i32..300,
+        ) {
+            let ground = Lattice::from_raster(&rough()).expect("north up");
+            let of = |index: usize| ground.origin()[index % 2] + corners[index] * 10_f64.powi(scale);
+            let text = format!("{},{},{},{}", of(0), of(1), of(2), of(3));
+            if let Ok(extent) = parse(&text, &Crs::local(), &Crs::local()) {
+                match extent.posts(&ground) {
+                    Ok(posts) => assert!(posts.last.column < COLUMNS && posts.last.row < ROWS),
+                    Err(reason) => assert!(!reason.is_empty()),
+                }
+            }
+        }
     }
 
     #[test]

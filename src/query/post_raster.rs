@@ -9,6 +9,7 @@ use sandtable_raster::raster::{Raster, Samples, north_up_nodes};
 use sandtable_raster::windows::{ByteRows, RasterWindow, Windows};
 use sandtable_terrain::hillshade::{self, HillshadeOptions, hillshade};
 use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::post_rect::PostRect;
 
 /// A byte for each post of a lattice, and which byte means no data.
 pub struct PostBytes<F> {
@@ -39,16 +40,22 @@ impl<F: Fn(usize, &mut [u8]) + Sync> PostBytes<F> {
 pub(crate) fn post_header(
     lattice: &Lattice,
     crs: &Crs,
+    of: (&'static str, &'static str),
+    nodata: f64,
+) -> Raster {
+    part_header((lattice, PostRect::all(lattice)), crs, of, nodata)
+}
+
+/// [`post_header`] of some posts of a lattice.
+pub(crate) fn part_header(
+    (lattice, posts): (&Lattice, PostRect),
+    crs: &Crs,
     (name, data_type): (&'static str, &'static str),
     nodata: f64,
 ) -> Raster {
-    let north_west = lattice.map_position(Post { column: 0, row: lattice.rows() - 1 });
-    node_header(
-        (north_west, lattice.cell()),
-        (lattice.columns(), lattice.rows()),
-        crs,
-        (name, data_type, nodata),
-    )
+    let north_west = lattice.map_position(Post { column: posts.first.column, row: posts.last.row });
+    let size = (posts.width() as u32, posts.height() as u32);
+    node_header((north_west, lattice.cell()), size, crs, (name, data_type, nodata))
 }
 
 /// [`post_header`] of posts from the north-western one on, given by its map position, and their distances.

@@ -24,16 +24,19 @@ use sandtable_analysis::error::AnalysisError;
 use sandtable_analysis::extent::{LandExtent, PlacedOutcome, run_within};
 use sandtable_analysis::land::Land;
 use sandtable_analysis::movement::vehicle::Vehicle;
-use sandtable_analysis::outcome::Outcome;
+use sandtable_analysis::outcome::{Outcome, OutcomeFeature, OutcomeRaster};
 use sandtable_base::message::choice::Choice as _;
 use sandtable_catalog::kind::AnalysisKind;
 use sandtable_catalog::parameter::ParameterForm;
 use sandtable_description::analyses::{AnalysisTable, DescribedValue, VehicleTable};
+use sandtable_description::color::Color;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::parse::parse;
 use sandtable_description::stated::Stated;
+use sandtable_description::words::AnalysisDraw;
+use sandtable_draw::color::Srgba;
 use sandtable_draw::list::FeatureId;
 use sandtable_geom::position::Position;
 use sandtable_raster::answer::Answer;
@@ -53,12 +56,35 @@ pub struct SceneAnalysis {
     pub kind: &'static AnalysisKind,
     /// Its number among the scene's, from 0.
     pub number: usize,
+    /// What pictures show of it.
+    pub draw: AnalysisDraw,
+    /// The color of its lines, where one is stated.
+    pub color: Option<Srgba>,
     /// The feature that it is.
     pub feature: FeatureId,
     /// The ground on whose posts the values of its raster are.
     pub ground: Arc<Lattice>,
     /// What it gives.
     pub outcome: Outcome,
+}
+
+impl SceneAnalysis {
+    /// The raster whose classes pictures show by hatching; `None` where they show none.
+    pub fn hatched_raster(&self) -> Option<&OutcomeRaster> {
+        let shows = matches!(self.draw, AnalysisDraw::All | AnalysisDraw::Hatching);
+        self.outcome.raster.as_ref().filter(|_| shows)
+    }
+
+    /// The raster whose classes pictures show by tints; `None` where they show none.
+    pub fn tinted_raster(&self) -> Option<&OutcomeRaster> {
+        let shows = matches!(self.draw, AnalysisDraw::All | AnalysisDraw::Tints);
+        self.outcome.raster.as_ref().filter(|_| shows)
+    }
+
+    /// The features that pictures show.
+    pub fn shown_features(&self) -> &[OutcomeFeature] {
+        if self.draw == AnalysisDraw::Nothing { &[] } else { &self.outcome.features }
+    }
 }
 
 /// An analysis whose arguments have their places.
@@ -83,7 +109,16 @@ impl SceneModel {
         self.features.push(SceneFeature { kind: FeatureKind::Analysis, name: name.clone(), origin });
         let feature = FeatureId(FeatureId::GROUND.0 + self.features.len() as u32);
         let number = self.analyses.len();
-        self.analyses.push(SceneAnalysis { name, kind, number, feature, ground, outcome });
+        self.analyses.push(SceneAnalysis {
+            name,
+            kind,
+            number,
+            draw: AnalysisDraw::All,
+            color: None,
+            feature,
+            ground,
+            outcome,
+        });
     }
 }
 
@@ -197,21 +232,18 @@ pub(super) fn analyze(
     let mut land: Option<Land> = None;
     let mut layers: &[_] = &[];
     let mut analyses = Vec::with_capacity(placed.len());
-    let mut placed = placed.into_iter().peekable();
-    while let Some(PlacedAnalysis { arguments, extent, feature, name, table }) = placed.next() {
+    for PlacedAnalysis { arguments, extent, feature, name, table } in placed {
         let (kind, table) = (arguments.kind(), &document.analyses[table]);
         progress(kind.title);
         let of_kind = match land.take().filter(|_| layers == kind.layers) {
             Some(land) => land,
             None => land_of(scene, kind.layers),
         };
-        layers = kind.layers;
-        // The land is kept for the next analysis where that is of the same layers.
-        let is_next = |next: &PlacedAnalysis| next.arguments.kind().layers == layers;
-        land = placed.peek().is_some_and(is_next).then(|| of_kind.clone());
         let compared =
             |land: &Land| other_ground(table, land, scene, assets, document).map_err(AnalysisFault::Ground);
-        let made = run_within(of_kind, &arguments, extent.as_ref(), compared, &StopFlag::default());
+        let made = run_within(&of_kind, &arguments, extent.as_ref(), compared, &StopFlag::default());
+        layers = kind.layers;
+        land = Some(of_kind);
         let made = made.map_err(|fault| match fault {
             AnalysisFault::Ground(error) => error,
             AnalysisFault::Analysis(error) => failed(document, table, error),
@@ -221,7 +253,16 @@ pub(super) fn analyze(
             let span = table.kind.span().unwrap_or_default();
             findings.add(FindingCode::AnalysisLimited, span, format!("{name}: {note}"));
         }
-        analyses.push(SceneAnalysis { name, kind, number: analyses.len(), feature, ground, outcome });
+        analyses.push(SceneAnalysis {
+            name,
+            kind,
+            number: analyses.len(),
+            draw: table.draw,
+            color: table.color.map(|Color(color)| Srgba(color)),
+            feature,
+            ground,
+            outcome,
+        });
     }
     errors.finish()?;
     scene.findings.extend(findings.into_vec());
@@ -287,10 +328,20 @@ fn heights_of(file: &str, assets: &Assets) -> Result<HeightService, OpenSceneErr
     Ok(build_ground(&other, assets)?.heights)
 }
 
+/// How heights of a surface are interpolated at the posts of `ground`, so that what earthworks leave as it was is the same. Posts
+/// that a scene inserts between measured ones for its features lie on the triangles of these.
+pub fn interpolation_between(surface: Surface, ground: &Lattice) -> Interpolation {
+    match surface {
+        Surface::Source if ground.doublings() > 0 => Interpolation::Planar,
+        _ => Interpolation::default(),
+    }
+}
+
 /// Heights at the posts of the land; `None` where there are none.
 fn sampled(heights: &HeightService, surface: Surface, land: &Land) -> Option<Arc<Lattice>> {
     let ground = &land.ground;
     let (columns, rows) = (ground.columns(), ground.rows());
+    let interpolation = interpolation_between(surface, ground);
     let snapshot = heights.snapshot();
     let mut answers = vec![Answer::NoData; columns as usize];
     let mut samples = Vec::with_capacity(columns as usize * rows as usize);
@@ -298,9 +349,12 @@ fn sampled(heights: &HeightService, surface: Surface, land: &Land) -> Option<Arc
         let at = (0..columns)
             .map(|column| land.crs.transform(snapshot.crs(), ground.map_position(Post { column, row })));
         let at: Vec<DVec2> = at.collect::<Result<_, _>>().ok()?;
-        snapshot.heights(surface, Interpolation::default(), &at, &mut answers);
+        snapshot.heights(surface, interpolation, &at, &mut answers);
         samples
             .extend(answers.iter().map(|answer| answer.height_m().map_or(f32::NAN, |height| height as f32)));
     }
-    Lattice::new(ground.origin(), ground.cell(), columns, samples).map(Arc::new).ok()
+    if samples.iter().all(|sample| sample.is_nan()) {
+        return None;
+    }
+    Lattice::part((ground.origin(), ground.cell()), ground.first(), columns, samples).map(Arc::new).ok()
 }

@@ -6,6 +6,7 @@ use sandtable_base::limits::{PLAN_OBSERVERS, PLAN_POINTS, PLAN_SHARDS, RASTER_SA
 use sandtable_files::disk::{ReadFileError, WriteFileError};
 use sandtable_files::error::FileError;
 use sandtable_files::raster_file::WriteRasterError;
+use sandtable_query::analysis::AnalyzeError;
 use sandtable_query::dataset::{OpenError, QueryError};
 use sandtable_query::dem::OpenDemError;
 use sandtable_query::ground::GroundError;
@@ -42,6 +43,14 @@ pub enum ShardError {
     Points(#[from] PositionsError),
     #[error(transparent)]
     Above(#[from] FileError<HeightsAboveError>),
+    #[error(transparent)]
+    Analyze(Box<AnalyzeError>),
+}
+
+impl From<AnalyzeError> for ShardError {
+    fn from(error: AnalyzeError) -> Self {
+        Self::Analyze(Box::new(error))
+    }
 }
 
 impl ShardError {
@@ -111,4 +120,9 @@ pub enum PlanFault {
          plan parts of the region, or {RASTER_SAMPLES:#}"
     )]
     Region { columns: u64, rows: u64 },
+    #[error(
+        "the analysis has {columns} x {rows} posts, more than the {RASTER_SAMPLES} of a raster in memory; plan an `extent` of the \
+         land, or {RASTER_SAMPLES:#}"
+    )]
+    AnalysisPosts { columns: u64, rows: u64 },
 }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use crate::error::{PlanError, PlanFault, ShardError};
 use crate::plan::{PlannedProduct, ShardPlan};
 use crate::record::{self, ShardState};
-use crate::{atlas, heights, tiles, viewsheds};
+use crate::{analysis, atlas, heights, tiles, viewsheds};
 use sandtable_dem::dem_format::DemFormat;
 use sandtable_dem::formats::WRITTEN_EXTENSIONS;
 use sandtable_files::disk;
@@ -63,17 +63,28 @@ pub fn gather(
         PlannedProduct::Tiles(arguments) => Ok(vec![tiles::gather::gather(plan, arguments, out)?]),
         PlannedProduct::Viewsheds(arguments) => {
             let out = checked(plan, own("viewsheds.tif"))?;
-            let extension = out.extension().unwrap_or_default().to_string_lossy().into_owned();
-            let format = DemFormat::to_write(&extension).ok_or_else(|| {
-                let message =
-                    format!("rasters are written as {WRITTEN_EXTENSIONS}; name a file that ends so");
-                PlanError::new(&out, PlanFault::Output(message))
-            })?;
+            let format = raster_format(&out)?;
             plan.verify_inputs()?;
             viewsheds::gather::gather(plan, arguments, &out, format)?;
             Ok(vec![out])
         }
+        PlannedProduct::Analysis(arguments) => {
+            let out = checked(plan, own("analysis.tif"))?;
+            let format = raster_format(&out)?;
+            plan.verify_inputs()?;
+            analysis::gather::gather(plan, arguments, &out, format)?;
+            Ok(vec![out])
+        }
     }
+}
+
+/// The format of a raster's file.
+fn raster_format(out: &Path) -> Result<&'static DemFormat, ShardError> {
+    let extension = out.extension().unwrap_or_default().to_string_lossy().into_owned();
+    DemFormat::to_write(&extension).ok_or_else(|| {
+        let message = format!("rasters are written as {WRITTEN_EXTENSIONS}; name a file that ends so");
+        PlanError::new(out, PlanFault::Output(message)).into()
+    })
 }
 
 /// A path to which a product can be written: none of an input.

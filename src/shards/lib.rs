@@ -5,6 +5,7 @@
 //!
 #![doc = include_str!("SHARDS.md")]
 
+pub mod analysis;
 pub mod atlas;
 pub mod error;
 pub mod gather;

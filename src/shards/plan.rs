@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::analysis::arguments::AnalysisPlan;
 use crate::atlas::arguments::AtlasArguments;
 use crate::error::{PlanError, PlanFault, ShardError};
 use crate::heights::arguments::HeightsArguments;
@@ -37,6 +38,8 @@ pub enum PlannedProduct {
     Atlas(AtlasArguments),
     /// Terrain tiles of a globe.
     Tiles(TilesArguments),
+    /// A terrain analysis.
+    Analysis(AnalysisPlan),
 }
 
 impl PlannedProduct {
@@ -47,6 +50,7 @@ impl PlannedProduct {
             Self::Viewsheds(_) => "viewsheds",
             Self::Atlas(_) => "atlas",
             Self::Tiles(_) => "tiles",
+            Self::Analysis(_) => "analysis",
         }
     }
 }

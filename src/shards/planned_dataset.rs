@@ -73,6 +73,11 @@ impl PlannedDataset {
         place(&self.file, folder)
     }
 
+    /// The folders that a scene may read besides the parent of its own, of a plan in `folder`.
+    pub fn allowed(&self, folder: &Path) -> Vec<PathBuf> {
+        self.allow.iter().map(|allowed| folder.join(allowed)).collect()
+    }
+
     /// Opens the dataset of a plan in `folder`.
     ///
     /// # Errors
@@ -96,8 +101,7 @@ impl PlannedDataset {
             vertical_unit: self.vertical_unit,
             ..DemOptions::default()
         };
-        let allowed = self.allow.iter().map(|allowed| folder.join(allowed)).collect();
-        let options = DatasetOptions { dem, allowed, ..DatasetOptions::default() };
+        let options = DatasetOptions { dem, allowed: self.allowed(folder), ..DatasetOptions::default() };
         let path = self.path(folder);
         let dataset = Dataset::open(&path, &options)?;
         let crs = crs.unwrap_or_else(|| dataset.crs());

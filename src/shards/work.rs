@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::analysis::arguments::OpenedAnalysis;
 use crate::atlas::arguments::AtlasArguments;
 use crate::atlas::work::AtlasScene;
 use crate::error::ShardError;
@@ -11,7 +12,7 @@ use crate::planned_dataset::QueriedDataset;
 use crate::record::{self, ShardFile, ShardState};
 use crate::tiles::arguments::TilesArguments;
 use crate::viewsheds::arguments::ViewshedsArguments;
-use crate::{atlas, heights, tiles, viewsheds};
+use crate::{analysis, atlas, heights, tiles, viewsheds};
 
 /// A worker: everything that all shards of a plan share, opened once.
 pub struct ShardWorker {
@@ -24,6 +25,7 @@ enum OpenedProduct {
     Viewsheds(ViewshedsArguments, QueriedDataset),
     Atlas(AtlasArguments, Box<AtlasScene>),
     Tiles(TilesArguments, QueriedDataset),
+    Analysis(Box<OpenedAnalysis>),
 }
 
 /// Whether a shard is done: nothing is opened or compared for that but its record.
@@ -58,6 +60,9 @@ impl ShardWorker {
                 let dataset = arguments.dataset.open(&plan.folder)?;
                 OpenedProduct::Tiles(arguments.clone(), dataset)
             }
+            PlannedProduct::Analysis(arguments) => {
+                OpenedProduct::Analysis(Box::new(arguments.open(&plan.folder)?))
+            }
         };
         Ok(Self { plan: Arc::clone(plan), opened })
     }
@@ -81,6 +86,9 @@ impl ShardWorker {
             }
             OpenedProduct::Tiles(arguments, queried) => {
                 tiles::work::result(plan, arguments, queried, &shard)?
+            }
+            OpenedProduct::Analysis(opened) => {
+                only(analysis::work::EXTENSION, analysis::work::result(plan, opened, &shard)?)
             }
         };
         record::publish(plan, id, &files)

@@ -164,7 +164,7 @@ pub fn feature_inks(scene: &SceneModel) -> Vec<Option<PrintInk>> {
 
 /// Whether the classes of an analysis are told by hatching.
 fn has_hatching(scene: &SceneModel) -> bool {
-    let rasters = scene.analyses.iter().filter_map(|analysis| analysis.outcome.raster.as_ref());
+    let rasters = scene.analyses.iter().filter_map(|analysis| analysis.hatched_raster());
     rasters.flat_map(|raster| &raster.classes).any(|class| class.look.hatching != Hatching::None)
 }
 

@@ -96,20 +96,21 @@ pub fn overlay_entries(scene: &SceneModel, picture: &Rendering) -> Vec<LegendEnt
 /// The classes that a raster holds and that are tinted or hatched, and what the lines of an analysis are.
 fn analysis_entries(analysis: &SceneAnalysis, scene: &SceneModel) -> Vec<LegendEntry> {
     let mut entries = Vec::new();
-    let is_alone = scene.analyses.iter().filter(|other| other.outcome.raster.is_some()).count() == 1;
-    if let Some(raster) = &analysis.outcome.raster {
-        let classes = legend_classes(raster);
-        entries.extend(classes.iter().map(|class| class_entry(class, analysis, is_alone, scene.preset)));
-    }
+    let shows = |of: &SceneAnalysis| of.hatched_raster().or(of.tinted_raster()).is_some();
+    let is_alone = scene.analyses.iter().filter(|other| shows(other)).count() == 1;
+    let classes = legend_classes(analysis);
+    entries.extend(classes.iter().map(|class| class_entry(class, analysis, is_alone, scene.preset)));
     let nouns = legend_lines(analysis);
-    let is_one = nouns.len() == 1;
+    let is_one = nouns.len() == 1 && analysis.outcome.raster.is_none();
+    let is_only = scene.analyses.len() == 1;
     let printed = |color: Srgba| match scene.preset {
         Some(StylePreset::Print) => Srgba::opaque(0, 0, 0),
         _ => color,
     };
-    let name = |noun: &str| match is_one {
-        true => analysis.name.clone(),
-        false => format!("{}: {noun}", analysis.name),
+    let name = |noun: &str| match (is_one, is_only) {
+        (true, _) => analysis.name.clone(),
+        (false, true) => capitalized(noun),
+        (false, false) => format!("{}: {noun}", analysis.name),
     };
     entries.extend(nouns.into_iter().map(|(noun, color)| line(&name(noun), printed(color))));
     entries
@@ -122,12 +123,14 @@ fn class_entry(
     preset: Option<StylePreset>,
 ) -> LegendEntry {
     let tint = Srgba(class.look.tint);
-    let fill = GROUND.linear().lerp(tint.linear(), tint.alpha());
+    let share = if analysis.tinted_raster().is_some() { tint.alpha() } else { 0.0 };
+    let fill = GROUND.linear().lerp(tint.linear(), share);
     let name = match is_alone {
         true => capitalized(&class.label),
         false => format!("{}: {}", analysis.name, class.label),
     };
     let pattern = match class.look.hatching {
+        _ if analysis.hatched_raster().is_none() => None,
         Hatching::None => None,
         Hatching::Single => Some(PrintPattern::Hatching),
         Hatching::Crossed => Some(PrintPattern::CrossHatching),

@@ -52,7 +52,7 @@ impl AnalysisListing {
             name: analysis.name.clone(),
             kind: analysis.kind,
             feature: analysis.feature,
-            classes: outcome.raster.as_ref().map(legend_classes).unwrap_or_default(),
+            classes: legend_classes(analysis),
             lines: legend_lines(analysis),
             figures: outcome.figures.clone(),
             features: outcome.features.len(),

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod analysis_land;
 mod areas;
 mod bridges;
 mod building_tags;

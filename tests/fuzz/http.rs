@@ -13,7 +13,7 @@ use sandtable_query::service::{NamedFile, RequestLog, ServiceLimits, ServiceOpti
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// Starts of requests: what follows is a query.
-const ADDRESSES: [&str; 7] = [
+const ADDRESSES: [&str; 9] = [
     "/v1/hill?locations=",
     "/v1/hill?",
     "/v1/profile?",
@@ -21,6 +21,8 @@ const ADDRESSES: [&str; 7] = [
     "/v1/viewshed?",
     "/v1/",
     "/api/v1/lookup?",
+    "/v1/analyze/slope?extent=",
+    "/v1/analyze/viewsheds?format=json&posts=",
 ];
 
 /// Forms in which a body may come.
@@ -65,7 +67,7 @@ fn service(hill: &Path) -> SocketAddr {
 /// The request that `bytes` choose, and whether the client has more to say after it.
 fn request(bytes: &[u8]) -> Option<(Vec<u8>, bool)> {
     let (&choice, rest) = bytes.split_first()?;
-    let (address, choice) = (usize::from(choice) % 8, usize::from(choice) / 8);
+    let (address, choice) = (usize::from(choice) % 10, usize::from(choice) / 10);
     let Some(address) = ADDRESSES.get(address) else { return Some((rest.to_vec(), false)) };
     // An address ends at the first space or line.
     let is_word = |byte: &u8| byte.is_ascii_graphic();

@@ -225,14 +225,17 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
                 asked(2, "dataset=hill&from=500030,4000060&to=500240,4000200&samples=9&crs=EPSG:32616"),
                 asked(3, &format!("dataset=hill&from=500030,4000060&to=500240,4000200&{UTM}")),
                 asked(4, &format!("dataset=hill&from=500240,4000200&range=100&{UTM}")),
+                asked(7, "500000,4000000,500200,4000200&crs=native"),
+                asked(7, "500000,4000000;500200,4000000;500000,4000200&crs=native&unit=degrees&format=json"),
+                asked(8, "500040,4000060|500100,4000100&crs=native"),
                 asked(5, "hill,hill?locations=1,2|3,4"),
-                asked(8, "{\"locations\":\"36.143,-87.0\",\"interpolation\":\"nearest\"}"),
-                asked(24, "locations=36.143,-87.0&format=geojson"),
-                asked(40, "--b\r\nContent-Disposition: form-data; name=\"locations\"\r\n\r\n36.143,-87.0\r\n--b--\r\n"),
+                asked(10, "{\"locations\":\"36.143,-87.0\",\"interpolation\":\"nearest\"}"),
+                asked(30, "locations=36.143,-87.0&format=geojson"),
+                asked(50, "--b\r\nContent-Disposition: form-data; name=\"locations\"\r\n\r\n36.143,-87.0\r\n--b--\r\n"),
                 asked(6, "locations=36.143,-87.0|1,2"),
-                asked(14, "{\"locations\":[{\"latitude\":36.143,\"longitude\":-87.0}]}"),
-                asked(7, "GET /health HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"),
-                asked(7, "POST /v1/hill HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n5\r\nlocat\r\n0\r\n\r\n"),
+                asked(16, "{\"locations\":[{\"latitude\":36.143,\"longitude\":-87.0}]}"),
+                asked(9, "GET /health HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"),
+                asked(9, "POST /v1/hill HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n5\r\nlocat\r\n0\r\n\r\n"),
             ]
         }
         _ => [

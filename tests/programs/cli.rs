@@ -46,6 +46,7 @@ mod serve;
 #[cfg(unix)]
 mod sets;
 mod shards;
+mod shards_analysis;
 mod shards_atlas;
 mod shards_colors;
 #[cfg(unix)]

@@ -10,8 +10,9 @@ mod links;
 mod pages;
 mod sandbox;
 
-use std::path::Path;
+use std::path::{Component, Path, PathBuf};
 
+use rayon::prelude::*;
 use sandtable_description::parse::parse;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
@@ -40,6 +41,7 @@ macro_rules! pages_with_commands {
 
 pages_with_commands! {
     every_command_of_the_readme_runs: "README.md",
+    every_command_of_terrain_analysis_runs: "src/book/analysis.md",
     every_command_of_exports_runs: "src/book/exports.md",
     every_command_of_gis_and_python_runs: "src/book/gis-and-python.md",
     every_command_of_heights_runs: "src/book/heights.md",
@@ -87,6 +89,24 @@ fn the_pages_with_commands_are_those_that_are_run() {
 }
 
 #[test]
+fn every_command_of_the_pages_of_analyses_runs() {
+    let sandbox = Sandbox::new("pages-of-analyses");
+    pages::of_the_analyses().into_par_iter().for_each(|name| {
+        for Line { text, .. } in command::lines_of(&text_of(&name)) {
+            let Some(Command::Sandtable { mut arguments, input: None }) = Command::parse(&text) else {
+                panic!("{name}: the test knows no way to run this line: {text}");
+            };
+            // Another test makes the pictures; drawn as maps of this many kinds they would take long.
+            let output = arguments.iter().position(|argument| argument == "-o").expect("it writes a map");
+            let map = arguments.drain(output..output + 2).next_back().expect("a name follows");
+            assert!(map.ends_with(".png"), "{name}: {text}");
+            let result = sandbox.run(&arguments, None);
+            result.unwrap_or_else(|reason| panic!("{name}: {text}\n{reason}"));
+        }
+    });
+}
+
+#[test]
 fn every_scene_that_a_page_shows_is_a_whole_one() {
     let place = Path::new(ROOT).join("scenes/shown-on-a-page.toml");
     let assets = Assets::new(&place, &[]).expect("the folder is there");
@@ -131,15 +151,30 @@ fn links_that_leave_the_book_begin_at_the_top_of_the_repository() {
     // `src/book/book.toml` says why: the built book lies as deep below the top, but elsewhere.
     let mut wrong = Vec::new();
     for name in pages::of_the_book() {
+        let folder = Path::new(&name).parent().expect("a page lies in a folder");
+        let top = "../".repeat(folder.components().count());
         for target in links::all(&text_of(&name)) {
             let path = target.split('#').next().unwrap_or_default();
-            let elsewhere = path.contains("://") || path.starts_with("../../");
-            if !elsewhere && path.contains('/') {
+            let elsewhere = path.contains("://") || path.starts_with(&top);
+            if !elsewhere && !resolved(&folder.join(path)).starts_with(BOOK) {
                 wrong.push(format!("{name}: {target}"));
             }
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// The path without steps to the folder above.
+fn resolved(path: &Path) -> PathBuf {
+    path.components().fold(PathBuf::new(), |mut whole, part| {
+        match part {
+            Component::ParentDir => {
+                whole.pop();
+            }
+            part => whole.push(part),
+        }
+        whole
+    })
 }
 
 #[test]

@@ -97,7 +97,7 @@ fn an_analysis_lies_under_water_and_roads_and_over_what_covers_the_ground() {
                   [[road]]\nwidth = 30\npoints = [[5100, 8000], [6900, 8000]]\n";
     let scene = scene(&format!("{OBSTACLES}{tables}{PLAN}")).expect("a sound scene");
     let drawn = drawn(&scene);
-    let place = |of: &dyn Fn(&DrawItem) -> bool| drawn.drawn.list.items.iter().position(|item| of(item));
+    let place = |of: &dyn Fn(&DrawItem) -> bool| drawn.drawn.list.items.iter().position(of);
     let feature = scene.analyses[0].feature;
     let tint = place(&|item| item.feature == feature && item.layer == DepthLayer::Draped(0)).expect("a tint");
     let kind = |item: &DrawItem| item.feature.index().and_then(|index| scene.features.get(index));
@@ -187,6 +187,25 @@ fn a_route_states_its_way_points_and_its_march_table() {
         _ => f64::NAN,
     };
     assert!((km(&table.rows[0]) + km(&table.rows[1]) - km(&table.rows[2])).abs() < 1e-9);
+}
+
+#[test]
+fn ground_that_no_earthworks_touch_is_neither_cut_nor_filled() {
+    // The scene's roads need posts between the measured ones.
+    let path = Path::new(env!("SANDTABLE_ROOT")).join("scenes/cut.toml");
+    let text = "include = \"earthworks.toml\"\n[[analysis]]\nkind = \"cut-fill\"\nagainst = \"source\"\n";
+    let scene = build_scene_text(&path, text, &[], &|_| ()).expect("a sound scene");
+    let analysis = &scene.analyses[0];
+    let raster = analysis.outcome.raster.as_ref().expect("a raster");
+    assert!(analysis.ground.doublings() > 0);
+    let (mut far, mut near) = (0.0_f32, 0.0_f32);
+    for post in analysis.ground.posts() {
+        let value = raster.values.value(analysis.ground.index(post)).abs();
+        let is_far = analysis.ground.map_position(post).y > 400.0;
+        let most = if is_far { &mut far } else { &mut near };
+        *most = most.max(value);
+    }
+    assert!(far < 1e-4 && near > 5.0, "{far} {near}");
 }
 
 #[test]

@@ -286,7 +286,7 @@ fn a_viewshed_of_two_observers_is_what_either_sees() {
     let shot = drawn(&scene);
     shot.list.check().expect("a sound draw list");
     let tint =
-        shot.list.items.iter().find(|item| shot.list.materials[item.material.0 as usize].name == "sight");
+        shot.list.items.iter().find(|item| shot.list.materials[item.material.0 as usize].name == "tint");
     let mesh = &shot.list.meshes[tint.expect("a tint").mesh.0 as usize];
     assert!(check_clearance(mesh, &*shot.displayed) < CLEARANCE_M);
     assert_eq!(tint.map(|item| item.feature), Some(FeatureId(2)));

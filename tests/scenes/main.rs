@@ -4,6 +4,7 @@
 mod common;
 
 mod analyses;
+mod analysis_pages;
 mod assets;
 mod buffers;
 mod clearance;

@@ -5,14 +5,17 @@ use glam::DVec2;
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
-use crate::outcome::{Figure, Outcome, OutcomeTable, PropertyValue, TableColumn};
+use crate::outcome::{
+    FeatureRole, Figure, Outcome, OutcomeFeature, OutcomeShape, OutcomeTable, PropertyValue, TableColumn,
+};
 use crate::place::height_under;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// The greatest number of stations.
 const MOST_STATIONS: f64 = 100_000.0;
 
-/// A row for each station: ground, berm height, ditch depth, and the volume of the berm so far.
+/// A row for each station: ground, berm height, ditch depth, and the volume of the berm so far; and the ground that berms
+/// cover, from foot to foot.
 ///
 /// # Errors
 /// An argument where there would be too many stations, a place where a station has no ground.
@@ -34,6 +37,7 @@ pub(crate) fn berms(
     }
     let mut rows = Vec::new();
     let (mut volume, mut before) = (0.0, None);
+    let mut berms = Vec::new();
     for (distance, at) in stations(line, step) {
         let ground = height_under(&land.ground, "line", at)?;
         let berm = (level - ground).max(0.0);
@@ -45,6 +49,7 @@ pub(crate) fn berms(
             volume += (distance - last) * (section + last_section) / 2.0;
         }
         before = Some((distance, section));
+        berms.push(BermStation { at, height_m: berm, half_m: crest / 2.0 + run * berm });
         rows.push([distance, ground, berm, depth, volume].map(PropertyValue::Number).into());
     }
     let column = |name, decimals| TableColumn::new(name, "m", decimals);
@@ -57,10 +62,46 @@ pub(crate) fn berms(
     ];
     let figure = |name, value| Figure::new(name, value, "m³");
     Ok(Outcome {
+        features: footprints(&berms),
         tables: vec![OutcomeTable { title: "Berm and ditch".to_owned(), columns, rows }],
         figures: vec![figure("berm", volume), figure("ditch", volume / swell)],
         ..Outcome::default()
     })
+}
+
+/// A berm at a station.
+struct BermStation {
+    at: DVec2,
+    height_m: f64,
+    /// Half of its width at its foot.
+    half_m: f64,
+}
+
+/// The ground that berms cover, an area for each stretch of stations where the crest is above the ground.
+fn footprints(stations: &[BermStation]) -> Vec<OutcomeFeature> {
+    let stretches = stations.split(|station| station.height_m <= 0.0);
+    stretches.filter(|stretch| stretch.len() > 1).map(footprint).collect()
+}
+
+fn footprint(stretch: &[BermStation]) -> OutcomeFeature {
+    let last = stretch.len() - 1;
+    let foot = |index: usize| {
+        let along = stretch[(index + 1).min(last)].at - stretch[index.saturating_sub(1)].at;
+        along.normalize_or_zero().perp() * stretch[index].half_m
+    };
+    let right = (0..=last).map(|index| stretch[index].at - foot(index));
+    let left = (0..=last).rev().map(|index| stretch[index].at + foot(index));
+    let length: f64 = stretch.windows(2).map(|pair| pair[0].at.distance(pair[1].at)).sum();
+    let highest = stretch.iter().map(|station| station.height_m).fold(0.0, f64::max);
+    OutcomeFeature {
+        shape: OutcomeShape::Area(vec![right.chain(left).collect()]),
+        name: format!("up to {highest:.1} m"),
+        role: FeatureRole::Site,
+        properties: vec![
+            ("length_m", PropertyValue::Number(length)),
+            ("highest_m", PropertyValue::Number(highest)),
+        ],
+    }
 }
 
 /// Positions each `step` meters along a line, and its end, with their distances from its beginning.
@@ -104,6 +145,13 @@ mod tests {
         let row = [20.0, 8.0, 2.0, 2.0, 120.0].map(PropertyValue::Number);
         assert_eq!(outcome.tables[0].rows.len(), 3);
         assert_eq!(outcome.tables[0].rows[2], row);
+        // A crest of 1 m and two sides of 2 m.
+        let foot = [[0.0, -2.5], [10.0, -2.5], [20.0, -2.5], [20.0, 2.5], [10.0, 2.5], [0.0, 2.5]];
+        let foot = foot.map(|foot| at + DVec2::from(foot)).to_vec();
+        let areas: Vec<&OutcomeShape> = outcome.features.iter().map(|feature| &feature.shape).collect();
+        assert_eq!(areas, [&OutcomeShape::Area(vec![foot])]);
+        let low = arguments.clone().with("level_m", ArgumentValue::Number(8.0));
+        assert!(berms(&land, &low, &StopFlag::default()).expect("valid input").features.is_empty());
         let off = arguments.with("line", ArgumentValue::Points(vec![at, at - DVec2::new(20.0, 0.0)]));
         let error = berms(&land, &off, &StopFlag::default()).expect_err("off the land");
         assert_eq!(error.key(), Some("line"));

@@ -92,7 +92,7 @@ pub(crate) fn differences(
             let post = Post { column: column as u32, row: row as u32 };
             if area.is_empty() || holds(area, ground.map_position(post)) {
                 let index = row * columns + column;
-                *value = ground.heights()[index] - other.heights()[index];
+                *value = difference(ground.heights()[index], other.heights()[index]);
             }
         }
     });
@@ -100,6 +100,12 @@ pub(crate) fn differences(
         return Err(AnalysisError::Stopped);
     }
     Ok(values)
+}
+
+/// A height above another; 0 where they differ by no more than heights are rounded.
+fn difference(height: f32, other: f32) -> f32 {
+    let difference = height - other;
+    if difference.abs() <= 4.0 * f32::EPSILON * height.abs() { 0.0 } else { difference }
 }
 
 /// The share of a cell that belongs to a post along a row or column of so many: half of it at the border.
@@ -140,6 +146,13 @@ mod tests {
         );
         land.other_ground = Some(lattice([2.; 9]));
         land
+    }
+
+    #[test]
+    fn what_rounding_alone_tells_apart_is_neither_cut_nor_filled() {
+        assert_eq!(difference(250.0_f32.next_up(), 250.0).to_bits(), 0.0_f32.to_bits());
+        assert_eq!(difference(250.001, 250.0), 250.001 - 250.0);
+        assert!(difference(f32::NAN, 1.0).is_nan());
     }
 
     #[test]

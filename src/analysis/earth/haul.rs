@@ -102,7 +102,7 @@ pub(crate) fn haul(
         features.push(OutcomeFeature {
             shape: OutcomeShape::Line(vec![from, to]),
             name: String::new(),
-            role: FeatureRole::Route,
+            role: FeatureRole::Haul,
             properties: vec![
                 ("volume_m3", PropertyValue::Number(volume_m3)),
                 ("distance_m", PropertyValue::Number(from.distance(to))),

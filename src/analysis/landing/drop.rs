@@ -184,7 +184,7 @@ fn raise_codes(
 }
 
 /// The tangent of the slope at each post; raised just above the limit without caution by a surface that wants caution,
-/// infinite where nobody can land or the slope is unknown.
+/// infinite where nobody can land or the ground has no data.
 fn hindrances(land: &Land, free: f32) -> Vec<f32> {
     let ground = &*land.ground;
     let columns = ground.columns() as usize;
@@ -196,7 +196,7 @@ fn hindrances(land: &Land, free: f32) -> Vec<f32> {
             let is_low = land.obstacles_m.as_ref().is_none_or(|heights| heights[index] <= LOW_M);
             let is_dry = land.water.as_ref().is_none_or(|water| water[index].kind == WaterKind::None);
             let is_clear = land.woods.as_ref().is_none_or(|woods| woods[index].spacing_m <= 0.0);
-            if slope.is_nan() || !is_low || !is_dry || !is_clear {
+            if ground.heights()[index].is_nan() || !is_low || !is_dry || !is_clear {
                 continue;
             }
             *value = match land.cover.as_ref().map_or(LandCover::Unknown, |cover| cover[index]) {

@@ -66,9 +66,10 @@ fn brute(land: &Land, headings: &[f64], [length, width]: [f64; 2], index: usize)
                     continue;
                 }
                 let slope = ground.slopes_of_row(r as u32)[c as usize].length().atan().to_degrees();
+                let is_hole = ground.heights()[(r * columns + c) as usize].is_nan();
                 let tree = land.obstacles_m.as_ref().expect("a layer")[(r * columns + c) as usize];
                 code = code.min(match slope {
-                    slope if slope.is_nan() || slope > 15.0 || tree > 0.45 => 0.0,
+                    slope if is_hole || slope > 15.0 || tree > 0.45 => 0.0,
                     slope if slope > 4.5 => 1.0,
                     _ => 2.0,
                 });

@@ -19,7 +19,7 @@ pub(crate) fn mask_tangents(ground: &Lattice, azimuth_deg: f64) -> Vec<f32> {
     let masks: Vec<AtomicU32> = (0..heights.len()).map(|_| AtomicU32::new(f32::NAN.to_bits())).collect();
     chains.numbers().into_par_iter().for_each_init(Vec::new, |hull: &mut Vec<(f64, f64)>, number| {
         hull.clear();
-        for along in chains.from_far_end() {
+        for along in chains.far_to_near() {
             let Some(index) = chains.post(number, along) else { continue };
             if heights[index].is_nan() {
                 continue;
@@ -80,7 +80,7 @@ impl MaskChains {
         -greatest..across - least
     }
 
-    fn from_far_end(&self) -> impl Iterator<Item = usize> + use<> {
+    fn far_to_near(&self) -> impl Iterator<Item = usize> + use<> {
         let (count, is_rising) = (self.aside.len(), self.is_rising);
         (0..count).map(move |index| if is_rising { count - 1 - index } else { index })
     }

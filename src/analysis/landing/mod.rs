@@ -3,6 +3,8 @@
 pub(crate) mod disk;
 mod drop;
 mod mask;
+#[cfg(test)]
+mod oracle_tests;
 mod rectangle;
 mod sites;
 pub mod zones;

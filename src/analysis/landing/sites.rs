@@ -295,7 +295,7 @@ fn masks(
 }
 
 /// The tangent of the slope at each post; raised just above the limit without caution by a cover that wants caution,
-/// infinite where no site can be or the slope is unknown.
+/// infinite where no site can be or the ground has no data.
 fn hindrances(land: &Land, cover: SiteCover, free: f32) -> Vec<f32> {
     let ground = &*land.ground;
     let columns = ground.columns() as usize;
@@ -304,7 +304,7 @@ fn hindrances(land: &Land, cover: SiteCover, free: f32) -> Vec<f32> {
         for (column, (value, slopes)) in values.iter_mut().zip(ground.slopes_of_row(row as u32)).enumerate() {
             let index = row * columns + column;
             let slope = slopes.length();
-            if slope.is_nan() {
+            if ground.heights()[index].is_nan() {
                 continue;
             }
             *value = match fitness(land, cover, index) {

@@ -48,7 +48,7 @@ fn distances_to_water_and_roads_count_from_the_center_and_dryness_from_every_par
         let (column, row) = ((index % 21) as f64 * 10.0, (index / 21) as f64 * 10.0);
         // The disk of 20 m lies within the land; its western post is 30 m from water, its northern one off the road.
         let fits = (20.0..=180.0).contains(&column) && (20.0..=170.0).contains(&row);
-        let wanted = fits && column >= 50.0 && column <= 100.0 && 200.0 - row <= 120.0;
+        let wanted = fits && (50.0..=100.0).contains(&column) && 200.0 - row <= 120.0;
         assert_eq!(code, if wanted { 2.0 } else { 0.0 }, "{column} {row}");
     }
 }

@@ -120,7 +120,7 @@ pub(crate) fn landing_zones(
 }
 
 /// The tangent of the slope at each post; raised just above the limit without caution by a surface that wants caution,
-/// infinite where nothing can land or the slope is unknown.
+/// infinite where nothing can land or the ground has no data.
 fn hindrances(land: &Land, [free, _]: [f32; 2]) -> Vec<f32> {
     let ground = &*land.ground;
     let columns = ground.columns() as usize;
@@ -131,7 +131,7 @@ fn hindrances(land: &Land, [free, _]: [f32; 2]) -> Vec<f32> {
             let slope = slopes.length();
             let is_low = land.obstacles_m.as_ref().is_none_or(|heights| heights[index] <= LOW_M);
             let is_dry = land.water.as_ref().is_none_or(|water| water[index].kind == WaterKind::None);
-            if slope.is_nan() || !is_low || !is_dry {
+            if ground.heights()[index].is_nan() || !is_low || !is_dry {
                 continue;
             }
             *value = match land.cover.as_ref().map_or(LandCover::Unknown, |cover| cover[index]) {

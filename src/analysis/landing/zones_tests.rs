@@ -61,7 +61,7 @@ fn brute(land: &Land, radius: f64, column: i64, row: i64) -> u8 {
             return 0;
         }
         let here = ground.slopes_of_row(y as u32)[x as usize].length();
-        slope = if here.is_nan() { f32::INFINITY } else { slope.max(here) };
+        slope = if height(x, y).is_nan() { f32::INFINITY } else { slope.max(here) };
     }
     let clear = |(east, north): (i64, i64)| {
         let step = ((east as f64 * 10.0).powi(2) + (north as f64 * 8.0).powi(2)).sqrt();

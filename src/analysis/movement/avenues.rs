@@ -12,7 +12,8 @@ use crate::line_posts::along_line;
 use crate::movement::corridors::{FreeGround, echelon};
 use crate::movement::going::{RESTRICTED, UNRESTRICTED};
 use crate::movement::route::{RouteMeasures, way_line};
-use crate::movement::travel::{TravelGoal, TravelGround, travel_ground};
+use crate::movement::search::TravelGoal;
+use crate::movement::travel::{TravelGround, travel_ground};
 use crate::outcome::{
     FeatureRole, Figure, Outcome, OutcomeFeature, OutcomeShape, OutcomeTable, PropertyValue, TableColumn,
 };

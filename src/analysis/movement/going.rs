@@ -350,7 +350,7 @@ mod tests {
     }
 
     #[test]
-    fn built_up_ground_is_as_fast_as_the_vehicle_is_there_and_stops_one_that_may_not_enter() {
+    fn built_up_ground_has_the_vehicles_speed_there_and_stops_one_that_has_none() {
         let mut land = flat(3, 3, 10.0);
         land.cover = Some(vec![LandCover::BuiltUp; 9]);
         for (built_up_kmh, code) in [(0.0, SEVERELY_RESTRICTED), (12.0, RESTRICTED), (24.0, UNRESTRICTED)] {

@@ -4,7 +4,8 @@ use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::measures::area_km2;
-use crate::movement::travel::{TravelGoal, travel_ground};
+use crate::movement::search::TravelGoal;
+use crate::movement::travel::travel_ground;
 use crate::outcome::{
     FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, PostValues,
     ValueClass,

@@ -9,6 +9,7 @@ mod isochrones;
 pub(crate) mod obstacles;
 mod queue;
 mod route;
+mod search;
 mod travel;
 pub mod vehicle;
 

@@ -5,7 +5,8 @@ use glam::DVec2;
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
-use crate::movement::travel::{TravelGoal, TravelGround, travel_ground};
+use crate::movement::search::TravelGoal;
+use crate::movement::travel::{TravelGround, travel_ground};
 use crate::outcome::{
     FeatureRole, Figure, Outcome, OutcomeFeature, OutcomeShape, OutcomeTable, PropertyValue, TableColumn,
 };
@@ -94,11 +95,8 @@ pub(crate) fn route(
         total.climb_m += measures.climb_m;
         total.descent_m += measures.descent_m;
         total.seconds += measures.seconds;
-        let name = |index: usize| match places[index].0 {
-            "via" => format!("via {index}"),
-            key => key.to_owned(),
-        };
-        let label = format!("{} – {}", name(leg), name(leg + 1));
+        // By the numbers of the way-points on the picture.
+        let label = format!("{} – {}", leg + 1, leg + 2);
         rows.push(leg_row(label, &measures, start_min + total.seconds / 60.0));
         way.extend(part.into_iter().skip(1));
     }
@@ -201,7 +199,7 @@ mod tests {
         assert_eq!(rows[2][5], PropertyValue::Text("6:40".to_owned()));
         assert_eq!(
             (&rows[0][0], &rows[0][1]),
-            (&PropertyValue::Text("from – via 1".to_owned()), &PropertyValue::Number(0.2))
+            (&PropertyValue::Text("1 – 2".to_owned()), &PropertyValue::Number(0.2))
         );
     }
 

@@ -1,23 +1,17 @@
-//! The time that a vehicle takes from places to every post: shortest ways over sixteen neighbors, the eight around a post
-//! and the eight knight's moves.
+//! The ground as a vehicle travels it: steps to sixteen neighbors, the eight around a post and the eight knight's moves.
 //!
 //! A step takes the mean pace of the posts that it passes, times the factor of its grade, which differs between up and down.
 //! A diagonal step does not pass between two posts that stop the vehicle, nor a knight's move beside one, so that a chain
 //! of posts, such as a river or a wall, has no gaps; along a road or a bridge both may lie beside it.
-//!
-//! Times are sums of f32. Such a sum never falls as a summand rises, so the least time of each post is one number, whatever
-//! the order in which posts are reached. The way back is found from the times alone, ties by the order of neighbors.
 
 use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::movement::going::{Going, SEVERELY_RESTRICTED};
 use crate::movement::grade::GradeTable;
-use crate::movement::queue::BucketQueue;
 use crate::movement::vehicle::Vehicle;
 use glam::DVec2;
 use sandtable_base::limits::memory::check_memory;
 use sandtable_terrain::lattice::{Lattice, Post};
-use sandtable_terrain::stop_flag::StopFlag;
 
 /// Sixteen neighbors: columns and rows.
 const NEIGHBORS: [[i32; 2]; 16] = [
@@ -39,24 +33,22 @@ const NEIGHBORS: [[i32; 2]; 16] = [
     [2, -1],
 ];
 
-/// The posts taken from the queue between two looks at the stop flag.
-const POSTS_PER_LOOK: u32 = 1 << 16;
-
 /// The ground as a vehicle travels it.
 pub(crate) struct TravelGround<'a> {
-    ground: &'a Lattice,
-    posts: Vec<TravelPost>,
-    grades: GradeTable,
-    steps: [TravelStep; 16],
-    least_pace: f32,
-    greatest_pace: f32,
+    pub(super) ground: &'a Lattice,
+    pub(super) posts: Vec<TravelPost>,
+    pub(super) grades: GradeTable,
+    /// To the sixteen neighbors; the eight around a post come first.
+    pub(super) steps: Vec<TravelStep>,
+    pub(super) least_pace: f32,
+    pub(super) greatest_pace: f32,
     /// Posts that are slowed, each with its signed pace before, in the order in which they were slowed.
     slowed: Vec<(u32, f32)>,
 }
 
 /// A post as a vehicle travels it; what a step needs lies together.
 #[derive(Clone, Copy)]
-struct TravelPost {
+pub(super) struct TravelPost {
     /// Its height in meters, gaps closed that the vehicle crosses.
     height_m: f32,
     /// Seconds per meter on the level; infinite where the vehicle cannot go, below 0 on a road, a bridge or a ford.
@@ -78,22 +70,15 @@ impl TravelPost {
 
 /// A step to a neighbor.
 #[derive(Clone, Copy)]
-struct TravelStep {
-    columns: i32,
-    rows: i32,
-    offset: isize,
+pub(super) struct TravelStep {
+    pub columns: i32,
+    pub rows: i32,
+    pub offset: isize,
     /// The two posts that it passes between or beside; unused for the four straight ones.
     flanks: [isize; 2],
-    length_m: f32,
-}
-
-/// What a journey ends at.
-#[derive(Clone, Copy)]
-pub(crate) struct TravelGoal<'a> {
-    /// No post is reached later, seconds.
-    pub most_s: f32,
-    /// It ends as soon as one of these posts is reached for certain; `None` to reach all.
-    pub any_of: Option<&'a [usize]>,
+    pub length_m: f32,
+    /// The least seconds that it takes anywhere on the ground.
+    pub least_s: f32,
 }
 
 impl<'a> TravelGround<'a> {
@@ -128,6 +113,8 @@ impl<'a> TravelGround<'a> {
         let (least_pace, greatest_pace) =
             (finite().fold(f32::INFINITY, f32::min), finite().fold(0.0, f32::max));
         let grades = GradeTable::new(vehicle, is_langmuir);
+        // A ten-thousandth less, for rounding.
+        let least_s_per_m = least_pace * grades.least() * 0.9999;
         let columns = ground.columns() as isize;
         let steps = NEIGHBORS.map(|[east, north]| {
             let offset = |east: i32, north: i32| north as isize * columns + east as isize;
@@ -137,9 +124,16 @@ impl<'a> TravelGround<'a> {
                 _ => [offset(east, 0), offset(0, north)],
             };
             let length_m = (ground.cell() * DVec2::new(f64::from(east), f64::from(north))).length() as f32;
-            TravelStep { columns: east, rows: north, offset: offset(east, north), flanks, length_m }
+            TravelStep {
+                columns: east,
+                rows: north,
+                offset: offset(east, north),
+                flanks,
+                length_m,
+                least_s: length_m * least_s_per_m,
+            }
         });
-        Ok(Self { ground, posts, grades, steps, least_pace, greatest_pace, slowed: Vec::new() })
+        Ok(Self { ground, posts, grades, steps: steps.into(), least_pace, greatest_pace, slowed: Vec::new() })
     }
 
     /// Multiplies the pace of posts, to keep a later way off them.
@@ -190,7 +184,7 @@ impl<'a> TravelGround<'a> {
 
     /// Seconds from a post to a neighbor; infinite where the step is not passable. The neighbor must be on the lattice.
     #[inline]
-    fn seconds(&self, from: usize, column: i32, row: i32, step: &TravelStep) -> f32 {
+    pub(super) fn seconds(&self, from: usize, column: i32, row: i32, step: &TravelStep) -> f32 {
         let to = from.wrapping_add_signed(step.offset);
         let (here, there) = (self.posts[from], self.posts[to]);
         let is_along_way = here.is_way() && there.is_way();
@@ -240,63 +234,6 @@ impl<'a> TravelGround<'a> {
             (None, None) => 0.0,
         };
         self.grades.across(slope.abs())
-    }
-
-    /// Seconds from the nearest in time of the starts to each post; infinite where none is reached.
-    pub fn times(&self, starts: &[usize], goal: TravelGoal<'_>, stop: &StopFlag) -> Vec<f32> {
-        let mut times = vec![f32::INFINITY; self.posts.len()];
-        let length =
-            |of: fn(f32, f32) -> f32, first: f32| self.steps.iter().map(|step| step.length_m).fold(first, of);
-        let shortest = length(f32::min, f32::INFINITY) * self.grades.least();
-        let longest = length(f32::max, 0.0) * self.grades.greatest();
-        if !self.least_pace.is_finite() {
-            return times;
-        }
-        // A tenth less, for rounding.
-        let shortest_s = f64::from(shortest * self.least_pace) * 0.9;
-        let mut queue =
-            BucketQueue::new(shortest_s, f64::from(longest) * f64::from(self.greatest_pace) * 1.1);
-        for &start in starts {
-            if self.is_open(start) && times[start] > 0.0 {
-                times[start] = 0.0;
-                queue.push(start as u32, 0.0);
-            }
-        }
-        let (columns, rows) = (self.ground.columns(), self.ground.rows());
-        let mut ends_s = goal.most_s;
-        let mut looks = 0u32;
-        while let Some((index, time)) = queue.pop() {
-            looks = looks.wrapping_add(1);
-            if looks.is_multiple_of(POSTS_PER_LOOK) && stop.is_stopped() {
-                break;
-            }
-            let from = index as usize;
-            if times[from] != time || time > ends_s {
-                continue;
-            }
-            if goal.any_of.is_some_and(|posts| posts.binary_search(&from).is_ok()) {
-                ends_s = ends_s.min(time);
-                continue;
-            }
-            let (column, row) = ((index % columns) as i32, (index / columns) as i32);
-            let is_inner = column >= 2 && row >= 2 && column + 2 < columns as i32 && row + 2 < rows as i32;
-            for step in &self.steps {
-                if !is_inner && !is_on(columns, rows, column + step.columns, row + step.rows) {
-                    continue;
-                }
-                let to = from.wrapping_add_signed(step.offset);
-                // No step is better than none at all.
-                if times[to] <= time {
-                    continue;
-                }
-                let arrival = time + self.seconds(from, column, row, step);
-                if arrival < times[to] && arrival <= ends_s {
-                    times[to] = arrival;
-                    queue.push(to as u32, arrival);
-                }
-            }
-        }
-        times
     }
 
     /// The posts of the quickest way that ends at a reached post, from the start on.
@@ -353,7 +290,7 @@ impl<'a> TravelGround<'a> {
     }
 }
 
-fn is_on(columns: u32, rows: u32, column: i32, row: i32) -> bool {
+pub(super) fn is_on(columns: u32, rows: u32, column: i32, row: i32) -> bool {
     column >= 0 && row >= 0 && column < columns as i32 && row < rows as i32
 }
 
@@ -378,7 +315,9 @@ pub(crate) fn travel_ground<'a>(
 mod tests {
     use super::*;
     use crate::land::Step;
+    use crate::movement::search::TravelGoal;
     use crate::test_land::{flat, shaped};
+    use sandtable_terrain::stop_flag::StopFlag;
 
     pub(super) const ALL: TravelGoal<'static> = TravelGoal { most_s: f32::INFINITY, any_of: None };
 
@@ -469,3 +408,11 @@ mod tests {
         assert!((f64::from(down) - tobler(-0.2)).abs() < 0.01, "{down}");
     }
 }
+
+#[cfg(test)]
+#[path = "oracle_tests.rs"]
+mod oracle_tests;
+
+#[cfg(test)]
+#[path = "metrication_tests.rs"]
+mod metrication_tests;

@@ -94,7 +94,7 @@ pub(crate) fn best_posts(
         name: "posts in sight",
         unit: "",
         values: PostValues::Numbers(watched.counts(ground, chosen.iter().map(|post| &*views[post.view]))),
-        classes: count_classes(chosen.len(), "dead ground"),
+        classes: count_classes(chosen.len(), ["dead ground", "seen by"]),
     });
     outcome.figures.push(Figure::new("places tried", places.len() as f64, ""));
     if chosen.len() < count {

@@ -113,7 +113,7 @@ pub(crate) fn fields_of_fire(
             name: "weapons that hit",
             unit: "",
             values: PostValues::Numbers(values),
-            classes: count_classes(weapons.len(), "not hit"),
+            classes: count_classes(weapons.len(), ["not hit", "hit by"]),
         }),
         features: outlines.chain(weapons.iter().zip(&shares).map(post)).collect(),
         tables: vec![table],

@@ -197,9 +197,9 @@ impl LookoutView {
 }
 
 /// Classes for the number of lookouts that see or hit a place: none, one, two, three, and more; as many as can occur.
-pub(crate) fn count_classes(lookouts: usize, none: &str) -> Vec<ValueClass> {
+pub(crate) fn count_classes(lookouts: usize, [none, some]: [&str; 2]) -> Vec<ValueClass> {
     const LOOKS: [([u8; 4], Hatching); 5] = [
-        (DEAD_TINT, Hatching::Single),
+        (DEAD_TINT, Hatching::Dots),
         ([255, 237, 160, 110], Hatching::None),
         ([173, 221, 142, 110], Hatching::None),
         ([65, 171, 93, 110], Hatching::None),
@@ -207,8 +207,8 @@ pub(crate) fn count_classes(lookouts: usize, none: &str) -> Vec<ValueClass> {
     ];
     let label = |count: usize| match count {
         0 => none.to_owned(),
-        4 if lookouts > 4 => "4 or more".to_owned(),
-        count => count.to_string(),
+        4 if lookouts > 4 => format!("{some} 4 or more"),
+        count => format!("{some} {count}"),
     };
     let class = |(count, (tint, hatching))| ValueClass::new(count as f32, label(count), tint, hatching);
     LOOKS.into_iter().enumerate().take(lookouts.saturating_add(1)).map(class).collect()

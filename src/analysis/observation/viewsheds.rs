@@ -125,7 +125,7 @@ fn raster(show: ViewshedShow, values: Vec<f32>, lookouts: usize) -> OutcomeRaste
             name: "posts in sight",
             unit: "",
             values: PostValues::Numbers(values),
-            classes: count_classes(lookouts, "dead ground"),
+            classes: count_classes(lookouts, ["dead ground", "seen by"]),
         },
         ViewshedShow::First => OutcomeRaster {
             name: "first post in sight",

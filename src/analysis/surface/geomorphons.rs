@@ -9,7 +9,9 @@
 //! `r.geomorphon` 8.2.1 never reads the southernmost row (its buffer of rows is not shifted for it), so that forms within the
 //! radius of that row differ; without data in the row all forms are equal.
 //!
-//! A row is done at once: for each step of each direction, one pass over the row that the compiler can vectorize.
+//! Some posts of a row are done at once, in vectors: for each step of a direction the slopes to as many posts. Slopes are
+//! multiplied with one over the step, which is faster than division and may be off in the last bit; where that could decide,
+//! because rise and fall are as steep or one is as steep as the flatness, the post's direction is done again with divisions.
 
 use rayon::prelude::*;
 
@@ -19,6 +21,7 @@ use crate::land::Land;
 use crate::outcome::{Hatching, Outcome, OutcomeRaster, PostValues, ValueClass};
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::stop_flag::StopFlag;
+use sandtable_terrain::vectorized::vectorized;
 
 /// The eight directions: columns east, rows north.
 const DIRECTIONS: [(isize, isize); 8] =
@@ -81,14 +84,11 @@ pub(crate) fn geomorphons(
     let sights = FormSights::new(&land.ground, radius, skip, flatness, comparison);
     let columns = sights.columns as usize;
     let mut codes = vec![PostValues::NO_CODE; land.ground.heights().len()];
-    codes.par_chunks_mut(columns).enumerate().for_each_init(
-        || SightRow::new(columns),
-        |sight, (row, codes)| {
-            if !stop.is_stopped() {
-                sights.classify(row as isize, sight, codes);
-            }
-        },
-    );
+    codes.par_chunks_mut(columns).enumerate().for_each(|(row, codes)| {
+        if !stop.is_stopped() {
+            sights.classify(row as isize, codes);
+        }
+    });
     if stop.is_stopped() {
         return Err(AnalysisError::Stopped);
     }
@@ -105,6 +105,8 @@ struct FormSights<'a> {
     skip: isize,
     comparison: SightComparison,
     lines: [FormLineOfSight; 8],
+    /// One over each number of steps.
+    per_step: Vec<f64>,
 }
 
 /// How the steepest rise and the steepest fall along a direction are compared.
@@ -129,24 +131,14 @@ struct FormLineOfSight {
     flat: f64,
 }
 
-/// What a row of posts sees.
-struct SightRow {
-    rise: Vec<f64>,
-    fall: Vec<f64>,
-    lower: Vec<u8>,
-    higher: Vec<u8>,
-}
+/// Posts of a row that are done together.
+const TOGETHER: usize = 16;
 
-impl SightRow {
-    fn new(columns: usize) -> Self {
-        Self {
-            rise: vec![0.0; columns],
-            fall: vec![0.0; columns],
-            lower: vec![0; columns],
-            higher: vec![0; columns],
-        }
-    }
-}
+/// Slopes that differ by less than this share of the steeper may be equal: some roundings.
+const ROUNDING: f64 = 1e-14;
+
+/// The steepest rise and fall along a direction in meters per step, each positive where it is one.
+type Steepest = (f64, f64);
 
 impl<'a> FormSights<'a> {
     fn new(
@@ -173,74 +165,146 @@ impl<'a> FormSights<'a> {
             skip: skip as isize,
             comparison,
             lines,
+            per_step: (0..=most).map(|step| 1.0 / step as f64).collect(),
         }
     }
 
     /// The forms of a row.
-    fn classify(&self, row: isize, sight: &mut SightRow, codes: &mut [u8]) {
+    fn classify(&self, row: isize, codes: &mut [u8]) {
         let margin = self.skip + 1;
         if row < margin || row + margin >= self.rows || self.columns <= 2 * margin {
             return;
         }
-        sight.lower.fill(0);
-        sight.higher.fill(0);
-        for line in &self.lines {
-            self.look(row, line, sight);
-        }
-        let own = self.line(row);
-        for column in margin as usize..(self.columns - margin) as usize {
-            if !own[column].is_nan() {
-                codes[column] = FORMS[usize::from(sight.lower[column])][usize::from(sight.higher[column])];
-            }
+        let farthest = self.lines.iter().map(|line| self.skip + line.steps as isize).max().unwrap_or(0);
+        let (first, end) = (margin.max(farthest), self.columns - margin.max(farthest));
+        let together = TOGETHER as isize;
+        let inner = first + (end - first).max(0) / together * together;
+        vectorized(
+            #[inline(always)]
+            || {
+                for column in (first..inner).step_by(TOGETHER) {
+                    let codes = codes[column as usize..].first_chunk_mut().expect("within the row");
+                    *codes = self.forms_together(row, column);
+                }
+            },
+        );
+        let ends = if inner > first { (first, inner) } else { (margin, margin) };
+        for column in (margin..ends.0).chain(ends.1..self.columns - margin) {
+            codes[column as usize] = self.form(row, column);
         }
     }
 
-    /// Looks along a direction from all posts of a row.
-    fn look(&self, row: isize, line: &FormLineOfSight, sight: &mut SightRow) {
-        let &FormLineOfSight { east, north, flat, .. } = line;
-        sight.rise.fill(f64::NEG_INFINITY);
-        sight.fall.fill(f64::INFINITY);
-        let own = self.line(row);
+    /// The form of a post.
+    fn form(&self, row: isize, column: isize) -> u8 {
+        if self.height(row, column).is_nan() {
+            return PostValues::NO_CODE;
+        }
+        let (mut lower, mut higher) = (0, 0);
+        for line in &self.lines {
+            let (is_higher, is_lower) = self.compared(self.steepest(row, column, line), line.flat);
+            let is_seen = !self.height(row + line.north, column + line.east).is_nan();
+            higher += usize::from(is_seen && is_higher);
+            lower += usize::from(is_seen && is_lower);
+        }
+        FORMS[lower][higher]
+    }
+
+    /// Whether a direction is higher, and whether it is lower.
+    #[inline(always)]
+    fn compared(&self, (rise, fall): Steepest, flat: f64) -> (bool, bool) {
+        let is_steep = (rise > flat) | (fall > flat);
+        (is_steep & (rise > fall), is_steep & (fall > rise))
+    }
+
+    /// Rise and fall as they are compared, from the greatest and the least slope.
+    #[inline(always)]
+    fn signed(&self, greatest: f64, least: f64) -> Steepest {
+        match self.comparison {
+            SightComparison::Magnitude => (greatest.abs(), least.abs()),
+            SightComparison::Signed => (greatest, -least),
+        }
+    }
+
+    /// The steepest rise and fall of a post along a direction.
+    fn steepest(&self, row: isize, column: isize, line: &FormLineOfSight) -> Steepest {
+        let own = f64::from(self.height(row, column));
+        let (mut greatest, mut least) = (f64::NEG_INFINITY, f64::INFINITY);
         for step in (self.skip + 1..).take(line.steps) {
-            let other_row = row + north * step;
-            if other_row < 0 || other_row >= self.rows || step >= self.columns && east != 0 {
+            let (other_row, other_column) = (row + line.north * step, column + line.east * step);
+            if !(0..self.rows).contains(&other_row) || !(0..self.columns).contains(&other_column) {
                 break;
             }
-            let (from, others) = self.shifted(other_row, east * step);
-            let count = others.len();
-            let per_step = step as f64;
-            let sights = sight.rise[from..][..count].iter_mut().zip(&mut sight.fall[from..][..count]);
-            for ((rise, fall), (own, other)) in sights.zip(own[from..][..count].iter().zip(others)) {
-                let slope = (f64::from(*other) - f64::from(*own)) / per_step;
-                *rise = if slope > *rise { slope } else { *rise };
-                *fall = if slope < *fall { slope } else { *fall };
+            let slope = (f64::from(self.height(other_row, other_column)) - own) / step as f64;
+            greatest = if slope > greatest { slope } else { greatest };
+            least = if slope < least { slope } else { least };
+        }
+        self.signed(greatest, least)
+    }
+
+    /// The forms of posts from one on, which see no post beyond the first and the last column.
+    #[inline(always)]
+    fn forms_together(&self, row: isize, column: isize) -> [u8; TOGETHER] {
+        let heights = self.some(row, column);
+        let own = heights.map(f64::from);
+        let (mut lower, mut higher) = ([0u8; TOGETHER], [0u8; TOGETHER]);
+        for line in &self.lines {
+            let &FormLineOfSight { east, north, flat, .. } = line;
+            let rows = if north > 0 { self.rows - 1 - row } else { row };
+            let most = if north == 0 { isize::MAX } else { rows };
+            let last = (self.skip + line.steps as isize).min(most);
+            let (mut greatest, mut least) = ([f64::NEG_INFINITY; TOGETHER], [f64::INFINITY; TOGETHER]);
+            for step in self.skip + 1..=last {
+                let others = self.some(row + north * step, column + east * step);
+                let per_step = self.per_step[step as usize];
+                for at in 0..TOGETHER {
+                    let slope = (f64::from(others[at]) - own[at]) * per_step;
+                    greatest[at] = if slope > greatest[at] { slope } else { greatest[at] };
+                    least[at] = if slope < least[at] { slope } else { least[at] };
+                }
+            }
+            // A direction begins with the neighbor: without it there is no sight.
+            let neighbors = self.some(row + north, column + east);
+            let mut in_doubt = [false; TOGETHER];
+            for at in 0..TOGETHER {
+                let (rise, fall) = self.signed(greatest[at], least[at]);
+                let (is_higher, is_lower) = self.compared((rise, fall), flat);
+                let is_seen = !neighbors[at].is_nan();
+                higher[at] += u8::from(is_seen & is_higher);
+                lower[at] += u8::from(is_seen & is_lower);
+                let steeper = if rise > fall { rise } else { fall };
+                let is_close = |a: f64, b: f64| (a - b).abs() <= ROUNDING * steeper;
+                let is_tie = is_close(rise, fall) & (steeper > flat) | is_close(steeper, flat);
+                in_doubt[at] = is_seen & is_tie;
+            }
+            if in_doubt.iter().fold(false, |any, &is| any | is) {
+                for at in (0..TOGETHER).filter(|&at| in_doubt[at]) {
+                    let near = self.compared(self.signed(greatest[at], least[at]), flat);
+                    let (is_higher, is_lower) =
+                        self.compared(self.steepest(row, column + at as isize, line), flat);
+                    higher[at] = higher[at] - u8::from(near.0) + u8::from(is_higher);
+                    lower[at] = lower[at] - u8::from(near.1) + u8::from(is_lower);
+                }
             }
         }
-        // A direction begins with the neighbor: without it there is no sight.
-        let (from, neighbors) = self.shifted(row + north, east);
-        for (column, neighbor) in (from..).zip(neighbors) {
-            let (rise, fall) = match self.comparison {
-                SightComparison::Magnitude => (sight.rise[column].abs(), sight.fall[column].abs()),
-                SightComparison::Signed => (sight.rise[column], -sight.fall[column]),
-            };
-            let is_seen = !neighbor.is_nan() && (rise > flat || fall > flat);
-            sight.higher[column] += u8::from(is_seen && rise > fall);
-            sight.lower[column] += u8::from(is_seen && fall > rise);
+        let mut forms = [PostValues::NO_CODE; TOGETHER];
+        for at in 0..TOGETHER {
+            if !heights[at].is_nan() {
+                forms[at] = FORMS[usize::from(lower[at])][usize::from(higher[at])];
+            }
         }
+        forms
     }
 
-    fn line(&self, row: isize) -> &'a [f32] {
-        &self.heights[(row * self.columns) as usize..][..self.columns as usize]
+    #[inline(always)]
+    fn height(&self, row: isize, column: isize) -> f32 {
+        self.heights[(row * self.columns + column) as usize]
     }
 
-    /// The heights of a row `east` columns east of the posts from the column that is given first.
-    fn shifted(&self, row: isize, east: isize) -> (usize, &'a [f32]) {
-        let line = self.line(row);
-        if east >= 0 {
-            (0, &line[east as usize..])
-        } else {
-            (east.unsigned_abs(), &line[..(self.columns + east) as usize])
-        }
+    /// The heights of posts of a row from one on.
+    #[inline(always)]
+    fn some(&self, row: isize, column: isize) -> &'a [f32; TOGETHER] {
+        let from = (row * self.columns + column) as usize;
+        self.heights[from..].first_chunk().expect("within the row")
     }
 }
 
@@ -337,14 +401,26 @@ mod tests {
 
     #[test]
     fn forms_are_those_of_a_walk_along_each_direction() {
-        let mut heights: Vec<f32> = (0..31 * 23u32).map(|index| (index * 7919 % 101) as f32 * 0.1).collect();
-        (50..heights.len()).step_by(61).for_each(|index| heights[index] = f32::NAN);
-        let land = land(DVec2::ONE, 31, heights.clone());
+        // Rough, of even slopes, in steps, so that rise and fall are often as steep; more columns than are done together.
+        let kinds: [fn(u32) -> f32; 3] = [
+            |index| (index * 7919 % 101) as f32 * 0.1,
+            |index| (index % 83) as f32 * 0.3 - (index / 83) as f32 * 0.7,
+            |index| ((index % 83) / 4 + index / 83 % 3) as f32,
+        ];
+        for kind in kinds {
+            forms_are_walked(kind);
+        }
+    }
+
+    fn forms_are_walked(height: fn(u32) -> f32) {
+        let mut heights: Vec<f32> = (0..83 * 23u32).map(height).collect();
+        (50..heights.len()).step_by(161).for_each(|index| heights[index] = f32::NAN);
+        let land = land(DVec2::ONE, 83, heights.clone());
         for (radius, skip, flatness) in [(2, 0, 1.0), (7, 0, 5.0), (9, 2, 10.0), (60, 1, 0.0)] {
             let numbers = [("radius", f64::from(radius)), ("skip", f64::from(skip)), ("flatness", flatness)];
             for comparison in ["magnitude", "signed"] {
                 let forms = values(&land, "geomorphons", &[("comparison", comparison)], &numbers);
-                let ground = (&*heights, 31, comparison == "magnitude");
+                let ground = (&*heights, 83, comparison == "magnitude");
                 for (post, &form) in forms.iter().enumerate() {
                     let wanted = walked(ground, post as i64, radius.into(), skip.into(), flatness);
                     let is_same = form == wanted || form.is_nan() && wanted.is_nan();

@@ -4,7 +4,7 @@ use super::window::{GradientMethod, WindowGradient, by_window};
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
-use crate::outcome::{Outcome, OutcomeRaster, PostValues};
+use crate::outcome::{Hatching, Outcome, OutcomeRaster, PostValues, ValueClass};
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// The azimuths of multidirectional light, degrees.
@@ -28,13 +28,13 @@ pub(crate) fn hillshade(
     let altitude = arguments.number("altitude").to_radians();
     let stretch = arguments.number("exaggeration") as f32;
     let values = if arguments.word("light") == "multidirectional" {
-        let suns = AZIMUTHS_DEG.map(|azimuth| Sun::new(azimuth.to_radians(), altitude));
+        let suns = AZIMUTHS_DEG.map(|azimuth| ShadingSun::new(azimuth.to_radians(), altitude));
         by_window(&land.ground, stop, |window| {
             let slopes = gradient.of(window).map(|slope| slope * stretch);
             from_four(&suns, slopes)
         })?
     } else {
-        let sun = Sun::new(arguments.number("azimuth").to_radians(), altitude);
+        let sun = ShadingSun::new(arguments.number("azimuth").to_radians(), altitude);
         by_window(&land.ground, stop, |window| {
             let slopes = gradient.of(window).map(|slope| slope * stretch);
             1.0 + 254.0 * (sun.facing(slopes) / stretched(slopes))
@@ -44,14 +44,26 @@ pub(crate) fn hillshade(
         name: "hillshade",
         unit: "",
         values: PostValues::Numbers(values),
-        classes: Vec::new(),
+        classes: classes(),
     };
     Ok(Outcome { raster: Some(raster), ..Outcome::default() })
 }
 
+/// Grays, the lighter the more light.
+fn classes() -> Vec<ValueClass> {
+    const CLASSES: u8 = 8;
+    const STEP: u8 = 32;
+    let class = |index: u8| {
+        let (from, gray) = (index * STEP, index * STEP + STEP / 2);
+        let label = format!("{} to {}", from.max(1), from + (STEP - 1));
+        ValueClass::new(f32::from(from), label, [gray, gray, gray, 225], Hatching::None)
+    };
+    (0..CLASSES).map(class).collect()
+}
+
 /// A direction from which light comes.
 #[derive(Clone, Copy)]
-struct Sun {
+struct ShadingSun {
     /// The direction to it.
     east: f32,
     north: f32,
@@ -60,7 +72,7 @@ struct Sun {
     azimuth: [f32; 2],
 }
 
-impl Sun {
+impl ShadingSun {
     fn new(azimuth: f64, altitude: f64) -> Self {
         let (level, plan) = (libm::cos(altitude), [libm::sin(azimuth), libm::cos(azimuth)]);
         Self {
@@ -86,14 +98,14 @@ fn stretched([east, north]: [f32; 2]) -> f32 {
 
 /// The light of four suns.
 #[inline(always)]
-fn from_four(suns: &[Sun; 4], slopes: [f32; 2]) -> f32 {
+fn from_four(suns: &[ShadingSun; 4], slopes: [f32; 2]) -> f32 {
     let [east, north] = slopes;
     let steepness = east * east + north * north;
     if steepness == 0.0 {
         return 1.0 + 254.0 * suns[0].up;
     }
     // The cosine of the angle between the fall line and an azimuth, times the slope.
-    let along = |sun: &Sun| east * sun.azimuth[0] + north * sun.azimuth[1];
+    let along = |sun: &ShadingSun| east * sun.azimuth[0] + north * sun.azimuth[1];
     let weighted = suns.iter().map(|sun| along(sun) * along(sun) * sun.facing(slopes)).sum::<f32>();
     1.0 + 127.0 * weighted / (steepness * stretched(slopes))
 }

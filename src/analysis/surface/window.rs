@@ -15,6 +15,7 @@ use rayon::prelude::*;
 use crate::error::AnalysisError;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::stop_flag::StopFlag;
+use sandtable_terrain::vectorized::vectorized;
 
 /// The heights of a window, row by row from the south-west, meters.
 pub(super) type WindowHeights = [f32; 9];
@@ -93,19 +94,36 @@ pub(super) fn by_window(
     let heights = lattice.heights();
     let mut values = vec![f32::NAN; heights.len()];
     values.par_chunks_mut(columns).enumerate().for_each(|(row, values)| {
-        if row == 0 || row + 1 >= rows || stop.is_stopped() {
+        if row == 0 || row + 1 >= rows || columns < 3 || stop.is_stopped() {
             return;
         }
-        let line = |row: usize| heights[row * columns..][..columns].windows(3);
-        let windows = line(row - 1).zip(line(row)).zip(line(row + 1));
-        for (value_out, ((south, own), north)) in values[1..].iter_mut().zip(windows) {
-            let window = [south[0], south[1], south[2], own[0], own[1], own[2], north[0], north[1], north[2]];
-            // Heights are finite or NaN: 0, or NaN where one is missing.
-            let lack: f32 = window.iter().map(|height| height * 0.0).sum();
-            *value_out = value(&window) + lack;
-        }
+        let line = |row: usize| &heights[row * columns..][..columns];
+        let lines = [line(row - 1), line(row), line(row + 1)];
+        vectorized(
+            #[inline(always)]
+            || row_of_windows(lines, &mut values[1..columns - 1], &value),
+        );
     });
     if stop.is_stopped() { Err(AnalysisError::Stopped) } else { Ok(values) }
+}
+
+/// The values of the posts of a row but the first and the last, from its heights and those of the rows south and north of it.
+#[inline(always)]
+fn row_of_windows(
+    [south, own, north]: [&[f32]; 3],
+    values: &mut [f32],
+    value: &impl Fn(&WindowHeights) -> f32,
+) {
+    let count = values.len();
+    let [sw, s, se] = [0, 1, 2].map(|by| &south[by..by + count]);
+    let [w, o, e] = [0, 1, 2].map(|by| &own[by..by + count]);
+    let [nw, n, ne] = [0, 1, 2].map(|by| &north[by..by + count]);
+    for at in 0..count {
+        let window = [sw[at], s[at], se[at], w[at], o[at], e[at], nw[at], n[at], ne[at]];
+        // Heights are finite or NaN: 0, or NaN where one is missing.
+        let lack: f32 = window.iter().map(|height| height * 0.0).sum();
+        values[at] = value(&window) + lack;
+    }
 }
 
 #[cfg(test)]

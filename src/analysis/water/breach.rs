@@ -37,7 +37,7 @@ pub(crate) struct BreachTally {
 }
 
 /// What a search knows of the posts around a pit.
-struct Search {
+struct BreachSearch {
     reach: i64,
     side: i64,
     /// The search that a post was last seen by, the cost to it, and the step by which it was reached.
@@ -65,7 +65,7 @@ pub(crate) fn breach(
         "the search for ways out of pits",
         "state a shorter `breach_length_m`",
     )?;
-    let mut search = Search {
+    let mut search = BreachSearch {
         reach,
         side,
         seen: vec![(0, 0.0, 0); (side * side) as usize],
@@ -127,7 +127,7 @@ fn cut(heights: &mut [f32], way: &[usize]) {
     }
 }
 
-impl Search {
+impl BreachSearch {
     /// The cheapest way from lower ground or an outlet back to a pit, with its cost; `None` where it would be too long or too deep.
     fn way_out(
         &mut self,

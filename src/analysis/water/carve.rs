@@ -27,7 +27,8 @@ pub(crate) fn carved(land: &Land) -> (Cow<'_, [f32]>, usize) {
     let wet = |kind| matches!(kind, CrossingKind::Bridge | CrossingKind::Culvert);
     for crossing in land.crossings.iter().filter(|crossing| wet(crossing.kind)) {
         let width_m = if crossing.width_m.is_finite() { crossing.width_m.max(0.0) } else { 0.0 };
-        if let Some(ends) = banks(ground, &crossing.line, width_m) {
+        let banks = banks(ground, ground.heights(), &crossing.line, (width_m, 0.0));
+        if let Some(ends) = banks {
             cuts += usize::from(cut(ground, &mut heights, ends));
         }
     }
@@ -43,10 +44,15 @@ pub(crate) fn cut_note(cuts: usize) -> Vec<String> {
     }
 }
 
-/// The lowest posts on the left and on the right of a way; `None` where a side has none.
-fn banks(ground: &Lattice, line: &[DVec2], width_m: f64) -> Option<[usize; 2]> {
-    let reach_m = width_m / 2.0 + REACH_M.max(REACH_POSTS * ground.cell().max_element());
-    let heights = ground.heights();
+/// The lowest posts on the left and on the right of a way of a width, no farther than 30 m, two posts or `more_m` beyond its
+/// edge; `None` where a side has none.
+pub(super) fn banks(
+    ground: &Lattice,
+    heights: &[f32],
+    line: &[DVec2],
+    (width_m, more_m): (f64, f64),
+) -> Option<[usize; 2]> {
+    let reach_m = width_m / 2.0 + REACH_M.max(REACH_POSTS * ground.cell().max_element()).max(more_m);
     let mut lowest: [Option<(f32, usize)>; 2] = [None; 2];
     for leg in line.windows(2) {
         let (from, along) = (leg[0], leg[1] - leg[0]);

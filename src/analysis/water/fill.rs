@@ -30,7 +30,7 @@ const BAND_ROWS: usize = 64;
 const LATELY: usize = 1 << 12;
 
 /// A place where two basins meet: its height as a number that sorts alike, and the basins.
-type Meeting = (u32, u32, u32);
+type BasinMeeting = (u32, u32, u32);
 
 /// A height as a number that sorts alike.
 pub(super) fn sortable(height_m: f32) -> u32 {
@@ -176,12 +176,12 @@ fn end_walk(basins: &[AtomicU32], start: usize) {
 }
 
 /// Where basins meet; some pairs more than once, their lowest meeting among them.
-fn meetings(heights: &[f32], basins: &[u32], columns: usize) -> Vec<Meeting> {
+fn meetings(heights: &[f32], basins: &[u32], columns: usize) -> Vec<BasinMeeting> {
     let rows = heights.len() / columns;
     let bands: Vec<usize> = (0..rows).step_by(BAND_ROWS).collect();
     let of_band = |&first: &usize| {
         let mut lately = vec![(u32::MAX, 0, 0); LATELY];
-        let mut told: Vec<Meeting> = Vec::new();
+        let mut told: Vec<BasinMeeting> = Vec::new();
         let mut meet = |one: usize, other: usize| {
             let (a, b) = (basins[one], basins[other]);
             if a == b || a == NOTHING || b == NOTHING {
@@ -220,7 +220,7 @@ fn meetings(heights: &[f32], basins: &[u32], columns: usize) -> Vec<Meeting> {
 }
 
 /// The height to which each basin is filled, the outside first, which is filled to none.
-fn levels(mut meetings: Vec<Meeting>, pits: u32) -> Vec<f32> {
+fn levels(mut meetings: Vec<BasinMeeting>, pits: u32) -> Vec<f32> {
     meetings.par_sort_unstable();
     let mut levels = vec![f32::NEG_INFINITY; pits as usize + 1];
     let mut parents: Vec<u32> = (0..=pits).collect();

@@ -62,7 +62,7 @@ impl<'a> InfiniteFlow<'a> {
             let (along, beside) = ((own - around[side]) / run, (around[side] - around[diagonal]) / across);
             // Beyond its sides a triangle drains along the nearer one; without a diagonal, along the other.
             let (fall, slant) = match () {
-                _ if !(beside > 0.0) => (along, (1.0, 0.0)),
+                _ if beside <= 0.0 || beside.is_nan() => (along, (1.0, 0.0)),
                 _ if along <= 0.0 || beside * run >= along * across => {
                     ((own - around[diagonal]) / run.hypot(across), (run, across))
                 }
@@ -97,7 +97,7 @@ impl<'a> InfiniteFlow<'a> {
         let angle = |step: usize| {
             let (quarter, is_diagonal) = ((step / 2) as f64 * 2.0 * FRAC_PI_4, step % 2 == 1);
             // Diagonals of the second and fourth quarter lean the other way.
-            let lean = if step / 2 % 2 == 0 { diagonal } else { 2.0 * FRAC_PI_4 - diagonal };
+            let lean = if (step / 2).is_multiple_of(2) { diagonal } else { 2.0 * FRAC_PI_4 - diagonal };
             if is_diagonal { quarter + lean } else { quarter }
         };
         let (from, to) = (angle(step), if step == 7 { TAU } else { angle(step + 1) });
@@ -146,7 +146,7 @@ impl<'a> InfiniteFlow<'a> {
             .collect();
         let mut ready = Vec::new();
         for (told, source) in sources.into_iter().enumerate() {
-            if told % 4096 == 0 && stop.is_stopped() {
+            if told.is_multiple_of(4096) && stop.is_stopped() {
                 return Err(AnalysisError::Stopped);
             }
             ready.push(source);

@@ -1,17 +1,34 @@
 //! Water on the land.
 
+mod basins;
 mod breach;
 mod carve;
+mod dam_break;
 mod directions;
 mod drainage;
+mod drainage_height;
+#[cfg(test)]
+mod extreme_tests;
 mod fill;
+mod flood;
 mod infinity;
 mod kinds;
+mod normal_depth;
+#[cfg(test)]
+mod oracle_tests;
+mod outlines;
 mod prepared;
 mod streams;
 
 use crate::run::KindFunction;
 
 /// The functions of the family's kinds.
-pub(crate) const FUNCTIONS: &[(&str, KindFunction)] =
-    &[("fill", kinds::fill), ("flow", kinds::flow), ("streams", streams::streams)];
+pub(crate) const FUNCTIONS: &[(&str, KindFunction)] = &[
+    ("fill", kinds::fill),
+    ("flow", kinds::flow),
+    ("streams", streams::streams),
+    ("basins", basins::basins),
+    ("drainage-height", drainage_height::drainage_height),
+    ("flood", flood::flood),
+    ("dam-break", dam_break::dam_break),
+];

@@ -35,6 +35,8 @@ fn keys_in_schema(of: &Value, schema: &Value, table: &str) -> BTreeSet<String> {
         let items = value["items"]["$ref"].as_str().and_then(|path| path.strip_prefix("#/$defs/"));
         if let Some(of) = items.map(|name| &schema["$defs"][name]).filter(|of| of["properties"].is_object()) {
             all.extend(keys_in_schema(of, schema, &path));
+        } else if value["additionalProperties"]["properties"].is_object() {
+            all.extend(keys_in_schema(&value["additionalProperties"], schema, &path));
         } else if value["properties"].is_object() {
             all.extend(keys_in_schema(value, schema, &path));
         }
@@ -92,6 +94,7 @@ fn every_declared_default_is_a_value_of_its_key() {
         "overlay" => "file = \"a.json\"\n".into(),
         "phase" => "name = \"a\"\n".into(),
         "flight" => format!("{source}name = \"a\"\n"),
+        "analysis" => "kind = \"slope\"\n".into(),
         "camera" => "name = \"a\"\neye = [0, 0]\nlook_at = [1, 1]\n".into(),
         _ => source.to_owned(),
     };

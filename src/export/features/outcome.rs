@@ -134,6 +134,7 @@ fn role_look(role: FeatureRole) -> ([&'static str; 3], Srgba) {
         FeatureRole::Corridor => {
             (["corridor_points", "corridor_lines", "corridors"], Srgba::opaque(200, 60, 20))
         }
+        FeatureRole::Haul => (["haul_points", "hauls", "haul_areas"], Srgba::opaque(190, 30, 120)),
         FeatureRole::Isoline => (["isoline_points", "isolines", "isoline_areas"], Srgba::opaque(140, 90, 40)),
         FeatureRole::Stream => (["stream_points", "streams", "stream_areas"], Srgba::opaque(30, 100, 190)),
         FeatureRole::FormLine => (["form_points", "form_lines", "form_areas"], Srgba::opaque(110, 70, 30)),

@@ -45,7 +45,7 @@ impl PyPlan {
         Ok(Self { plan, folder, idle: Mutex::default() })
     }
 
-    /// What is made: "heights", "viewsheds", "atlas" or "tiles".
+    /// What is made: "heights", "viewsheds", "atlas", "tiles" or "analysis".
     #[getter]
     fn product(&self) -> &'static str {
         self.plan.product()

@@ -36,7 +36,8 @@ def test_a_raster_has_the_values_and_the_place_of_the_programs(program, dem, tmp
     np.testing.assert_allclose(slope.x, written.x, rtol=0, atol=1e-6)
     np.testing.assert_allclose(slope.y, written.y, rtol=0, atol=1e-6)
     assert slope.dims == ("y", "x") and slope.name == "slope" and slope.rio.crs.to_epsg() == 32616
-    assert slope.attrs["units"] == "°" and len(slope.attrs["classes"]) == len(slope.attrs["class_from"])
+    assert slope.attrs["crs"] == "EPSG:32616" and slope.attrs["units"] == "°"
+    assert len(slope.attrs["classes"]) == len(slope.attrs["class_from"])
     assert "Horn" in slope.attrs["source"] and slope.attrs["limits"]
 
 
@@ -46,6 +47,13 @@ def test_an_extent_has_the_bits_of_the_whole(dem):
     assert part.dtype == np.uint8 and part.shape < whole.shape
     same = whole.sel(x=part.x, y=part.y, method="nearest")
     np.testing.assert_array_equal(same.to_numpy(), part.to_numpy())
+
+
+def test_the_accessor_analyzes_an_array(dem):
+    pytest.importorskip("sandtable.xarray")
+    array = rioxarray.open_rasterio(JACKSBORO).squeeze("band")
+    slope = array.sandtable.analyze("slope", extent=EXTENT, crs="EPSG:32616")
+    np.testing.assert_array_equal(slope, dem.analyze("slope", extent=EXTENT, crs="EPSG:32616"))
 
 
 def test_codes_are_bytes_and_figures_are_attributes(dem):
@@ -96,6 +104,20 @@ def test_a_scene_knows_what_lies_on_its_ground(program):
     assert overlay.attrs["notes"] == said["notes"]
     bare = sandtable.Dem.open(ROAD).analyze("obstacles")
     assert len(bare.attrs["notes"][0]) > len("".join(overlay.attrs["notes"][:1]))
+
+
+def test_an_exaggerated_scene_is_analyzed_true_to_scale(program, tmp_path):
+    (tmp_path / JACKSBORO.name).write_bytes(JACKSBORO.read_bytes())
+    scenes = []
+    for times in (1, 3):
+        path = tmp_path / f"times{times}.toml"
+        path.write_text(f'[terrain]\ndem = "{JACKSBORO.name}"\nvertical_exaggeration = {times}\n')
+        scenes.append(sandtable.Scene.open(path))
+    np.testing.assert_array_equal(scenes[1].analyze("slope"), scenes[0].analyze("slope"))
+    said = json.loads(program("analyze", "obstacles", tmp_path / "times3.toml", "--json"))
+    for _ in range(2):
+        values = scenes[1].analyze("obstacles").attrs["figure_values"]
+        assert values == [figure["value"] for figure in said["figures"]]
 
 
 def test_what_is_wrong_is_named(dem):

@@ -9,6 +9,9 @@ pub const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 /// The folder of the book.
 pub const BOOK: &str = "src/book";
 
+/// The folder of the pages about the kinds of analysis.
+const ANALYSES: &str = "src/book/analysis";
+
 /// The book's table of contents.
 pub const SUMMARY: &str = "src/book/SUMMARY.md";
 
@@ -34,19 +37,32 @@ pub fn text_of(name: &str) -> String {
     fs::read_to_string(Path::new(ROOT).join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// The pages of the book without its table of contents, in order of their names.
-pub fn of_the_book() -> Vec<String> {
-    let entries = fs::read_dir(Path::new(ROOT).join(BOOK)).expect("the book is there");
+/// The pages in a folder of the book, in order of their names.
+fn in_folder(folder: &str) -> Vec<String> {
+    let entries =
+        fs::read_dir(Path::new(ROOT).join(folder)).unwrap_or_else(|error| panic!("{folder}: {error}"));
     let names = entries.map(|entry| entry.expect("readable").file_name().to_string_lossy().into_owned());
-    let pages = names.filter(|name| name.ends_with(".md")).map(|name| format!("{BOOK}/{name}"));
+    let pages = names.filter(|name| name.ends_with(".md")).map(|name| format!("{folder}/{name}"));
     let mut pages: Vec<String> = pages.filter(|page| page != SUMMARY).collect();
     pages.sort();
     pages
 }
 
-/// The README and the pages of the book: those that a user reads one after the other.
+/// The pages of the book without its table of contents, in order of their names.
+pub fn of_the_book() -> Vec<String> {
+    let mut pages: Vec<String> = in_folder(BOOK).into_iter().chain(of_the_analyses()).collect();
+    pages.sort();
+    pages
+}
+
+/// The pages about the kinds of analysis, which are made from their catalog.
+pub fn of_the_analyses() -> Vec<String> {
+    in_folder(ANALYSES)
+}
+
+/// The README and the pages of the book that are read one after the other.
 pub fn of_the_readme_and_the_book() -> Vec<String> {
-    std::iter::once("README.md".to_owned()).chain(of_the_book()).collect()
+    std::iter::once("README.md".to_owned()).chain(in_folder(BOOK)).collect()
 }
 
 /// All pages whose links are followed.

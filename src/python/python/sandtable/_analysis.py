@@ -156,4 +156,7 @@ def _data_array(raster: dict[str, Any], analysis: Analysis):
         import rioxarray  # noqa: F401  (the accessor .rio)
     except ImportError:
         return made
-    return made if analysis.crs is None else made.rio.write_crs(analysis.crs)
+    if analysis.crs is None:
+        return made
+    # It takes the attribute away.
+    return made.rio.write_crs(analysis.crs).assign_attrs(crs=analysis.crs)

@@ -58,6 +58,10 @@ class SandtableAccessor:
         """How directly the ground faces the sun: uint8, 1 to 255, 0 without data. As ``Dem.hillshade``."""
         return _data_array(self.dem.hillshade(azimuth, altitude), "hillshade", self._array.rio)
 
+    def analyze(self, kind: str, **arguments):
+        """A terrain analysis: an array of a kind that gives a raster alone, else an Analysis. As ``Dem.analyze``."""
+        return self.dem.analyze(kind, **arguments)
+
 
 def _dem_of(array: xr.DataArray) -> Dem:
     rio = array.rio

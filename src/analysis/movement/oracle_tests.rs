@@ -1,0 +1,126 @@
+//! Times against GRASS `r.walk` and `r.cost`, routes against scikit-image, on real ground.
+
+use super::*;
+use crate::movement::search::TravelGoal;
+use crate::test_land::shaped;
+use crate::test_places::{PLACES, place, table};
+use sandtable_terrain::stop_flag::StopFlag;
+
+const ALL: TravelGoal<'static> = TravelGoal { most_s: f32::INFINITY, any_of: None };
+
+/// People on foot whom no slope stops, as `r.walk` has them.
+fn walker() -> Vehicle {
+    let steep = [199.0, 200.0];
+    Vehicle {
+        slope_up_percent: steep,
+        slope_down_percent: steep,
+        gap_m: 0.0,
+        ..Vehicle::built_in("foot").expect("built in")
+    }
+}
+
+/// Seconds a meter by bands of height, as the tables have them; NaN without data.
+fn paces(land: &Land) -> Vec<f32> {
+    let pace = |height: &f32| 1.0 + (height / 8.0).floor().rem_euclid(5.0) * 0.5;
+    land.ground.heights().iter().map(pace).collect()
+}
+
+/// Level ground with these paces.
+fn with_paces<'a>(level: &'a Land, paces: &[f32]) -> TravelGround<'a> {
+    let going = Going {
+        codes: Vec::new(),
+        speed_kmh: paces.iter().map(|pace| 3.6 / pace).collect(),
+        is_way: vec![false; paces.len()],
+        closed: None,
+        notes: Vec::new(),
+    };
+    TravelGround::new(level, going, &walker(), true).expect("memory")
+}
+
+fn level(land: &Land) -> Land {
+    let ground = &land.ground;
+    let level = shaped(ground.columns(), ground.rows(), ground.cell().x, |_, _| 0.0);
+    assert!((ground.cell().x / ground.cell().y - 1.0).abs() < 1e-9, "square cells");
+    level
+}
+
+/// The greatest relative difference between times and the rows of a tool; the rows are all there.
+fn greatest_difference(times: &[f32], columns: usize, rows: &[Vec<String>], tool: &str) -> f64 {
+    let mut greatest = 0.0_f64;
+    let mut count = 0;
+    for row in rows.iter().filter(|row| row[0] == tool) {
+        let [column, line] = [1, 2].map(|cell: usize| row[cell].parse::<usize>().expect("a number"));
+        let wanted: f64 = row[3].parse().expect("a number");
+        let found = f64::from(times[line * columns + column]);
+        let difference = if wanted == found { 0.0 } else { (found - wanted).abs() / wanted };
+        greatest = greatest.max(difference);
+        count += 1;
+    }
+    assert!(count >= 8, "{tool} has rows");
+    greatest
+}
+
+fn start(land: &Land) -> usize {
+    let (columns, rows) = (land.ground.columns(), land.ground.rows());
+    (rows / 3 * columns + columns / 3) as usize
+}
+
+#[test]
+fn times_on_foot_are_those_of_r_walk_on_three_places() {
+    for (name, file) in PLACES {
+        let Some(land) = place(file) else { return };
+        let rows = table(&format!("movement_{name}.csv"));
+        let going = Going::new(&land, &walker()).expect("memory");
+        let mut ground = TravelGround::new(&land, going, &walker(), true).expect("memory");
+        for (tool, count) in [("walk16", 16), ("walk8", 8)] {
+            ground.steps.truncate(count);
+            let times = ground.times(&[start(&land)], ALL, &StopFlag::default());
+            let greatest = greatest_difference(&times, land.ground.columns() as usize, &rows, tool);
+            println!("{name} {tool} {greatest:.2e}");
+            assert!(greatest < 0.005, "{name} {tool}: {greatest}");
+        }
+    }
+}
+
+#[test]
+fn times_over_level_ground_are_those_of_r_cost_on_three_places() {
+    for (name, file) in PLACES {
+        let Some(land) = place(file) else { return };
+        let rows = table(&format!("movement_{name}.csv"));
+        let level = level(&land);
+        let mut ground = with_paces(&level, &paces(&land));
+        for (tool, count) in [("cost16", 16), ("cost8", 8)] {
+            ground.steps.truncate(count);
+            let times = ground.times(&[start(&land)], ALL, &StopFlag::default());
+            let greatest = greatest_difference(&times, land.ground.columns() as usize, &rows, tool);
+            println!("{name} {tool} {greatest:.2e}");
+            assert!(greatest < 0.005, "{name} {tool}: {greatest}");
+        }
+    }
+}
+
+#[test]
+fn routes_cost_what_those_of_scikit_image_do_and_never_more() {
+    for (name, file) in PLACES {
+        let Some(land) = place(file) else { return };
+        let rows = table(&format!("movement_{name}.csv"));
+        let columns = land.ground.columns() as usize;
+        let level = level(&land);
+        let mut ground = with_paces(&level, &paces(&land));
+        let of_sixteen = ground.times(&[start(&land)], ALL, &StopFlag::default());
+        ground.steps.truncate(8);
+        for row in rows.iter().filter(|row| row[0] == "route") {
+            let [column, line] = [1, 2].map(|cell: usize| row[cell].parse::<usize>().expect("a number"));
+            let wanted: f64 = row[3].parse().expect("a number");
+            let end = line * columns + column;
+            let goal = TravelGoal { most_s: f32::INFINITY, any_of: Some(&[end]) };
+            let times = ground.times(&[start(&land)], goal, &StopFlag::default());
+            let way = ground.way_to(&times, end);
+            let along = *ground.seconds_along(&way).last().expect("posts");
+            assert!((along / wanted - 1.0).abs() < 1e-4, "{name} {row:?}: {along}");
+            // With knight's moves, a route is at most as long, and at least as long as the straight bound of eight.
+            let short = f64::from(of_sixteen[end]) / wanted;
+            assert!((1.0 / 1.0824..=1.0001).contains(&short), "{name} {row:?}: {short}");
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! The raster of all shards of an analysis.
+
+use std::path::{Path, PathBuf};
+
+use crate::analysis::arguments::AnalysisPlan;
+use crate::analysis::work::{EXTENSION, ground_posts};
+use crate::error::{PlanError, PlanFault, ShardError};
+use crate::plan::ShardPlan;
+use crate::record::result_path;
+use sandtable_analysis::outcome::PostValues;
+use sandtable_base::limits::RASTER_SAMPLES;
+use sandtable_base::limits::memory::check_memory;
+use sandtable_dem::dem_format::DemFormat;
+use sandtable_dem::hints::DemOptions;
+use sandtable_files::error::FileError;
+use sandtable_files::raster_file::{self, WriteRasterError};
+use sandtable_query::analysis::posts_header;
+use sandtable_query::dem;
+use sandtable_raster::error::DemErrorKind;
+use sandtable_raster::raster::{Raster, Samples};
+use sandtable_raster::windows::{RasterWindow, Windows};
+use sandtable_terrain::post_rect::PostRect;
+
+/// The results of shards as one raster, of which the tiles under the last window are held.
+struct TileWindows {
+    /// The raster without samples.
+    header: Raster,
+    tiles: Vec<ResultTile>,
+    held: Vec<HeldTile>,
+}
+
+/// The place of a shard's result in the raster, and its file.
+struct ResultTile {
+    window: RasterWindow,
+    path: PathBuf,
+}
+
+/// The samples of a tile, by its number.
+struct HeldTile {
+    id: usize,
+    samples: Vec<f32>,
+}
+
+/// Writes the values of a plan whose shards are all done: the raster that `analyze` writes.
+///
+/// # Errors
+/// A file cannot be read or written, or is not the one of the plan.
+pub fn gather(
+    plan: &ShardPlan,
+    arguments: &AnalysisPlan,
+    out: &Path,
+    format: &DemFormat,
+) -> Result<(), ShardError> {
+    let opened = arguments.open(&plan.folder)?;
+    let tile = |id: usize| ground_posts(plan, &opened, &plan.shard(id)?);
+    let tiles: Vec<PostRect> = (0..plan.count()).map(tile).collect::<Result<_, ShardError>>()?;
+    let all = tiles.iter().fold(tiles[0], |all, tile| all.with(tile.first).with(tile.last));
+    let posts = all.width() as u64 * all.height() as u64;
+    if posts > RASTER_SAMPLES.get() {
+        let (columns, rows) = (all.width() as u64, all.height() as u64);
+        return Err(PlanError::new(&plan.folder, PlanFault::AnalysisPosts { columns, rows }).into());
+    }
+    let frame = opened.parts.frame();
+    let first = dem::open(&result_path(plan, 0, EXTENSION), &DemOptions::default())?.raster;
+    let header = posts_header(&like(&first), opened.kind.name, (&frame.lattice, all), &frame.crs);
+    let place = |(id, tile): (usize, &PostRect)| ResultTile {
+        window: window_in(*tile, all),
+        path: result_path(plan, id, EXTENSION),
+    };
+    let tiles = tiles.iter().enumerate().map(place).collect();
+    let mut source = TileWindows { header, tiles, held: Vec::new() };
+    if raster_file::write_windows(&mut source, format, out, &plan.folder)?.is_some() {
+        return Ok(());
+    }
+    let checked = check_memory(posts * size_of::<f32>() as u64, "the raster", "gather it as a .tif");
+    checked.map_err(|error| PlanError::new(out, PlanFault::Output(error.to_string())))?;
+    let samples = source.samples(RasterWindow::all(source.size()));
+    let samples = samples.map_err(|error| WriteRasterError::from(FileError::at(&plan.folder)(error)))?;
+    let raster = Raster { samples, ..source.header };
+    raster_file::write(&raster, format, out, &[opened.queried.path])?;
+    Ok(())
+}
+
+/// No values, of the type of those of a tile.
+fn like(tile: &Raster) -> PostValues {
+    match tile.data_type {
+        "Byte" => PostValues::Codes(Vec::new()),
+        _ => PostValues::Numbers(Vec::new()),
+    }
+}
+
+/// The place of posts among all, in rows from the north.
+fn window_in(tile: PostRect, all: PostRect) -> RasterWindow {
+    RasterWindow {
+        column: tile.first.column - all.first.column,
+        row: all.last.row - tile.last.row,
+        width: tile.width() as u32,
+        height: tile.height() as u32,
+    }
+}
+
+impl Windows for TileWindows {
+    fn metadata(&self) -> &Raster {
+        &self.header
+    }
+
+    fn samples(&mut self, window: RasterWindow) -> Result<Samples, DemErrorKind> {
+        window.assert_within(self.size());
+        let rows = RasterWindow { column: 0, width: self.header.width, ..window };
+        self.held.retain(|held| self.tiles[held.id].window.intersection(rows).is_some());
+        let mut samples = vec![f32::NAN; window.samples()];
+        for (id, tile) in self.tiles.iter().enumerate() {
+            if window.intersection(tile.window).is_none() {
+                continue;
+            }
+            let known = self.held.iter().position(|held| held.id == id);
+            let at = match known {
+                Some(at) => at,
+                None => {
+                    self.held.push(HeldTile { id, samples: tile.samples()? });
+                    self.held.len() - 1
+                }
+            };
+            for (to, from) in window.shared_rows(tile.window) {
+                samples[to].copy_from_slice(&self.held[at].samples[from]);
+            }
+        }
+        Ok(Samples::F32(samples))
+    }
+}
+
+impl ResultTile {
+    /// The samples of the file, which was compared with its record.
+    fn samples(&self) -> Result<Vec<f32>, DemErrorKind> {
+        let opened = dem::open(&self.path, &DemOptions::default());
+        let raster = opened.map_err(|_| DemErrorKind::Changed)?.raster;
+        if (raster.width, raster.height) != (self.window.width, self.window.height) {
+            return Err(DemErrorKind::Changed);
+        }
+        Ok(match raster.samples {
+            Samples::F32(samples) => samples,
+            Samples::F64(samples) => samples.iter().map(|&sample| sample as f32).collect(),
+        })
+    }
+}

@@ -1,0 +1,53 @@
+//! One shard of an analysis.
+
+use crate::analysis::arguments::OpenedAnalysis;
+use crate::error::ShardError;
+use crate::plan::ShardPlan;
+use crate::record::result_path;
+use crate::shard::Shard;
+use crate::viewsheds::work::posts;
+use sandtable_dem::dem_format::DemFormat;
+use sandtable_dem::write;
+use sandtable_dem::written::WriteError;
+use sandtable_files::error::FileError;
+use sandtable_files::raster_file::WriteRasterError;
+use sandtable_query::analysis::{Analyzed, raster};
+use sandtable_terrain::post_rect::PostRect;
+use sandtable_terrain::stop_flag::StopFlag;
+
+/// The extension of a shard's results.
+pub const EXTENSION: &str = "tif";
+
+/// The values of a shard's posts, as the bytes of a GeoTIFF.
+///
+/// # Errors
+/// The shard is wrong, or the elevation cannot be read.
+pub fn result(plan: &ShardPlan, opened: &OpenedAnalysis, shard: &Shard) -> Result<Vec<u8>, ShardError> {
+    let posts = ground_posts(plan, opened, shard)?;
+    let analyzed = opened.parts.part(&opened.queried.dataset, posts, &StopFlag::default())?;
+    let Analyzed { ground, crs, outcome } = &analyzed;
+    let values = outcome.raster.as_ref();
+    let values = values.unwrap_or_else(|| panic!("{} gives a raster", opened.kind.name));
+    let format = DemFormat::to_write(EXTENSION).expect("GeoTIFF is written");
+    let written = write::write(&raster(values, ground, crs), format, "").map_err(|error| {
+        WriteRasterError::from(FileError::<WriteError>::new(&result_path(plan, shard.id, EXTENSION), error))
+    })?;
+    Ok(written.bytes)
+}
+
+/// The posts of a shard, which lie on the ground.
+///
+/// # Errors
+/// The shard is wrong.
+pub fn ground_posts(
+    plan: &ShardPlan,
+    opened: &OpenedAnalysis,
+    shard: &Shard,
+) -> Result<PostRect, ShardError> {
+    let (posts, ground) = (posts(plan, shard)?, &opened.parts.frame().lattice);
+    let is_inside = posts.last.column < ground.columns() && posts.last.row < ground.rows();
+    match is_inside && posts.width() > 1 && posts.height() > 1 {
+        true => Ok(posts),
+        false => Err(plan.wrong_shard(shard.id, "its `window` is not one of posts of the ground")),
+    }
+}

@@ -1,0 +1,36 @@
+//! The land of a scene for terrain analysis: what lets water through its roads.
+
+use glam::DVec2;
+use sandtable_analysis::land::{Crossing, CrossingKind};
+use sandtable_catalog::kind::LandPart;
+use sandtable_scene::land::land_of;
+use sandtable_scene::scene_file::open_scene;
+
+use crate::common::scratch::Scratch;
+
+/// The crossings of a road across a river of a width in meters, on a plane of 300 m by 300 m.
+fn crossings(river_m: f64) -> Vec<Crossing> {
+    let folder = Scratch::new();
+    let heights: Vec<String> = (0..31 * 31).map(|index| format!("{}", 100 + index / 31)).collect();
+    let grid = "ncols 31\nnrows 31\nxllcorner -5\nyllcorner -5\ncellsize 10\n";
+    folder.write("plane.asc", format!("{grid}{}", heights.join(" ")));
+    let scene = format!(
+        "[terrain]\ndem = \"plane.asc\"\ncrs = \"EPSG:32633\"\n\
+         [[road]]\nname = \"lane\"\nwidth = 4\npoints = [[20, 150], [280, 150]]\n\
+         [[river]]\nname = \"brook\"\nwidth = {river_m}\npoints = [[150, 280], [150, 20]]\n"
+    );
+    let scene = open_scene(&folder.write("scene.toml", scene), &[], &|_| {});
+    let land = land_of(&scene.unwrap_or_else(|failure| panic!("{failure:?}")), &[LandPart::Crossings]);
+    assert!(land.knows(LandPart::Crossings) && !land.knows(LandPart::Roads));
+    land.crossings
+}
+
+#[test]
+fn a_road_over_a_narrow_brook_has_a_culvert_there() {
+    let found = crossings(2.0);
+    let [culvert] = &found[..] else { panic!("{found:?}") };
+    assert_eq!((culvert.kind, culvert.name.as_str(), culvert.width_m), (CrossingKind::Culvert, "lane", 4.0));
+    let [from, to] = [culvert.line[0], culvert.line[culvert.line.len() - 1]];
+    assert!(from.distance(DVec2::new(140.0, 150.0)) < 0.1 && to.distance(DVec2::new(160.0, 150.0)) < 0.1);
+    assert!(crossings(5.0).is_empty(), "a wider river needs a bridge");
+}
