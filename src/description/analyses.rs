@@ -55,6 +55,8 @@ table! {
         speed_kmh: Option<f64> = key::number(Within(0.1, 300.0), "km/h"), otherwise "by `like`";
         /// Its greatest speeds on a path, a track, a road, a main road and a motorway; 0 where it cannot go.
         road_speed_kmh: Option<Stated<Vec<f64>>> = key::numbers(Within(0.0, 300.0), "km/h"), otherwise "by `like`";
+        /// Its speed in built-up ground beside roads; 0 where it cannot go.
+        built_up_kmh: Option<f64> = key::number(Within(0.0, 300.0), "km/h"), otherwise "by `like`";
         /// The depth of water that it wades.
         ford_m: Option<f64> = key::number(SIZE, "m"), otherwise "by `like`";
         /// The width of a gap that it crosses.

@@ -207,6 +207,7 @@ fn vehicle(name: &str, table: &VehicleTable) -> Vehicle {
         slope_across_percent: table.slope_across_percent.unwrap_or(built_in.slope_across_percent),
         speed_kmh: table.speed_kmh.unwrap_or(built_in.speed_kmh),
         road_speed_kmh,
+        built_up_kmh: table.built_up_kmh.unwrap_or(built_in.built_up_kmh),
         ford_m: table.ford_m.unwrap_or(built_in.ford_m),
         gap_m: table.gap_m.unwrap_or(built_in.gap_m),
         step_m: table.step_m.unwrap_or(built_in.step_m),

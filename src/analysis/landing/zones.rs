@@ -52,7 +52,9 @@ pub(crate) fn landing_zones(
     let ground = &*land.ground;
     let (columns, rows, cell) = (ground.columns() as usize, ground.rows() as usize, ground.cell());
     let diameter = diameter_m(&arguments.word("size"));
-    let disk = DiskRows::new(diameter / 2.0, cell, columns.max(rows));
+    // Where posts lie farther apart than the disk is wide, the ground beside a post is judged by the posts beside it.
+    let radius_m = (diameter / 2.0).max(cell.max_element());
+    let disk = DiskRows::new(radius_m, cell, columns.max(rows));
     let slopes = hindrances(land, limits);
     let greatest = disk.maxima(&slopes, columns, f32::INFINITY);
     drop(slopes);
