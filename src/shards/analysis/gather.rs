@@ -21,6 +21,9 @@ use sandtable_raster::raster::{Raster, Samples};
 use sandtable_raster::windows::{RasterWindow, Windows};
 use sandtable_terrain::post_rect::PostRect;
 
+/// Rows that are written at once, as the values of an analysis are.
+const BAND_ROWS: u32 = 256;
+
 /// The results of shards as one raster, of which the tiles under the last window are held.
 struct TileWindows {
     /// The raster without samples.
@@ -126,6 +129,10 @@ impl Windows for TileWindows {
             }
         }
         Ok(Samples::F32(samples))
+    }
+
+    fn computed_rows(&self) -> Option<u32> {
+        Some(BAND_ROWS)
     }
 }
 
