@@ -73,8 +73,8 @@ impl Blend {
                 let nearness = face.nearness(frame.pattern.centroid_in(x, y, seen));
                 let index = self.index(x, y);
                 let fragment = Fragment { face: piece.face, nearness, mask: seen };
-                let reach_beside = |other: FaceId| face.reach.max(frame.geometry.face(other).reach);
-                insert(&mut self.pixels[index], fragment, reach_beside);
+                let is_in_front = |other: &Fragment| is_in_front(frame, other, &fragment);
+                insert(&mut self.pixels[index], &fragment, is_in_front);
             }
         });
     }
@@ -104,14 +104,22 @@ impl Blend {
     }
 }
 
-/// Inserts a fragment before the first of a pixel's fragments that does not lie in front of it, farther than the reach of
-/// either: of two drapes in one plane the later lies over the earlier, also where one of them is a sliver.
-fn insert(pixel: &mut Vec<Fragment>, fragment: Fragment, reach_beside: impl Fn(FaceId) -> f32) {
-    let in_front = |other: &Fragment| other.nearness > fragment.nearness * reach_beside(other.face);
-    let place = pixel.iter().position(|other| !in_front(other)).unwrap_or(pixel.len());
+/// Inserts a fragment before the first of a pixel's fragments that does not lie in front of it.
+fn insert(pixel: &mut Vec<Fragment>, fragment: &Fragment, is_in_front: impl Fn(&Fragment) -> bool) {
+    let place = pixel.iter().position(|other| !is_in_front(other)).unwrap_or(pixel.len());
     if place < MOST_LAYERS {
-        pixel.insert(place, fragment);
+        pixel.insert(place, *fragment);
         pixel.truncate(MOST_LAYERS);
+    }
+}
+
+/// Whether a fragment lies in front of another. Drapes that show at a pixel lie on the same ground, since ground is opaque: the
+/// later in the list is in front, whatever rounding did to the depth of a sliver.
+fn is_in_front<const N: usize>(frame: &TileContext<N>, other: &Fragment, fragment: &Fragment) -> bool {
+    let [beside, face] = [other.face, fragment.face].map(|id| frame.geometry.face(id));
+    match (frame.shader.item(beside).layer, frame.shader.item(face).layer) {
+        (DepthLayer::Draped(_), DepthLayer::Draped(_)) if beside.item != face.item => beside.item > face.item,
+        _ => other.nearness > fragment.nearness * face.reach,
     }
 }
 
