@@ -15,7 +15,8 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
                 "against",
                 ParameterForm::Ground,
                 ParameterDefault::Required,
-                "The ground before: an elevation file, or `source`, the elevation before the scene's earthworks.",
+                "The ground before: an elevation file, `source`, the elevation before the scene's earthworks, or `phase:NAME`, the ground of the \
+                 scene in another phase.",
             ),
             AnalysisParameter::plain(
                 "area",
@@ -46,7 +47,8 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
                 "against",
                 ParameterForm::Ground,
                 ParameterDefault::Required,
-                "The ground before: an elevation file, or `source`, the elevation before the scene's earthworks.",
+                "The ground before: an elevation file, `source`, the elevation before the scene's earthworks, or `phase:NAME`, the ground of the \
+                 scene in another phase.",
             ),
             AnalysisParameter::plain(
                 "area",

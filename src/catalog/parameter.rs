@@ -45,11 +45,17 @@ pub enum ParameterForm {
     Area,
     /// The name of a vehicle: one of the scene's `[vehicle.NAME]`, or a built-in one.
     Vehicle,
-    /// Another ground to compare with: an elevation file, or `source`, the elevation before the scene's earthworks.
+    /// Another ground to compare with: an elevation file, [`SOURCE_GROUND`], or a phase after [`PHASE_PREFIX`].
     Ground,
     /// A part of the land: `x0,y0,x1,y1`, two positions at opposite corners, or an area of three positions or more.
     Extent,
 }
+
+/// The word for the elevation before the scene's earthworks.
+pub const SOURCE_GROUND: &str = "source";
+
+/// What the name of a phase of the scene follows, whose ground is meant.
+pub const PHASE_PREFIX: &str = "phase:";
 
 /// The parameter of every kind that limits an analysis to a part of the land.
 pub const EXTENT: AnalysisParameter = AnalysisParameter::plain(

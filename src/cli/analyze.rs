@@ -143,7 +143,7 @@ fn value_name(parameter: &AnalysisParameter) -> String {
         ParameterForm::Points { least: 1 } => "X,Y[;X,Y…]".into(),
         ParameterForm::Points { .. } | ParameterForm::Line | ParameterForm::Area => "X,Y;X,Y…".into(),
         ParameterForm::Vehicle => "VEHICLE".into(),
-        ParameterForm::Ground => "FILE|source".into(),
+        ParameterForm::Ground => "FILE|source|phase:NAME".into(),
         ParameterForm::Extent => "X,Y,X,Y".into(),
     }
 }

@@ -18,7 +18,9 @@ use crate::value::KeyValue;
 use crate::words::{AnalysisDraw, BuiltInVehicle, WordDeclaration};
 use sandtable_base::message::suggest::listed;
 use sandtable_catalog::kind::AnalysisKind;
-use sandtable_catalog::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
+use sandtable_catalog::parameter::{
+    AnalysisParameter, PHASE_PREFIX, ParameterDefault, ParameterForm, SOURCE_GROUND,
+};
 use sandtable_geom::crs::Crs;
 use sandtable_geom::position::Position;
 
@@ -188,17 +190,17 @@ impl KeyValue<'_, '_> {
                 }
             }
             ParameterForm::Vehicle => self.filled_text().map(DescribedValue::Word),
-            ParameterForm::Ground => self.files(&["source"]).and_then(one).map(DescribedValue::Word),
+            ParameterForm::Ground => {
+                let text = self.element(self.value).filled_text()?;
+                let is_file = text != SOURCE_GROUND && !text.starts_with(PHASE_PREFIX);
+                if is_file { self.file() } else { Some(text) }.map(DescribedValue::Word)
+            }
             ParameterForm::Points { least } => self.place_or_places(least).map(DescribedValue::Places),
             ParameterForm::Line => self.places(2).map(DescribedValue::Places),
             ParameterForm::Area => self.places(3).map(DescribedValue::Places),
             ParameterForm::Extent => self.places(2).map(DescribedValue::Places),
         }
     }
-}
-
-fn one(mut list: Vec<String>) -> Option<String> {
-    list.pop().filter(|_| list.is_empty())
 }
 
 /// The kinds of analyses as words of a key.

@@ -19,7 +19,9 @@ use sandtable_analysis::land::Land;
 use sandtable_analysis::outcome::{Outcome, OutcomeRaster, PostValues};
 use sandtable_base::message::suggest::{quoted, remedy};
 use sandtable_catalog::kind::{AnalysisKind, AnalysisReach};
-use sandtable_catalog::parameter::{AnalysisParameter, EXTENT, ParameterDefault, ParameterForm};
+use sandtable_catalog::parameter::{
+    AnalysisParameter, EXTENT, PHASE_PREFIX, ParameterDefault, ParameterForm, SOURCE_GROUND,
+};
 use sandtable_geom::crs::{Crs, CrsError};
 use sandtable_raster::raster::{Raster, Samples};
 use sandtable_scene::analyses::interpolation_between;
@@ -327,9 +329,6 @@ fn compared(
     other_ground((parameter.name, &file), grounds, land).map(Some)
 }
 
-/// The word for the elevation of a dataset before its scene's earthworks.
-const SOURCE: &str = "source";
-
 /// The heights of an elevation file or scene at the posts of the land, NaN where it has none: of `file`, or of the dataset's
 /// own elevation before earthworks where that is `source`.
 fn other_ground(
@@ -341,7 +340,11 @@ fn other_ground(
         |source: OpenError| AnalyzeError::Other { name: name.to_owned(), source: Box::new(source) };
     let opened;
     let (other, surface) = match others {
-        _ if file == SOURCE => (dataset, Surface::Source),
+        _ if file == SOURCE_GROUND => (dataset, Surface::Source),
+        OtherGrounds::Files if file.starts_with(PHASE_PREFIX) => {
+            opened = dataset.in_phase(&file[PHASE_PREFIX.len()..]).map_err(unreadable)?;
+            (&opened, Surface::Ground)
+        }
         OtherGrounds::Files => {
             opened = Dataset::open(Path::new(file), &DatasetOptions::default()).map_err(unreadable)?;
             (&opened, Surface::Ground)

@@ -23,7 +23,7 @@ use sandtable_raster::warp::metric_crs::off_scale;
 use sandtable_raster::windows::MOST_KEPT_SAMPLES;
 use sandtable_remote::address::is_address_path;
 use sandtable_scene::build::SceneGround;
-use sandtable_scene::scene_file::{OpenSceneError, is_scene_file, open_scene_ground};
+use sandtable_scene::scene_file::{OpenSceneError, is_scene_file, open_phase_ground, open_scene_ground};
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::query::batch::HeightSlices;
 use sandtable_terrain::query::service::HeightService;
@@ -53,6 +53,8 @@ pub struct Dataset {
     name: String,
     content: DatasetContent,
     warning: Option<String>,
+    /// The folders that it may read, of a scene.
+    allowed: Vec<PathBuf>,
 }
 
 enum DatasetContent {
@@ -131,7 +133,8 @@ impl Dataset {
         let name = path.display().to_string();
         if is_scene_file(path) {
             let ground = open_scene_ground(path, &options.allowed)?;
-            return Ok(Self { name, content: DatasetContent::Scene(ground), warning: None });
+            let allowed = options.allowed.clone();
+            return Ok(Self { name, content: DatasetContent::Scene(ground), warning: None, allowed });
         }
         // What is far away is read where it is needed, however small it is.
         let most_kept = if is_address_path(path) { 0 } else { options.most_kept };
@@ -147,24 +150,39 @@ impl Dataset {
                 (DatasetContent::Windows(Box::new(elevation)), warning)
             }
         };
-        Ok(Self { name, content, warning })
+        Ok(Self { name, content, warning, allowed: Vec::new() })
+    }
+
+    /// The ground of the scene file in the phase called `phase`.
+    ///
+    /// # Errors
+    /// See [`OpenError`]; elevation has no phases.
+    pub fn in_phase(&self, phase: &str) -> Result<Self, OpenError> {
+        let DatasetContent::Scene(_) = &self.content else {
+            return Err(OpenSceneError::NoPhase { name: phase.to_owned(), names: Vec::new() }.into());
+        };
+        let ground = open_phase_ground(Path::new(&self.name), &self.allowed, phase)?;
+        let (name, content) = (self.name.clone(), DatasetContent::Scene(ground));
+        Ok(Self { name, content, warning: None, allowed: self.allowed.clone() })
     }
 
     /// The dataset of the ground of a built scene, which messages call `name`.
     pub fn from_scene(name: &str, scene: &SceneModel) -> Self {
-        Self { name: name.to_owned(), content: DatasetContent::Scene(SceneGround::of(scene)), warning: None }
+        let content = DatasetContent::Scene(SceneGround::of(scene));
+        Self { name: name.to_owned(), content, warning: None, allowed: Vec::new() }
     }
 
     /// The dataset of a raster in memory, which messages call `name`.
     pub fn from_raster(name: &str, raster: Arc<Raster>) -> Self {
         let content = DatasetContent::Raster { raster, ground: OnceLock::new() };
-        Self { name: name.to_owned(), content, warning: None }
+        Self { name: name.to_owned(), content, warning: None, allowed: Vec::new() }
     }
 
     /// The dataset of elevation that stays on disk, which messages call `name`.
     #[cfg(test)]
     pub(crate) fn from_windows(name: &str, elevation: WindowedElevation) -> Self {
-        Self { name: name.to_owned(), content: DatasetContent::Windows(Box::new(elevation)), warning: None }
+        let content = DatasetContent::Windows(Box::new(elevation));
+        Self { name: name.to_owned(), content, warning: None, allowed: Vec::new() }
     }
 
     /// A warning for the user about the files, where there is one.

@@ -16,7 +16,7 @@ use crate::exact_ground::ExactGround;
 use crate::feature::{FeatureKind, SceneFeature};
 use crate::feature_origin::FeatureOrigin;
 use crate::land::land_of;
-use crate::scene_file::{OpenSceneError, is_scene_file, open_scene_ground};
+use crate::scene_file::{OpenSceneError, is_scene_file, open_phase_ground, open_scene_ground};
 use crate::scene_findings::SceneFindings;
 use crate::scene_model::SceneModel;
 use sandtable_analysis::arguments::{AnalysisArguments, ArgumentValue};
@@ -27,7 +27,7 @@ use sandtable_analysis::movement::vehicle::Vehicle;
 use sandtable_analysis::outcome::{Outcome, OutcomeFeature, OutcomeRaster};
 use sandtable_base::message::choice::Choice as _;
 use sandtable_catalog::kind::AnalysisKind;
-use sandtable_catalog::parameter::ParameterForm;
+use sandtable_catalog::parameter::{PHASE_PREFIX, ParameterForm, SOURCE_GROUND};
 use sandtable_description::analyses::{AnalysisTable, DescribedValue, VehicleTable};
 use sandtable_description::color::Color;
 use sandtable_description::diagnostic::Diagnostic;
@@ -44,9 +44,6 @@ use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::query::service::HeightService;
 use sandtable_terrain::query::{Interpolation, Surface};
 use sandtable_terrain::stop_flag::StopFlag;
-
-/// The word for the elevation of the scene before its earthworks.
-const SOURCE: &str = "source";
 
 /// An analysis of the scene's land.
 pub struct SceneAnalysis {
@@ -305,9 +302,9 @@ fn other_ground(
     let DescribedValue::Word(file) = &*stated.value else { return Ok(None) };
     let of_file;
     let (heights, surface) = match file.as_str() {
-        SOURCE => (&scene.heights, Surface::Source),
+        SOURCE_GROUND => (&scene.heights, Surface::Source),
         _ => {
-            let opened = heights_of(file, assets);
+            let opened = heights_of(file, document, assets);
             of_file = opened.map_err(|error| document.error(&stated.value, error))?;
             (&of_file, Surface::Ground)
         }
@@ -319,8 +316,12 @@ fn other_ground(
     Ok(Some(lattice))
 }
 
-/// The heights of an elevation file, or of the ground of another scene file.
-fn heights_of(file: &str, assets: &Assets) -> Result<HeightService, OpenSceneError> {
+/// The heights of an elevation file, of the ground of another scene file, or of the scene's own in another phase.
+fn heights_of(file: &str, document: &Document, assets: &Assets) -> Result<HeightService, OpenSceneError> {
+    if let Some(phase) = file.strip_prefix(PHASE_PREFIX) {
+        let path = Path::new(document.source.name());
+        return Ok(open_phase_ground(path, assets.allowed(), phase)?.heights);
+    }
     if is_scene_file(Path::new(file)) {
         return Ok(open_scene_ground(&assets.resolve(file)?, &[])?.heights);
     }

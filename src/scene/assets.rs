@@ -154,6 +154,11 @@ impl Assets {
         Ok(Self { folder, root, allowed, allowed_as_written, read: Arc::default(), elevation: None })
     }
 
+    /// The folders that it may read besides its own and the one above.
+    pub fn allowed(&self) -> &[PathBuf] {
+        &self.allowed
+    }
+
     /// The same files, but with `elevation` in place of the elevation that the scene names. For files that are larger than
     /// the memory, of which this is an overview.
     pub fn with_elevation(self, elevation: Arc<Raster>) -> Self {

@@ -235,6 +235,7 @@ pub fn build_with(
         symbols: collected.symbols,
         graphics: collected.graphics,
         sight,
+        barriers: fences::barriers(&shaped.lines),
         vehicles,
         analyses: Vec::new(),
         solids: collected.solids,

@@ -3,6 +3,8 @@
 //! Two passes, as for buildings: trenches are dug before the roads come, everything is set where the ground is finished.
 //! What stands is only planned here; [`sandtable_structure::draped_solid`] sets it on the displayed ground for every picture.
 
+use glam::DVec2;
+
 use crate::attributes::Attributes;
 use crate::builder::SceneBuilder;
 use crate::crossed_shapes::CrossedShapes;
@@ -56,6 +58,37 @@ pub struct FenceLine {
     spacing_m: f64,
     sag: f64,
     feature: FeatureId,
+}
+
+/// A line that stops what moves across it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Barrier {
+    /// World X and Y, two positions or more.
+    pub line: Vec<DVec2>,
+    /// What it is.
+    pub kind: BarrierKind,
+}
+
+/// What stops what moves across a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BarrierKind {
+    /// A wall or a belt of obstacles of this height in meters.
+    Step(f64),
+    /// A trench of this width in meters.
+    Gap(f64),
+}
+
+/// The lines that stop vehicles: walls, belts of obstacles and trenches. Fences and hedges are driven through.
+pub fn barriers(lines: &[FenceLine]) -> Vec<Barrier> {
+    let of_line = |line: &FenceLine| {
+        let kind = match line.kind {
+            FenceKind::Wall | FenceKind::Obstacles => BarrierKind::Step(line.height_m),
+            FenceKind::Trench => BarrierKind::Gap(line.width_m),
+            _ => return Vec::new(),
+        };
+        line.parts.iter().map(|part| Barrier { line: part.line.points().to_vec(), kind }).collect()
+    };
+    lines.iter().flat_map(of_line).collect()
 }
 
 /// The default sizes of a kind.

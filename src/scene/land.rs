@@ -6,10 +6,13 @@
 use glam::{DVec2, Vec2};
 
 use crate::feature::FeatureKind;
+use crate::fences::{Barrier, BarrierKind};
 use crate::scene_model::SceneModel;
 use crate::symbols::LineSymbol;
 use crate::undergrowth::{CrownGround, crown_reach};
-use sandtable_analysis::land::{self, Crossing, CrossingKind, Land, RoadLine, Stand, WaterKind, WaterPost};
+use sandtable_analysis::land::{
+    self, Crossing, CrossingKind, Gap, Land, RoadLine, Stand, Step, WaterKind, WaterPost,
+};
 use sandtable_analysis::line_posts::along_line;
 use sandtable_catalog::kind::LandPart;
 use sandtable_description::words::Cover;
@@ -40,6 +43,13 @@ const STAND_POSTS: u32 = 5;
 pub fn land_of(scene: &SceneModel, layers: &[LandPart]) -> Land {
     let mut land = Land::bare(scene.lattice.clone(), scene.crs.clone());
     land.vehicles.clone_from(&scene.vehicles);
+    for Barrier { line, kind } in &scene.barriers {
+        let line = on_map(scene, line);
+        match *kind {
+            BarrierKind::Step(height_m) => land.steps.push(Step { line, height_m }),
+            BarrierKind::Gap(width_m) => land.gaps.push(Gap { line, width_m }),
+        }
+    }
     for layer in layers {
         match layer {
             LandPart::Cover => land.cover = covers(scene),

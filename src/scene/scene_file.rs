@@ -138,9 +138,15 @@ pub fn open_scene_for(
 ) -> Result<SceneModel, OpenSceneError> {
     progress("reading the scene file");
     let (document, assets) = open_document(path, allowed, phase)?;
+    check_phase(&document, phase)?;
+    Ok(build_with(&document, &assets, need, progress)?)
+}
+
+/// Checks that a phase is one of the document's, where one is named.
+fn check_phase(document: &Document, phase: Option<&str>) -> Result<(), OpenSceneError> {
     let is_declared = |name: &str| document.phases.iter().any(|phase| phase.name.as_str() == name);
     match phase.filter(|name| !is_declared(name)) {
-        None => Ok(build_with(&document, &assets, need, progress)?),
+        None => Ok(()),
         Some(name) => {
             let names = document.phases.iter().map(|phase| phase.name.to_string()).collect();
             Err(OpenSceneError::NoPhase { name: name.to_owned(), names })
@@ -164,6 +170,20 @@ pub fn phases(path: &Path, allowed: &[PathBuf]) -> Result<Vec<String>, OpenScene
 /// See [`OpenSceneError`].
 pub fn open_scene_ground(path: &Path, allowed: &[PathBuf]) -> Result<SceneGround, OpenSceneError> {
     let (document, assets) = open_document(path, allowed, None)?;
+    Ok(build_ground(&document, &assets)?)
+}
+
+/// [`open_scene_ground`] in the phase called `phase`.
+///
+/// # Errors
+/// See [`OpenSceneError`].
+pub fn open_phase_ground(
+    path: &Path,
+    allowed: &[PathBuf],
+    phase: &str,
+) -> Result<SceneGround, OpenSceneError> {
+    let (document, assets) = open_document(path, allowed, Some(phase))?;
+    check_phase(&document, Some(phase))?;
     Ok(build_ground(&document, &assets)?)
 }
 

@@ -8,6 +8,7 @@ use crate::analyses::SceneAnalysis;
 use crate::earthworks::water_beside;
 use crate::feature::{FEATURE_NOUNS, FeatureKind, SceneFeature};
 use crate::feature_meshes::{FeatureSolid, Ribbon, Solid};
+use crate::fences::Barrier;
 use crate::finer_elevation::FinerElevation;
 use crate::ground_map_cache::GroundMapCache;
 use crate::land_cover::CoverLines;
@@ -115,6 +116,8 @@ pub struct SceneModel {
     pub graphics: Vec<SceneGraphic>,
     /// Viewsheds, lines of sight and ranges.
     pub sight: SightLayers,
+    /// Walls, belts of obstacles and trenches, as lines.
+    pub barriers: Vec<Barrier>,
     /// The vehicles that it describes.
     pub vehicles: Vec<Vehicle>,
     /// What the ground allows.

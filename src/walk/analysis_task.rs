@@ -6,7 +6,7 @@ use crate::Walk;
 use sandtable_analysis::extent::PlacedOutcome;
 use sandtable_analysis::land::Land;
 use sandtable_catalog::kind::AnalysisKind;
-use sandtable_catalog::parameter::ParameterForm;
+use sandtable_catalog::parameter::{PHASE_PREFIX, ParameterForm, SOURCE_GROUND};
 use sandtable_picture::tried_analysis::TriedAnalysis;
 use sandtable_query::analysis::{AnalyzeError, Analyzed, WrittenArgument, analyze};
 use sandtable_query::dataset::Dataset;
@@ -15,9 +15,6 @@ use sandtable_scene::land::land_of;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::stop_flag::StopFlag;
-
-/// The word for the elevation of the scene before its earthworks.
-const SOURCE: &str = "source";
 
 /// The task of making an analysis on another thread. While it is kept, the next edit copies the heights.
 pub struct AnalysisTask {
@@ -72,10 +69,15 @@ impl AnalysisTask {
     fn resolved(&self, argument: &WrittenArgument, assets: &Assets) -> Result<WrittenArgument, AnalyzeError> {
         let WrittenArgument { name, text } = argument;
         let is_file = self.kind.parameter(name).is_some_and(|known| known.form == ParameterForm::Ground);
-        if !is_file || text == SOURCE || text.is_empty() {
+        if !is_file || text == SOURCE_GROUND || text.is_empty() {
             return Ok(argument.clone());
         }
         let refused = |problem: String| AnalyzeError::Argument { name: name.clone(), problem };
+        if text.starts_with(PHASE_PREFIX) {
+            return Err(refused(
+                "another phase is compared with in scene files and by the command".to_owned(),
+            ));
+        }
         let path = assets.resolve(text).map_err(|error| refused(error.to_string()))?;
         let text = path.to_str().ok_or_else(|| refused("its path is not Unicode".to_owned()))?.to_owned();
         Ok(WrittenArgument { name: name.clone(), text })

@@ -170,6 +170,45 @@ fn a_phase_has_the_analyses_that_state_it() {
 }
 
 #[test]
+fn cut_and_fill_between_two_phases_is_the_earth_that_one_of_them_moves() {
+    let folder = Scratch::new();
+    let row = |row: i32| (0..41).map(|column| format!("{} ", 100 + column + row)).collect::<String>() + "\n";
+    let grid: String = (0..41).map(row).collect();
+    folder.write("ground.asc", format!("ncols 41\nnrows 41\nxllcenter 0\nyllcenter 0\ncellsize 5\n{grid}"));
+    let text = "[[phase]]\nname = \"before\"\n[[phase]]\nname = \"after\"\n[terrain]\ndem = \"ground.asc\"\n\
+                [[earthwork]]\nkind = \"crater\"\npoints = [[100, 100]]\nradius = 20\nphases = [\"after\"]\n\
+                [[analysis]]\nkind = \"cut-fill\"\nagainst = \"phase:before\"\n";
+    let path = folder.write("scene.toml", text);
+    let figures = |phase: &str| -> Vec<f64> {
+        let scene = open_scene_for(&path, &[], Some(phase), ElevationNeed::AllThatFit, &|_| ());
+        let scene = scene.expect("a sound scene");
+        scene.analyses[0].outcome.figures.iter().map(|figure| figure.value).collect()
+    };
+    assert_eq!(figures("before"), [0.0, 0.0, 0.0]);
+    assert!(figures("after")[0] > 100.0, "{:?}", figures("after"));
+    let missing = text.replace("phase:before", "phase:befor");
+    let path = folder.write("missing.toml", missing);
+    let said = open_scene(&path, &[], &|_| ()).err().expect("no such phase");
+    let said = format!("{:?}", said.findings());
+    assert!(said.contains("befor") && said.contains("before"), "{said}");
+}
+
+#[test]
+fn walls_and_trenches_of_a_scene_stop_vehicles_and_fences_do_not() {
+    let share = |kind: &str| {
+        let line =
+            format!("[[fence]]\nkind = \"{kind}\"\nwidth = 3\npoints = [[5100, 7300], [5300, 7300]]\n");
+        let of_truck = OBSTACLES.replace("tracked", "truck");
+        let scene = scene(&format!("{of_truck}{line}")).expect("a sound scene");
+        let outcome = &scene.analyses[0].outcome;
+        outcome.figures.iter().find(|figure| figure.name == "severely restricted").expect("a figure").value
+    };
+    let bare = share("boundary");
+    assert!(share("wall") > bare + 0.003 && share("trench") > bare + 0.003, "{bare} {}", share("wall"));
+    assert_eq!(share("fence"), bare);
+}
+
+#[test]
 fn a_route_states_its_way_points_and_its_march_table() {
     let route = "[[analysis]]\nname = \"Red\"\nkind = \"route\"\nvehicle = \"foot\"\nfrom = [5100, 7100]\n\
                  via = [[5500, 8000]]\nto = [5900, 8900]\n";

@@ -163,7 +163,7 @@ fn choice<'a>(ui: &mut Ui, field: &mut DraftField, words: impl Iterator<Item = &
 /// What holds where a field is empty.
 fn hint(parameter: &AnalysisParameter) -> &'static str {
     match (parameter.default, parameter.form) {
-        (ParameterDefault::Required, ParameterForm::Ground) => "a file, or source",
+        (ParameterDefault::Required, ParameterForm::Ground) => "a file, source, or phase:NAME",
         (ParameterDefault::Required, _) => "needed",
         _ => parameter.default_text(),
     }

@@ -61,3 +61,42 @@ fn an_extent_limits_the_raster_and_one_off_the_land_is_refused() {
         run_in(scratch.folder(), &["analyze", "slope", "tilt.asc", "--extent", "500,5,600,35"]).failed(1);
     assert!(off.contains("`extent`") && off.contains("off the land"), "{off}");
 }
+
+#[test]
+fn a_map_is_a_picture_of_the_ground_and_of_a_scene_and_nothing_is_left_of_a_wrong_one() {
+    let scratch = tilted();
+    scratch.write("scene.toml", "[terrain]\ndem = \"tilt.asc\"\n[[analysis]]\nkind = \"aspect\"\n");
+    for (file, map) in [("tilt.asc", "ground.png"), ("scene.toml", "scene.png")] {
+        run_in(scratch.folder(), &["analyze", "slope", file, "-o", map]).ok();
+        let picture = image::open(scratch.at(map)).expect("a picture").into_rgb8();
+        // The tint of 10 to 20 % is yellow: it has less blue than what is beside the land.
+        let is_tinted = |pixel: &image::Rgb<u8>| i32::from(pixel.0[0]) - i32::from(pixel.0[2]) > 40;
+        assert!(picture.pixels().filter(|pixel| is_tinted(pixel)).count() > 1000, "{map}");
+    }
+    let wrong = ["analyze", "slope", "tilt.asc", "--extent", "900,900,950,950", "-o", "off.png"];
+    run_in(scratch.folder(), &wrong).failed(1);
+    assert!(!scratch.at("off.png").exists());
+}
+
+#[test]
+fn the_ground_of_another_phase_is_compared_with_by_its_name() {
+    let scratch = tilted();
+    let text = "[[phase]]\nname = \"before\"\n[[phase]]\nname = \"after\"\n[terrain]\ndem = \"tilt.asc\"\n\
+                [[earthwork]]\nkind = \"crater\"\npoints = [[30, 20]]\nradius = 12\nphases = [\"after\"]\n";
+    scratch.write("scene.toml", text);
+    let cut = |phase: &str| {
+        let against = format!("phase:{phase}");
+        let command = ["analyze", "cut-fill", "scene.toml", "--against", &against, "--json"];
+        run_in(scratch.folder(), &command)
+    };
+    let figures = |said: &str| -> Vec<f64> {
+        let said: serde_json::Value = serde_json::from_str(said).expect("JSON");
+        let figures = said["figures"].as_array().expect("figures");
+        figures.iter().map(|figure| figure["value"].as_f64().expect("a number")).collect()
+    };
+    assert_eq!(figures(&cut("before").ok())[..2], [0.0, 0.0]);
+    let [digging, filling] = figures(&cut("after").ok())[..2] else { panic!("two figures") };
+    assert!(digging + filling > 50.0, "{digging} {filling}");
+    let missing = cut("befor").failed(1);
+    assert!(missing.contains("`against`") && missing.contains("before"), "{missing}");
+}

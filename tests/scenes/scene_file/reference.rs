@@ -125,7 +125,7 @@ fn form_and_range(form: &ParameterForm) -> (String, String) {
         ParameterForm::Area => any("list of points, a ring"),
         ParameterForm::Extent => any("list of points: two corners, or a ring"),
         ParameterForm::Vehicle => any("name of a vehicle"),
-        ParameterForm::Ground => any("file, or `source`"),
+        ParameterForm::Ground => any("file, `source`, or `phase:NAME`"),
     }
 }
 
