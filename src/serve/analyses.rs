@@ -10,6 +10,8 @@
 //!
 //! An argument that names another ground takes the name of a dataset: requests name no files.
 
+use std::io::Cursor;
+
 use axum::Json;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
@@ -30,13 +32,13 @@ use sandtable_catalog::kind::{AnalysisKind, AnalysisYield};
 use sandtable_catalog::parameter::{AnalysisParameter, ParameterForm};
 use sandtable_catalog::{kind, kinds};
 use sandtable_dem::dem_format::DemFormat;
-use sandtable_dem::write::write;
 use sandtable_export::features::FeatureFormat;
 use sandtable_export::features::analysis_json::{catalog_json, outcome_json};
 use sandtable_export::features::outcome::{OutcomeFrame, outcome_bytes, outcome_geojson};
 use sandtable_query::analysis::{
-    AnalyzeError, Analyzed, OtherGrounds, WrittenArgument, analyze_among, bare_land, needed_posts, raster,
+    AnalyzeError, Analyzed, OtherGrounds, WrittenArgument, analyze_among, bare_land, needed_posts,
 };
+use sandtable_query::analysis_bands::OutcomeWindows;
 use sandtable_query::dataset::Dataset;
 use sandtable_scene::land::land_of;
 use sandtable_terrain::stop_flag::StopFlag;
@@ -135,9 +137,14 @@ impl Query for AnalysisQuery {
             AnswerFormat::GeoTiff => {
                 let values = outcome.raster.as_ref();
                 let values = values.unwrap_or_else(|| panic!("{} gives a raster", self.kind.name));
-                let format = DemFormat::to_write("tif").expect("GeoTIFF is written");
-                let written = write(&raster(values, ground, crs), format, "analysis.tif");
-                written.map_err(|error| HttpError::wrong(error_text(&error)))?.bytes
+                // By the writer of the command, which computes a large raster while it is written.
+                let writer = DemFormat::to_write("tif").and_then(|format| format.windows_writer);
+                let writer = writer.expect("a GeoTIFF is written in windows");
+                let (mut windows, mut out) =
+                    (OutcomeWindows::new(values, ground, crs), Cursor::new(Vec::new()));
+                let written = writer(&mut windows, &mut out);
+                written.map_err(|error| HttpError::wrong(error_text(&error)))?;
+                out.into_inner()
             }
             // Nothing found is an answer, too.
             AnswerFormat::Features(FeatureFormat::GeoJson) if is_empty(outcome) => {
