@@ -63,7 +63,7 @@ fn an_extent_limits_the_raster_and_one_off_the_land_is_refused() {
 }
 
 #[test]
-fn a_map_is_a_picture_of_the_ground_and_of_a_scene_and_nothing_is_left_of_a_wrong_one() {
+fn a_map_is_a_picture_and_nothing_is_left_of_a_wrong_one() {
     let scratch = tilted();
     scratch.write("scene.toml", "[terrain]\ndem = \"tilt.asc\"\n[[analysis]]\nkind = \"aspect\"\n");
     for (file, map) in [("tilt.asc", "ground.png"), ("scene.toml", "scene.png")] {
