@@ -148,7 +148,8 @@ def landing(name, path, folder, size, approach):
     f = numpy.float32
     heights, _, cell = samples(path, folder)
     rows, columns = heights.shape
-    radius = {"1": 12.5, "3": 25.0, "5": 50.0, "7": 75.0}[size]
+    # The disk reaches the posts beside its center, however far apart they are.
+    radius = max({"1": 12.5, "3": 25.0, "5": 50.0, "7": 75.0}[size], max(cell))
     numbers = numpy.arange(columns)[None, :] * 73 + numpy.arange(rows)[:, None] * 151
     obstacles = numpy.where(numbers % 997 == 0, f(4.0), f(0.0))
     slope = slopes(heights, cell)
