@@ -10,6 +10,15 @@ pub fn doubled_area(ring: &[DVec2]) -> f64 {
     edges(ring).map(|(from, to)| from.perp_dot(to)).sum()
 }
 
+/// The ring counter-clockwise.
+pub fn counter_clockwise(ring: &[DVec2]) -> Vec<DVec2> {
+    let mut ring = ring.to_vec();
+    if doubled_area(&ring) < 0.0 {
+        ring.reverse();
+    }
+    ring
+}
+
 /// Twice the signed area of a triangle; positive where it runs counter-clockwise.
 pub fn doubled_triangle_area([a, b, c]: [DVec2; 3]) -> f64 {
     (b - a).perp_dot(c - a)
@@ -56,7 +65,7 @@ pub fn triangulate(ring: &[DVec2], holes: &[Vec<DVec2>]) -> Vec<[DVec2; 3]> {
         .earcut_triangles()
         .into_iter()
         .map(|triangle| [corner(triangle.v1()), corner(triangle.v2()), corner(triangle.v3())])
-        .filter_map(counter_clockwise)
+        .filter_map(counter_clockwise_triangle)
         .collect()
 }
 
@@ -96,7 +105,7 @@ fn closed(ring: &[DVec2]) -> Option<geo::LineString> {
     (line.0.len() > 3).then_some(line)
 }
 
-fn counter_clockwise([a, b, c]: [DVec2; 3]) -> Option<[DVec2; 3]> {
+fn counter_clockwise_triangle([a, b, c]: [DVec2; 3]) -> Option<[DVec2; 3]> {
     let area = doubled_triangle_area([a, b, c]);
     if area > 0.0 { Some([a, b, c]) } else { (area < 0.0).then_some([a, c, b]) }
 }

@@ -2,16 +2,17 @@
 
 use glam::{DVec2, UVec2};
 
-use crate::analysis_look::{class_of, feature_color, hatch_color, is_seen, property, shown_classes};
+use crate::analysis_look::{
+    class_of, feature_color, hatch_color, is_print, is_seen, printed, property, shown_classes,
+};
 use crate::class_hatching::HatchedRaster;
 use crate::graphic_lines::{GraphicPen, GraphicView, LineLook};
 use crate::placed_text::{PlacedCourse, PlacedText};
 use crate::post_tint::{PostTint, TintPlan};
 use crate::sight::{circle, level_text};
 use sandtable_analysis::outcome::{FeatureRole, Hatching, OutcomeFeature, OutcomeShape, PropertyValue};
-use sandtable_description::words::StylePreset;
 use sandtable_draw::color::Srgba;
-use sandtable_geom::polygon::doubled_area;
+use sandtable_geom::polygon::counter_clockwise;
 use sandtable_ribbon::area;
 use sandtable_scene::analyses::SceneAnalysis;
 use sandtable_scene::scene_model::SceneModel;
@@ -70,16 +71,6 @@ pub(super) fn colors(analysis: &SceneAnalysis, scene: &SceneModel) -> Vec<Srgba>
     let of_features =
         analysis.shown_features().iter().map(|feature| printed(scene, feature_color(analysis, feature)));
     of_classes.chain(of_features.flat_map(|color| [color, site_fill(color)])).collect()
-}
-
-/// The color of lines on a picture: black on one in black on white.
-pub(super) fn printed(scene: &SceneModel, color: Srgba) -> Srgba {
-    if is_print(scene) { Srgba::opaque(0, 0, 0) } else { color }
-}
-
-/// Whether pictures are black on white, where classes are told by their hatching alone.
-pub(super) fn is_print(scene: &SceneModel) -> bool {
-    scene.preset == Some(StylePreset::Print)
 }
 
 /// The fill of a site with lines of this color.
@@ -177,22 +168,17 @@ impl FeatureDrawing<'_> {
         if let FeatureRole::Corridor | FeatureRole::Haul = feature.role {
             self.draw_head(line, look, pen);
         }
-        if feature.role == FeatureRole::Route {
-            let at = line[line.len() / 2];
-            let name = self.analysis.name.clone();
-            let text = level_text(self.view, at, name, look.color, self.analysis.feature);
-            texts.push(PlacedText { course: PlacedCourse::Once(self.view.pieces(line)), ..text });
-        }
-        match feature.role {
+        let middle = line[line.len() / 2];
+        let name = match feature.role {
+            FeatureRole::Route => &self.analysis.name,
             FeatureRole::Isoline | FeatureRole::Stream | FeatureRole::FormLine | FeatureRole::Link => {
-                if !feature.name.is_empty() {
-                    let course = PlacedCourse::Once(self.view.pieces(line));
-                    let at = line[line.len() / 2];
-                    let text = self.text(feature, at, look.color);
-                    texts.push(PlacedText { course, ..text });
-                }
+                &feature.name
             }
-            _ => self.name_beside(feature, line[line.len() / 2], look.color, texts),
+            _ => return self.name_beside(feature, middle, look.color, texts),
+        };
+        if !name.is_empty() {
+            let text = level_text(self.view, middle, name.clone(), look.color, self.analysis.feature);
+            texts.push(PlacedText { course: PlacedCourse::Once(self.view.pieces(line)), ..text });
         }
     }
 
@@ -220,13 +206,7 @@ impl FeatureDrawing<'_> {
         let Some((outer, holes)) = rings.split_first().filter(|(outer, _)| outer.len() > 2) else { return };
         if feature.role == FeatureRole::Site {
             let turned = |ring: &Vec<DVec2>| -> Vec<DVec2> {
-                match doubled_area(ring) < 0.0 {
-                    true => ring.iter().rev().copied().collect(),
-                    false => ring.clone(),
-                }
-            };
-            let turned = |ring: &Vec<DVec2>| -> Vec<DVec2> {
-                turned(ring).into_iter().map(|at| self.inside(at)).collect()
+                counter_clockwise(ring).into_iter().map(|at| self.inside(at)).collect()
             };
             let holes: Vec<Vec<DVec2>> = holes.iter().map(turned).collect();
             let fill = site_fill(look.color);

@@ -9,8 +9,10 @@ use crate::graphic_colors::{HIDDEN_LINE, SEEN_LINE};
 use sandtable_analysis::outcome::{
     FeatureRole, Hatching, OutcomeFeature, OutcomeRaster, PropertyValue, ValueClass,
 };
+use sandtable_description::words::StylePreset;
 use sandtable_draw::color::Srgba;
 use sandtable_scene::analyses::SceneAnalysis;
+use sandtable_scene::scene_model::SceneModel;
 
 /// Values of a raster without classes that are looked at for its classes.
 const MOST_SAMPLES: usize = 1 << 16;
@@ -133,6 +135,16 @@ pub fn legend_lines(analysis: &SceneAnalysis) -> BTreeMap<&'static str, Srgba> {
     nouns
 }
 
+/// The color of lines on a picture: black on one in black on white.
+pub fn printed(scene: &SceneModel, color: Srgba) -> Srgba {
+    if is_print(scene) { Srgba::opaque(0, 0, 0) } else { color }
+}
+
+/// Whether pictures are black on white, where classes are told by their hatching alone.
+pub(super) fn is_print(scene: &SceneModel) -> bool {
+    scene.preset == Some(StylePreset::Print)
+}
+
 /// The color of the hatching over a tint.
 pub fn hatch_color([red, green, blue, _]: [u8; 4]) -> Srgba {
     Srgba::from_linear(Srgba::opaque(red, green, blue).linear() * HATCH_LIGHT)
@@ -241,21 +253,11 @@ pub fn feature_color(analysis: &SceneAnalysis, feature: &OutcomeFeature) -> Srgb
         FeatureRole::Route | FeatureRole::Corridor | FeatureRole::Haul => WAYS[analysis.number % WAYS.len()],
         FeatureRole::Isoline => ISOLINE,
         FeatureRole::Stream => STREAM,
-        FeatureRole::FormLine => {
-            if is_valley(feature) {
-                STREAM
-            } else {
-                RIDGE
-            }
-        }
+        FeatureRole::FormLine if is_valley(feature) => STREAM,
+        FeatureRole::FormLine => RIDGE,
         FeatureRole::Site => SITE,
-        FeatureRole::Link => {
-            if is_seen(feature) {
-                SEEN_LINE
-            } else {
-                HIDDEN_LINE
-            }
-        }
+        FeatureRole::Link if is_seen(feature) => SEEN_LINE,
+        FeatureRole::Link => HIDDEN_LINE,
     }
 }
 
@@ -270,21 +272,11 @@ pub fn feature_noun(feature: &OutcomeFeature) -> &'static str {
         FeatureRole::Haul => "haul",
         FeatureRole::Isoline => "line of equal value",
         FeatureRole::Stream => "stream",
-        FeatureRole::FormLine => {
-            if is_valley(feature) {
-                "valley line"
-            } else {
-                "ridge line"
-            }
-        }
+        FeatureRole::FormLine if is_valley(feature) => "valley line",
+        FeatureRole::FormLine => "ridge line",
         FeatureRole::Site => "site",
-        FeatureRole::Link => {
-            if is_seen(feature) {
-                "in sight"
-            } else {
-                "out of sight"
-            }
-        }
+        FeatureRole::Link if is_seen(feature) => "in sight",
+        FeatureRole::Link => "out of sight",
     }
 }
 

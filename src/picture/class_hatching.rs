@@ -8,8 +8,7 @@ use std::f64::consts::FRAC_PI_4;
 use glam::DVec2;
 use rayon::prelude::*;
 
-use crate::analyses::{is_print, printed};
-use crate::analysis_look::{class_of, hatch_color};
+use crate::analysis_look::{class_of, hatch_color, is_print, printed};
 use crate::graphic_lines::{GraphicPen, GraphicView, LineLook};
 use sandtable_analysis::outcome::{Hatching, OutcomeRaster, ValueClass};
 use sandtable_geom::rect::Rect;

@@ -12,7 +12,7 @@ use crate::graphic_lines::{DrapedPart, GraphicPen, GraphicView, LINE_PX, LineLoo
 use crate::placed_text::{PlacedCourse, PlacedText};
 use sandtable_description::words::GraphicStatus;
 use sandtable_draw::color::Srgba;
-use sandtable_geom::polygon::doubled_area;
+use sandtable_geom::polygon::counter_clockwise;
 use sandtable_geom::rect::Rect;
 use sandtable_ribbon::area;
 use sandtable_scene::scene_graphic::{GraphicStyle, SceneGraphic};
@@ -154,13 +154,4 @@ fn draw_plain(graphic: &SceneGraphic, style: &GraphicStyle, view: &GraphicView<'
         }
         view.draw(pen, &points, look, graphic.feature);
     }
-}
-
-/// A ring counter-clockwise.
-fn counter_clockwise(ring: &[DVec2]) -> Vec<DVec2> {
-    let mut ring = ring.to_vec();
-    if doubled_area(&ring) < 0.0 {
-        ring.reverse();
-    }
-    ring
 }

@@ -61,7 +61,7 @@ impl BuildingParts {
         }
         let mut parts_of: BTreeMap<usize, Vec<Vec<DVec2>>> = BTreeMap::new();
         for (&part, &outline) in &found.outline_of {
-            parts_of.entry(outline).or_default().push(counter_clockwise(ring(part)));
+            parts_of.entry(outline).or_default().push(polygon::counter_clockwise(ring(part)));
         }
         for (outline, parts) in parts_of {
             let covered: f64 = region::union(parts.iter().map(Vec::as_slice))
@@ -109,12 +109,4 @@ fn is_within(witnesses: &[DVec2], ring: &[DVec2]) -> bool {
 
 fn area_m2(ring: &[DVec2]) -> f64 {
     polygon::doubled_area(ring).abs() / 2.0
-}
-
-fn counter_clockwise(ring: &[DVec2]) -> Vec<DVec2> {
-    let mut ring = ring.to_vec();
-    if polygon::doubled_area(&ring) < 0.0 {
-        ring.reverse();
-    }
-    ring
 }

@@ -9,7 +9,7 @@ use sandtable_description::words::{GraphicSide, RangeExtent, StylePreset, Viewsh
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::FeatureId;
 use sandtable_draw::print_pattern::PrintPattern;
-use sandtable_picture::analysis_look::{hatch_color, legend_classes, legend_lines};
+use sandtable_picture::analysis_look::{hatch_color, legend_classes, legend_lines, printed};
 use sandtable_picture::graphic_colors::{HIDDEN, HIDDEN_LINE, SEEN, SEEN_LINE, graphic_color, side_color};
 use sandtable_render::picture::Rendering;
 use sandtable_scene::analyses::SceneAnalysis;
@@ -103,16 +103,12 @@ fn analysis_entries(analysis: &SceneAnalysis, scene: &SceneModel) -> Vec<LegendE
     let nouns = legend_lines(analysis);
     let is_one = nouns.len() == 1 && analysis.outcome.raster.is_none();
     let is_only = scene.analyses.len() == 1;
-    let printed = |color: Srgba| match scene.preset {
-        Some(StylePreset::Print) => Srgba::opaque(0, 0, 0),
-        _ => color,
-    };
     let name = |noun: &str| match (is_one, is_only) {
         (true, _) => analysis.name.clone(),
         (false, true) => capitalized(noun),
         (false, false) => format!("{}: {noun}", analysis.name),
     };
-    entries.extend(nouns.into_iter().map(|(noun, color)| line(&name(noun), printed(color))));
+    entries.extend(nouns.into_iter().map(|(noun, color)| line(&name(noun), printed(scene, color))));
     entries
 }
 
