@@ -3,6 +3,8 @@
 //! A nice number is kept as digit and exponent, and its multiples are rounded once: 3 × 0.1 is printed as 0.3, and two
 //! runs never differ in a last digit.
 
+use sandtable_base::message::numbers::{fixed, trimmed};
+
 /// A digit 1, 2 or 5 times a power of ten.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NiceNumber {
@@ -93,9 +95,7 @@ impl Ticks {
 
 /// `value` with `decimals` digits after the point and a true minus sign.
 pub fn format_number(value: f64, decimals: usize) -> String {
-    let digits = format!("{:.decimals$}", value.abs());
-    let is_zero = digits.chars().all(|digit| matches!(digit, '0' | '.'));
-    if value < 0.0 && !is_zero { format!("−{digits}") } else { digits }
+    fixed(value, decimals).replace('-', "−")
 }
 
 /// The digits of a number with those before the point in groups of three: `4 650 000.5`.
@@ -114,11 +114,7 @@ pub fn grouped(digits: &str) -> String {
 
 /// `value` with up to `decimals` digits after the point, without trailing zeros.
 pub fn format_trimmed(value: f64, decimals: usize) -> String {
-    let text = format_number(value, decimals);
-    if !text.contains('.') {
-        return text;
-    }
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    trimmed(value, decimals).replace('-', "−")
 }
 
 /// A distance with its unit: `340 m`, `12.4 km`, `152 km`.

@@ -16,6 +16,7 @@ use crate::output_format::output_format;
 use crate::progress::StepTimer;
 use crate::render::find_camera;
 use sandtable_analysis::outcome::{Figure, Outcome, OutcomeTable, PropertyValue};
+use sandtable_base::message::numbers::trimmed;
 use sandtable_catalog::kind::{AnalysisKind, AnalysisYield};
 use sandtable_catalog::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
 use sandtable_catalog::{kind, kinds};
@@ -346,19 +347,13 @@ fn text(command: &AnalyzeCommand, outcome: &Outcome) -> Vec<String> {
     let mut lines: Vec<String> = command.output.iter().map(|path| path.display().to_string()).collect();
     let width = outcome.figures.iter().map(|figure| figure.name.chars().count()).max().unwrap_or(0).max(8);
     for Figure { name, value, unit } in &outcome.figures {
-        lines.push(row(width, name, format!("{} {unit}", short(*value)).trim_end()));
+        lines.push(row(width, name, format!("{} {unit}", trimmed(*value, 3)).trim_end()));
     }
     if !outcome.features.is_empty() {
         lines.push(row(width, "features", outcome.features.len()));
     }
     outcome.tables.iter().for_each(|table| lines.extend(table_lines(table)));
     lines
-}
-
-/// A number with three decimals at most.
-fn short(number: f64) -> String {
-    let text = format!("{number:.3}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// A table in columns.

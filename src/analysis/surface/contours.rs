@@ -12,6 +12,7 @@ use crate::outcome::{
     ClassLook, FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape,
     PostValues, PropertyValue, ValueClass,
 };
+use sandtable_base::message::numbers::trimmed;
 use sandtable_geom::isolines::{ValueGrid, isolines};
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::stop_flag::StopFlag;
@@ -56,7 +57,7 @@ pub(crate) fn contours(
             let is_numbered = line.level % every == 0;
             (points.len() > 1).then(|| OutcomeFeature {
                 shape: OutcomeShape::Line(points),
-                name: if is_numbered { number_text(height) } else { String::new() },
+                name: if is_numbered { trimmed(height, 2) } else { String::new() },
                 role: FeatureRole::Isoline,
                 properties: vec![
                     ("height_m", PropertyValue::Number(height)),
@@ -134,11 +135,6 @@ fn passages(ground: &Lattice, interval: f64) -> u64 {
     (0..ground.rows() as usize - 1).into_par_iter().map(per_row).sum()
 }
 
-fn number_text(number: f64) -> String {
-    let text = format!("{number:.2}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
-}
-
 /// A band's class: from green over yellow and brown to white.
 fn band_class(band: f64, interval: f64, index: i64, bands: i64) -> ValueClass {
     const RAMP: [[f64; 3]; 5] = [
@@ -157,7 +153,7 @@ fn band_class(band: f64, interval: f64, index: i64, bands: i64) -> ValueClass {
     let (low, high) = (band * interval, (band + 1.0) * interval);
     ValueClass {
         from: low as f32,
-        label: format!("{}–{} m", number_text(low), number_text(high)),
+        label: format!("{}–{} m", trimmed(low, 2), trimmed(high, 2)),
         look: ClassLook { tint: [channel(0), channel(1), channel(2), 130], hatching: Hatching::None },
     }
 }
