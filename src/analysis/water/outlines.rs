@@ -14,14 +14,8 @@ pub(crate) fn rect_of(ground: &Lattice, is_inside: impl Fn(usize) -> bool) -> Op
 }
 
 /// A rectangle with one more post.
-pub(crate) fn grown(rect: Option<PostRect>, Post { column, row }: Post) -> PostRect {
-    let Some(PostRect { first, last }) = rect else {
-        return PostRect { first: Post { column, row }, last: Post { column, row } };
-    };
-    PostRect {
-        first: Post { column: first.column.min(column), row: first.row.min(row) },
-        last: Post { column: last.column.max(column), row: last.row.max(row) },
-    }
+pub(crate) fn grown(rect: Option<PostRect>, post: Post) -> PostRect {
+    rect.unwrap_or(PostRect { first: post, last: post }).with(post)
 }
 
 /// The outlines of the posts of a rectangle for which `is_inside` holds of their numbers.
