@@ -11,10 +11,10 @@
 use glam::DVec2;
 
 use super::carve::banks;
-use super::flood::{DEPTHS, FloodRule, spread, volume_m3};
+use super::flood::{DEPTHS, FloodRule, deepest_m, spread, volume_m3};
 use super::kinds::numbers;
 use super::normal_depth::{ReachFlow, ValleyReach};
-use super::outlines::{outlines, rect_of};
+use super::outlines::outline_features;
 use super::prepared::WaterGround;
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
@@ -134,17 +134,17 @@ pub(crate) fn dam_break(
         );
     }
     let wet = depths.iter().filter(|&&depth| depth > 0.0).count();
-    let deepest = depths.iter().copied().filter(|depth| *depth > 0.0).fold(0.0, f32::max);
     let figures = vec![
         Figure::new("volume behind the dam", reservoir.volume_m3, "m³"),
         Figure::new("height of the water", reservoir.height_m, "m"),
         Figure::new("peak discharge at the dam", peak, "m³/s"),
         Figure::new("flooded area", area_km2(ground, wet), "km²"),
-        Figure::new("greatest depth", f64::from(deepest), "m"),
+        Figure::new("greatest depth", deepest_m(&depths), "m"),
         Figure::new("volume of the flood's crest", held_m3, "m³"),
     ];
-    let mut features = area_features(ground, "reservoir", |index| reservoir.is_wet[index]);
-    features.extend(area_features(ground, "flood", |index| depths[index] > 0.0));
+    let what = |what: &str| ("what", PropertyValue::Text(what.into()));
+    let mut features = outline_features(ground, what("reservoir"), |index| reservoir.is_wet[index]);
+    features.extend(outline_features(ground, what("flood"), |index| depths[index] > 0.0));
     if way.posts.len() > 1 {
         let line = way.posts.iter().map(|&index| ground.map_position(ground.post_at(index))).collect();
         let length_m = way.stations_m.last().copied().unwrap_or(0.0);
@@ -165,22 +165,6 @@ pub(crate) fn dam_break(
         figures,
         notes,
     })
-}
-
-/// The outlines of posts, with what they are.
-fn area_features(
-    ground: &Lattice,
-    what: &str,
-    is_inside: impl Fn(usize) -> bool + Copy,
-) -> Vec<OutcomeFeature> {
-    let shapes = rect_of(ground, is_inside).map(|rect| outlines(ground, rect, is_inside));
-    let feature = |shape| OutcomeFeature {
-        shape,
-        name: String::new(),
-        role: FeatureRole::Outline,
-        properties: vec![("what", PropertyValue::Text(what.into()))],
-    };
-    shapes.into_iter().flatten().map(feature).collect()
 }
 
 impl Reservoir {
