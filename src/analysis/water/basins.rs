@@ -13,7 +13,7 @@ use crate::outcome::{
     FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, OutcomeTable,
     PostValues, PropertyValue, TableColumn, ValueClass,
 };
-use crate::place::missing_ground;
+use crate::place::post_under;
 use crate::water::drainage::Drainage;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::post_rect::PostRect;
@@ -78,7 +78,7 @@ pub(crate) fn basins(
             }
             outlets
         }
-        points => poured(ground, points, (&drainage, &counts), arguments.number("snap_m"))?,
+        points => poured(ground, points, &counts, arguments.number("snap_m"))?,
     };
     if outlets.is_empty() {
         water.notes.push("no outlet drains as much; state a smaller `area_m2`".into());
@@ -163,7 +163,7 @@ fn mouths(drainage: &Drainage, counts: &[u32], least: f64) -> (Vec<usize>, usize
 fn poured(
     ground: &Lattice,
     points: &[DVec2],
-    (drainage, counts): (&Drainage, &[u32]),
+    counts: &[u32],
     snap_m: f64,
 ) -> Result<Vec<usize>, AnalysisError> {
     let key = "pour_points";
@@ -173,24 +173,13 @@ fn poured(
     }
     let mut outlets = Vec::with_capacity(points.len());
     for &at in points {
-        let outlet = nearest_post(ground, at).filter(|&index| drainage.has_data(index));
-        let outlet =
-            outlet.ok_or_else(|| AnalysisError::Place { key, at, problem: missing_ground(ground, at) })?;
-        let outlet = snapped(ground, (outlet, at), counts, snap_m);
+        let outlet = snapped(ground, (post_under(ground, key, at)?, at), counts, snap_m);
         if outlets.contains(&outlet) {
             return Err(AnalysisError::Place { key, at, problem: "another point has the same post" });
         }
         outlets.push(outlet);
     }
     Ok(outlets)
-}
-
-/// The post nearest to a place; `None` off the land.
-pub(super) fn nearest_post(ground: &Lattice, at: DVec2) -> Option<usize> {
-    let grid = (ground.grid_from_map(at)).round();
-    let last = ground.last_grid();
-    let is_there = grid.cmpge(DVec2::ZERO).all() && grid.cmple(last).all();
-    is_there.then(|| grid.y as usize * ground.columns() as usize + grid.x as usize)
 }
 
 /// The post within `snap_m` of a place that drains most, the nearest of several; at least the post itself.

@@ -1,6 +1,5 @@
 //! The kind `flood`: ground below a level of water, all of it or what water can reach from a source (bathtub).
 
-use super::basins::nearest_post;
 use super::kinds::numbers;
 use super::outlines::outline_features;
 use super::prepared::WaterGround;
@@ -10,7 +9,7 @@ use crate::land::Land;
 use crate::line_posts::along_line;
 use crate::measures::area_km2;
 use crate::outcome::{Figure, Hatching, Outcome, PropertyValue, ValueClass};
-use crate::place::missing_ground;
+use crate::place::post_under;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::neighbors::neighbors;
 use sandtable_terrain::stop_flag::StopFlag;
@@ -102,12 +101,7 @@ fn sources(ground: &Lattice, arguments: &AnalysisArguments) -> Result<Option<Vec
     }
     let mut posts = Vec::new();
     for &at in points {
-        let post = nearest_post(ground, at).filter(|&index| !ground.heights()[index].is_nan());
-        posts.push(post.ok_or_else(|| AnalysisError::Place {
-            key: "from",
-            at,
-            problem: missing_ground(ground, at),
-        })?);
+        posts.push(post_under(ground, "from", at)?);
     }
     if !line.is_empty() {
         let before = posts.len();
