@@ -211,12 +211,7 @@ fn codes(drainage: &Drainage, outlets: &[usize]) -> Vec<u8> {
     for (at, &outlet) in outlets.iter().enumerate() {
         codes[outlet] = at as u8 + 1;
     }
-    for &index in drainage.downstream().iter().rev() {
-        let index = index as usize;
-        if codes[index] == 0 {
-            codes[index] = drainage.to(index).map_or(0, |to| codes[to]);
-        }
-    }
+    drainage.pass_up(&drainage.downstream(), &mut codes, |_, code| code == 0);
     for (index, code) in codes.iter_mut().enumerate().filter(|(index, _)| !drainage.has_data(*index)) {
         debug_assert_eq!(*code, 0, "post {index} has no data");
         *code = PostValues::NO_CODE;

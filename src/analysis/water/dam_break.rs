@@ -269,12 +269,8 @@ impl FloodWay {
         for (at, &index) in self.posts.iter().enumerate() {
             nearest[index] = at as u32;
         }
-        for &index in drainage.downstream().iter().rev() {
-            let index = index as usize;
-            if nearest[index] == u32::MAX && !is_out[index] {
-                nearest[index] = drainage.to(index).map_or(u32::MAX, |to| nearest[to]);
-            }
-        }
+        let takes = |index: usize, at: u32| at == u32::MAX && !is_out[index];
+        drainage.pass_up(&drainage.downstream(), &mut nearest, takes);
         nearest
     }
 
