@@ -186,21 +186,14 @@ fn poured(
 fn snapped(ground: &Lattice, (post, at): (usize, DVec2), counts: &[u32], snap_m: f64) -> usize {
     let grid = ground.grid_from_map(at);
     let reach = DVec2::splat(snap_m) / ground.cell();
-    let low = (grid - reach).ceil().max(DVec2::ZERO);
-    let high = (grid + reach).floor().min(ground.last_grid());
+    let near = PostRect::between(ground, grid - reach, grid + reach);
     let mut best = (counts[post], f64::NEG_INFINITY, post);
-    let mut row = low.y;
-    while row <= high.y {
-        let mut column = low.x;
-        while column <= high.x {
-            let index = row as usize * ground.columns() as usize + column as usize;
-            let off = ((DVec2::new(column, row) - grid) * ground.cell()).length_squared();
-            if off <= snap_m * snap_m && (counts[index], -off) > (best.0, best.1) {
-                best = (counts[index], -off, index);
-            }
-            column += 1.0;
+    for post in near.into_iter().flat_map(PostRect::posts) {
+        let index = ground.index(post);
+        let off = ((post.grid() - grid) * ground.cell()).length_squared();
+        if off <= snap_m * snap_m && (counts[index], -off) > (best.0, best.1) {
+            best = (counts[index], -off, index);
         }
-        row += 1.0;
     }
     best.2
 }
