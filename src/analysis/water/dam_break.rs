@@ -191,13 +191,11 @@ impl Reservoir {
         }
         let is_open = |index: usize| heights[index] < level && !is_wall[index] && !is_beyond[index];
         let is_wet = spread(ground, vec![head], FloodRule::Sides, is_open, stop)?;
-        let depths: Vec<f32> = (0..heights.len())
-            .map(|index| if is_wet[index] { level - heights[index] } else { 0.0 })
-            .collect();
-        let mut volume_m3 = volume_m3(ground, &depths);
-        if let Some(stated) = arguments.number_if("volume_m3") {
-            volume_m3 = stated;
-        }
+        let held_m3 = || {
+            let depth = |index: usize| if is_wet[index] { level - heights[index] } else { 0.0 };
+            volume_m3(ground, &(0..heights.len()).map(depth).collect::<Vec<f32>>())
+        };
+        let volume_m3 = arguments.number_if("volume_m3").unwrap_or_else(held_m3);
         let height_m = arguments.number_if("height_m").unwrap_or(f64::from(level - heights[foot]));
         if volume_m3 <= 0.0 || height_m <= 0.0 {
             let problem = format!(
@@ -236,13 +234,8 @@ fn rays(ground: &Lattice, dam: &[DVec2]) -> Vec<[DVec2; 2]> {
         let along = (end - before).normalize_or_zero();
         (along != DVec2::ZERO).then(|| [end, end + along * far_m])
     };
-    match dam {
-        [first, second, ..] => {
-            let [.., before, last] = dam else { return Vec::new() };
-            ray(*first, *second).into_iter().chain(ray(*last, *before)).collect()
-        }
-        _ => Vec::new(),
-    }
+    let ([first, second, ..], [.., before, last]) = (dam, dam) else { return Vec::new() };
+    ray(*first, *second).into_iter().chain(ray(*last, *before)).collect()
 }
 
 impl FloodWay {
