@@ -82,8 +82,7 @@ pub fn run_part<E: From<AnalysisError>>(
     compared: impl Fn(&Land) -> Result<Option<Arc<Lattice>>, E>,
     stop: &StopFlag,
 ) -> Result<PlacedOutcome, E> {
-    let reach = arguments.reach_posts(land.ground.cell()).unwrap_or(0);
-    let needed = posts.grown((reach, reach), &land.ground);
+    let needed = with_reach(posts, arguments, &land.ground);
     let placed = match needed == PostRect::all(&land.ground) {
         true => run_all(land, arguments, compared, stop)?,
         false => run_all(&land_part(land, needed).map_err(no_lattice)?, arguments, compared, stop)?,
@@ -100,6 +99,12 @@ pub fn run_part<E: From<AnalysisError>>(
         outcome.raster = Some(raster);
     }
     Ok(PlacedOutcome { ground, outcome })
+}
+
+/// Posts with as much of the land around them as the values of an analysis need.
+fn with_reach(posts: PostRect, arguments: &AnalysisArguments, land: &Lattice) -> PostRect {
+    let reach = arguments.reach_posts(land.cell()).unwrap_or(0);
+    posts.grown((reach, reach), land)
 }
 
 /// Runs an analysis on all of the land.
@@ -171,8 +176,7 @@ impl LandExtent {
     /// # Errors
     /// As [`LandExtent::posts`].
     pub fn needed_posts(&self, arguments: &AnalysisArguments, land: &Lattice) -> Result<PostRect, String> {
-        let reach = arguments.reach_posts(land.cell()).unwrap_or(0);
-        Ok(self.posts(land)?.grown((reach, reach), land))
+        Ok(with_reach(self.posts(land)?, arguments, land))
     }
 
     /// Whether it reaches a cell or more beyond the land.

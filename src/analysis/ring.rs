@@ -2,27 +2,17 @@
 
 use glam::DVec2;
 
-/// Whether a ring holds a position, by the even-odd rule.
-pub(crate) fn holds(ring: &[DVec2], at: DVec2) -> bool {
-    let mut before = ring.last().copied().unwrap_or(at);
-    let mut is_inside = false;
-    for &corner in ring {
-        if (corner.y > at.y) != (before.y > at.y)
-            && at.x < before.x + (corner.x - before.x) * (at.y - before.y) / (corner.y - before.y)
-        {
-            is_inside = !is_inside;
-        }
-        before = corner;
-    }
-    is_inside
+use sandtable_geom::polygon::{contains, doubled_area};
+
+/// Whether a position lies in the area of a parameter; anywhere does where none is stated.
+pub(crate) fn is_in_area(area: &[DVec2], at: DVec2) -> bool {
+    area.is_empty() || contains([area], at)
 }
 
 /// The ring in the order that areas of an outcome have.
 pub(crate) fn counter_clockwise(ring: &[DVec2]) -> Vec<DVec2> {
     let mut ring = ring.to_vec();
-    let twice_area: f64 =
-        (0..ring.len()).map(|index| ring[index].perp_dot(ring[(index + 1) % ring.len()])).sum();
-    if twice_area < 0.0 {
+    if doubled_area(&ring) < 0.0 {
         ring.reverse();
     }
     ring

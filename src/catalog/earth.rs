@@ -3,6 +3,15 @@
 use crate::kind::{AnalysisFamily, AnalysisKind, AnalysisReach, AnalysisYield};
 use crate::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
 
+/// The ground before.
+const AGAINST: AnalysisParameter = AnalysisParameter::plain(
+    "against",
+    ParameterForm::Ground,
+    ParameterDefault::Required,
+    "The ground before: an elevation file, `source`, the elevation before the scene's earthworks, or `phase:NAME`, the ground of the \
+     scene in another phase.",
+);
+
 /// The kinds.
 pub(crate) const KINDS: &[AnalysisKind] = &[
     AnalysisKind {
@@ -11,13 +20,7 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
         title: "Cut and fill",
         summary: "How much higher the ground is than another one, and the volumes of earth cut and filled.",
         parameters: &[
-            AnalysisParameter::plain(
-                "against",
-                ParameterForm::Ground,
-                ParameterDefault::Required,
-                "The ground before: an elevation file, `source`, the elevation before the scene's earthworks, or `phase:NAME`, the ground of the \
-                 scene in another phase.",
-            ),
+            AGAINST,
             AnalysisParameter::plain(
                 "area",
                 ParameterForm::Area,
@@ -43,13 +46,7 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
         title: "Hauls of earth",
         summary: "Which cut goes to which fill between two states of the ground, so that volume times distance is the least.",
         parameters: &[
-            AnalysisParameter::plain(
-                "against",
-                ParameterForm::Ground,
-                ParameterDefault::Required,
-                "The ground before: an elevation file, `source`, the elevation before the scene's earthworks, or `phase:NAME`, the ground of the \
-                 scene in another phase.",
-            ),
+            AGAINST,
             AnalysisParameter::plain(
                 "area",
                 ParameterForm::Area,

@@ -37,7 +37,7 @@ const METRICATION: &str = "Ways go to sixteen neighbors, as those of `r.walk -k`
      ground is alike in all directions, and for vehicles on slopes that they go freely up to 3 %. On a plane that rises \
      steadily people on foot by Tobler's function take up to 4 % too long where it rises 10 %, 20 % where it rises 20 %, and \
      42 % where it rises 70 %, along directions that fall by about 5 %: the quickest ones, which sixteen directions miss. \
-     by Langmuir's rule, at its break of 21 %, times are up to 1.5 times as long on planes of 40 % and 3.7 times on planes of 70 %. \
+     By Langmuir's rule, at its break of 21 %, times are up to 1.5 times as long on planes of 40 % and 3.7 times on planes of 70 %. \
      Lengths are those on the map.";
 
 /// What is known of slopes across the way.

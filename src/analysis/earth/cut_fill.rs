@@ -9,7 +9,7 @@ use crate::outcome::{
     FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, PostValues,
     ValueClass,
 };
-use crate::ring::{counter_clockwise, holds};
+use crate::ring::{counter_clockwise, is_in_area};
 use sandtable_terrain::lattice::Post;
 use sandtable_terrain::stop_flag::StopFlag;
 
@@ -90,7 +90,7 @@ pub(crate) fn differences(
         }
         for (column, value) in values.iter_mut().enumerate() {
             let post = Post { column: column as u32, row: row as u32 };
-            if area.is_empty() || holds(area, ground.map_position(post)) {
+            if is_in_area(area, ground.map_position(post)) {
                 let index = row * columns + column;
                 *value = difference(ground.heights()[index], other.heights()[index]);
             }

@@ -17,7 +17,7 @@ use crate::outcome::{
     FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, OutcomeTable,
     PostValues, PropertyValue, TableColumn, ValueClass,
 };
-use crate::ring::holds;
+use crate::ring::is_in_area;
 use sandtable_base::limits::memory::check_memory;
 use sandtable_geom::distance_field::{RegionGrid, distances_m};
 use sandtable_terrain::sight::viewshed::{PostVisibility, ViewshedOptions};
@@ -75,7 +75,7 @@ pub(crate) fn sites(
     check_memory(posts as u64 * BYTES_PER_POST, "the analysis", "name a smaller `extent`")?;
     let site = site_ground(land, arguments, &limits, stop)?;
     let area = arguments.points("area");
-    let is_within = |index: usize| area.is_empty() || holds(area, ground.map_position(ground.post_at(index)));
+    let is_within = |index: usize| is_in_area(area, ground.map_position(ground.post_at(index)));
     let is_near =
         |distances: &Option<Vec<f64>>, index: usize, limit_m: Option<f64>| match (distances, limit_m) {
             (Some(distances), Some(limit_m)) => distances[index] <= limit_m,

@@ -9,9 +9,10 @@ use crate::land::Land;
 use crate::movement::going::{Going, SEVERELY_RESTRICTED};
 use crate::movement::grade::GradeTable;
 use crate::movement::vehicle::Vehicle;
+use crate::place::nearest_post;
 use glam::DVec2;
 use sandtable_base::limits::memory::check_memory;
-use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::lattice::Lattice;
 
 /// Sixteen neighbors: columns and rows.
 const NEIGHBORS: [[i32; 2]; 16] = [
@@ -167,12 +168,7 @@ impl<'a> TravelGround<'a> {
     /// It lies beyond the ground, has no data, or the vehicle cannot be there.
     pub fn post_near(&self, key: &'static str, at: DVec2) -> Result<usize, AnalysisError> {
         let fault = |problem| AnalysisError::Place { key, at, problem };
-        let grid = self.ground.grid_from_map(at).round();
-        let is_within = grid.cmpge(DVec2::ZERO).all() && grid.cmple(self.ground.last_grid()).all();
-        if !is_within {
-            return Err(fault("it lies beyond the ground"));
-        }
-        let index = self.ground.index(Post::at_grid(grid));
+        let index = nearest_post(self.ground, at).ok_or_else(|| fault("it lies beyond the ground"))?;
         match self.ground.heights()[index].is_nan() {
             true => Err(fault("the ground has no data there")),
             false if !self.is_open(index) => {
@@ -317,6 +313,7 @@ mod tests {
     use crate::land::Step;
     use crate::movement::search::TravelGoal;
     use crate::test_land::{flat, shaped};
+    use sandtable_terrain::lattice::Post;
     use sandtable_terrain::stop_flag::StopFlag;
 
     pub(super) const ALL: TravelGoal<'static> = TravelGoal { most_s: f32::INFINITY, any_of: None };

@@ -15,8 +15,8 @@ use crate::observation::lookout::{
 };
 use crate::outcome::{Figure, Outcome, OutcomeRaster, OutcomeTable, PostValues, PropertyValue, TableColumn};
 use crate::place::height_under;
+use crate::ring::is_in_area;
 use sandtable_base::limits::memory::check_memory;
-use sandtable_geom::polygon::contains;
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::sight::line::SightEnd;
@@ -150,7 +150,7 @@ fn places(
     let place = |(column, row): (usize, usize)| {
         let post = rect.first.offset(column as u32, row as u32);
         let at = ground.map_position(post);
-        let is_within = area.is_empty() || contains([area], at);
+        let is_within = is_in_area(area, at);
         let ground_m = is_within.then(|| height_under(ground, "area", at).ok()).flatten()?;
         Some(Lookout { number: 0, end: SightEnd { at, above_m }, ground_m })
     };
@@ -172,8 +172,7 @@ impl WatchedGround {
         bits.par_chunks_mut(words_per_row).enumerate().for_each(|(row, words)| {
             for column in 0..rect.width() {
                 let post = rect.first.offset(column as u32, row as u32);
-                let is_watched = !ground.height(post).is_nan()
-                    && (ring.is_empty() || contains([ring], ground.map_position(post)));
+                let is_watched = !ground.height(post).is_nan() && is_in_area(ring, ground.map_position(post));
                 words[column / WORD_BITS] |= u64::from(is_watched) << (column % WORD_BITS);
             }
         });

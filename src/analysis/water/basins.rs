@@ -13,7 +13,7 @@ use crate::outcome::{
     FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, OutcomeTable,
     PostValues, PropertyValue, TableColumn, ValueClass,
 };
-use crate::place::missing_ground;
+use crate::place::post_under;
 use crate::water::drainage::Drainage;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::post_rect::PostRect;
@@ -78,7 +78,7 @@ pub(crate) fn basins(
             }
             outlets
         }
-        points => poured(ground, points, (&drainage, &counts), arguments.number("snap_m"))?,
+        points => poured(ground, points, &counts, arguments.number("snap_m"))?,
     };
     if outlets.is_empty() {
         water.notes.push("no outlet drains as much; state a smaller `area_m2`".into());
@@ -163,7 +163,7 @@ fn mouths(drainage: &Drainage, counts: &[u32], least: f64) -> (Vec<usize>, usize
 fn poured(
     ground: &Lattice,
     points: &[DVec2],
-    (drainage, counts): (&Drainage, &[u32]),
+    counts: &[u32],
     snap_m: f64,
 ) -> Result<Vec<usize>, AnalysisError> {
     let key = "pour_points";
@@ -173,10 +173,7 @@ fn poured(
     }
     let mut outlets = Vec::with_capacity(points.len());
     for &at in points {
-        let outlet = nearest_post(ground, at).filter(|&index| drainage.has_data(index));
-        let outlet =
-            outlet.ok_or_else(|| AnalysisError::Place { key, at, problem: missing_ground(ground, at) })?;
-        let outlet = snapped(ground, (outlet, at), counts, snap_m);
+        let outlet = snapped(ground, (post_under(ground, key, at)?, at), counts, snap_m);
         if outlets.contains(&outlet) {
             return Err(AnalysisError::Place { key, at, problem: "another point has the same post" });
         }
@@ -185,33 +182,18 @@ fn poured(
     Ok(outlets)
 }
 
-/// The post nearest to a place; `None` off the land.
-pub(super) fn nearest_post(ground: &Lattice, at: DVec2) -> Option<usize> {
-    let grid = (ground.grid_from_map(at)).round();
-    let last = ground.last_grid();
-    let is_there = grid.cmpge(DVec2::ZERO).all() && grid.cmple(last).all();
-    is_there.then(|| grid.y as usize * ground.columns() as usize + grid.x as usize)
-}
-
 /// The post within `snap_m` of a place that drains most, the nearest of several; at least the post itself.
 fn snapped(ground: &Lattice, (post, at): (usize, DVec2), counts: &[u32], snap_m: f64) -> usize {
     let grid = ground.grid_from_map(at);
     let reach = DVec2::splat(snap_m) / ground.cell();
-    let low = (grid - reach).ceil().max(DVec2::ZERO);
-    let high = (grid + reach).floor().min(ground.last_grid());
+    let near = PostRect::between(ground, grid - reach, grid + reach);
     let mut best = (counts[post], f64::NEG_INFINITY, post);
-    let mut row = low.y;
-    while row <= high.y {
-        let mut column = low.x;
-        while column <= high.x {
-            let index = row as usize * ground.columns() as usize + column as usize;
-            let off = ((DVec2::new(column, row) - grid) * ground.cell()).length_squared();
-            if off <= snap_m * snap_m && (counts[index], -off) > (best.0, best.1) {
-                best = (counts[index], -off, index);
-            }
-            column += 1.0;
+    for post in near.into_iter().flat_map(PostRect::posts) {
+        let index = ground.index(post);
+        let off = ((post.grid() - grid) * ground.cell()).length_squared();
+        if off <= snap_m * snap_m && (counts[index], -off) > (best.0, best.1) {
+            best = (counts[index], -off, index);
         }
-        row += 1.0;
     }
     best.2
 }
@@ -222,12 +204,7 @@ fn codes(drainage: &Drainage, outlets: &[usize]) -> Vec<u8> {
     for (at, &outlet) in outlets.iter().enumerate() {
         codes[outlet] = at as u8 + 1;
     }
-    for &index in drainage.downstream().iter().rev() {
-        let index = index as usize;
-        if codes[index] == 0 {
-            codes[index] = drainage.to(index).map_or(0, |to| codes[to]);
-        }
-    }
+    drainage.pass_up(&drainage.downstream(), &mut codes, |_, code| code == 0);
     for (index, code) in codes.iter_mut().enumerate().filter(|(index, _)| !drainage.has_data(*index)) {
         debug_assert_eq!(*code, 0, "post {index} has no data");
         *code = PostValues::NO_CODE;

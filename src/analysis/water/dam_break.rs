@@ -11,10 +11,10 @@
 use glam::DVec2;
 
 use super::carve::banks;
-use super::flood::{DEPTHS, FloodRule, spread, volume_m3};
+use super::flood::{DEPTHS, FloodRule, deepest_m, spread, volume_m3};
 use super::kinds::numbers;
 use super::normal_depth::{ReachFlow, ValleyReach};
-use super::outlines::{outlines, rect_of};
+use super::outlines::outline_features;
 use super::prepared::WaterGround;
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
@@ -134,17 +134,17 @@ pub(crate) fn dam_break(
         );
     }
     let wet = depths.iter().filter(|&&depth| depth > 0.0).count();
-    let deepest = depths.iter().copied().filter(|depth| *depth > 0.0).fold(0.0, f32::max);
     let figures = vec![
         Figure::new("volume behind the dam", reservoir.volume_m3, "m³"),
         Figure::new("height of the water", reservoir.height_m, "m"),
         Figure::new("peak discharge at the dam", peak, "m³/s"),
         Figure::new("flooded area", area_km2(ground, wet), "km²"),
-        Figure::new("greatest depth", f64::from(deepest), "m"),
+        Figure::new("greatest depth", deepest_m(&depths), "m"),
         Figure::new("volume of the flood's crest", held_m3, "m³"),
     ];
-    let mut features = area_features(ground, "reservoir", |index| reservoir.is_wet[index]);
-    features.extend(area_features(ground, "flood", |index| depths[index] > 0.0));
+    let what = |what: &str| ("what", PropertyValue::Text(what.into()));
+    let mut features = outline_features(ground, what("reservoir"), |index| reservoir.is_wet[index]);
+    features.extend(outline_features(ground, what("flood"), |index| depths[index] > 0.0));
     if way.posts.len() > 1 {
         let line = way.posts.iter().map(|&index| ground.map_position(ground.post_at(index))).collect();
         let length_m = way.stations_m.last().copied().unwrap_or(0.0);
@@ -165,22 +165,6 @@ pub(crate) fn dam_break(
         figures,
         notes,
     })
-}
-
-/// The outlines of posts, with what they are.
-fn area_features(
-    ground: &Lattice,
-    what: &str,
-    is_inside: impl Fn(usize) -> bool + Copy,
-) -> Vec<OutcomeFeature> {
-    let shapes = rect_of(ground, is_inside).map(|rect| outlines(ground, rect, is_inside));
-    let feature = |shape| OutcomeFeature {
-        shape,
-        name: String::new(),
-        role: FeatureRole::Outline,
-        properties: vec![("what", PropertyValue::Text(what.into()))],
-    };
-    shapes.into_iter().flatten().map(feature).collect()
 }
 
 impl Reservoir {
@@ -207,13 +191,11 @@ impl Reservoir {
         }
         let is_open = |index: usize| heights[index] < level && !is_wall[index] && !is_beyond[index];
         let is_wet = spread(ground, vec![head], FloodRule::Sides, is_open, stop)?;
-        let depths: Vec<f32> = (0..heights.len())
-            .map(|index| if is_wet[index] { level - heights[index] } else { 0.0 })
-            .collect();
-        let mut volume_m3 = volume_m3(ground, &depths);
-        if let Some(stated) = arguments.number_if("volume_m3") {
-            volume_m3 = stated;
-        }
+        let held_m3 = || {
+            let depth = |index: usize| if is_wet[index] { level - heights[index] } else { 0.0 };
+            volume_m3(ground, &(0..heights.len()).map(depth).collect::<Vec<f32>>())
+        };
+        let volume_m3 = arguments.number_if("volume_m3").unwrap_or_else(held_m3);
         let height_m = arguments.number_if("height_m").unwrap_or(f64::from(level - heights[foot]));
         if volume_m3 <= 0.0 || height_m <= 0.0 {
             let problem = format!(
@@ -252,13 +234,8 @@ fn rays(ground: &Lattice, dam: &[DVec2]) -> Vec<[DVec2; 2]> {
         let along = (end - before).normalize_or_zero();
         (along != DVec2::ZERO).then(|| [end, end + along * far_m])
     };
-    match dam {
-        [first, second, ..] => {
-            let [.., before, last] = dam else { return Vec::new() };
-            ray(*first, *second).into_iter().chain(ray(*last, *before)).collect()
-        }
-        _ => Vec::new(),
-    }
+    let ([first, second, ..], [.., before, last]) = (dam, dam) else { return Vec::new() };
+    ray(*first, *second).into_iter().chain(ray(*last, *before)).collect()
 }
 
 impl FloodWay {
@@ -285,12 +262,8 @@ impl FloodWay {
         for (at, &index) in self.posts.iter().enumerate() {
             nearest[index] = at as u32;
         }
-        for &index in drainage.downstream().iter().rev() {
-            let index = index as usize;
-            if nearest[index] == u32::MAX && !is_out[index] {
-                nearest[index] = drainage.to(index).map_or(u32::MAX, |to| nearest[to]);
-            }
-        }
+        let takes = |index: usize, at: u32| at == u32::MAX && !is_out[index];
+        drainage.pass_up(&drainage.downstream(), &mut nearest, takes);
         nearest
     }
 

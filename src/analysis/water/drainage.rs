@@ -134,6 +134,19 @@ impl Drainage {
         }
         order
     }
+
+    /// Gives posts the value of the one that they drain to, from the edge of the land up: those for whose number and value
+    /// `takes` holds. `downstream` is what [`Drainage::downstream`] gives.
+    pub fn pass_up<T: Copy>(&self, downstream: &[u32], values: &mut [T], takes: impl Fn(usize, T) -> bool) {
+        for &index in downstream.iter().rev() {
+            let index = index as usize;
+            if takes(index, values[index])
+                && let Some(to) = self.to(index)
+            {
+                values[index] = values[to];
+            }
+        }
+    }
 }
 
 #[cfg(test)]

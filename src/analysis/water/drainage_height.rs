@@ -24,10 +24,11 @@ pub(crate) fn drainage_height(
     let ground = &*land.ground;
     let mut water = WaterGround::of(land, arguments, stop)?;
     let drainage = water.drained(stop)?;
+    let downstream = drainage.downstream();
     let mut is_bed = vec![false; drainage.codes.len()];
     let word = arguments.word("drainage");
     if word != "water" {
-        let net = StreamNet::new(&drainage, ground, arguments.number("area_m2"));
+        let net = StreamNet::new(&drainage, &downstream, ground, arguments.number("area_m2"));
         net.order.iter().for_each(|&index| is_bed[index as usize] = true);
     }
     match &land.water {
@@ -40,7 +41,7 @@ pub(crate) fn drainage_height(
         }
         _ => {}
     }
-    let heights = above_bed(&drainage, |index| is_bed[index].then_some(drainage.filled_m[index]));
+    let heights = above_bed(&drainage, &downstream, &is_bed);
     let breaks = arguments.numbers("classes");
     let known = heights.iter().filter(|height| !height.is_nan()).count();
     let with_data = (0..heights.len()).filter(|&index| drainage.has_data(index)).count();
@@ -59,15 +60,12 @@ pub(crate) fn drainage_height(
     Ok(Outcome { raster: Some(raster), figures, notes: water.notes, ..Outcome::default() })
 }
 
-/// The height of each post of drained ground above the bed that it drains to; NaN where it comes to none. `bed` gives the
-/// level in meters of a post of the bed.
-pub(super) fn above_bed(drainage: &Drainage, bed: impl Fn(usize) -> Option<f32>) -> Vec<f32> {
+/// The height of each post of drained ground above the bed that it drains to; NaN where it comes to none.
+pub(super) fn above_bed(drainage: &Drainage, downstream: &[u32], is_bed: &[bool]) -> Vec<f32> {
     // The level of the bed first, then the height above it.
-    let mut heights = vec![f32::NAN; drainage.codes.len()];
-    for &index in drainage.downstream().iter().rev() {
-        let index = index as usize;
-        heights[index] = bed(index).or_else(|| drainage.to(index).map(|to| heights[to])).unwrap_or(f32::NAN);
-    }
+    let bed = |(&filled, &is_bed): (&f32, &bool)| if is_bed { filled } else { f32::NAN };
+    let mut heights: Vec<f32> = drainage.filled_m.iter().zip(is_bed).map(bed).collect();
+    drainage.pass_up(downstream, &mut heights, |_, level| level.is_nan());
     for (height, &filled) in heights.iter_mut().zip(&drainage.filled_m) {
         *height = (filled - *height).max(if height.is_nan() { f32::NAN } else { 0.0 });
     }

@@ -1,16 +1,15 @@
 //! The kind `flood`: ground below a level of water, all of it or what water can reach from a source (bathtub).
 
-use super::basins::nearest_post;
 use super::kinds::numbers;
-use super::outlines::{outlines, rect_of};
+use super::outlines::outline_features;
 use super::prepared::WaterGround;
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::line_posts::along_line;
 use crate::measures::area_km2;
-use crate::outcome::{FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, PropertyValue, ValueClass};
-use crate::place::missing_ground;
+use crate::outcome::{Figure, Hatching, Outcome, PropertyValue, ValueClass};
+use crate::place::post_under;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::neighbors::neighbors;
 use sandtable_terrain::stop_flag::StopFlag;
@@ -68,22 +67,15 @@ pub(crate) fn flood(
     let depths: Vec<f32> = (0..heights.len()).map(depth).collect();
     let area = area_km2(ground, is_wet.iter().filter(|&&is_wet| is_wet).count());
     let volume_m3 = volume_m3(ground, &depths);
-    let deepest = depths.iter().copied().filter(|depth| *depth > 0.0).fold(0.0, f32::max);
-    let rect = rect_of(ground, |index| is_wet[index]);
-    let shapes = rect.map(|rect| outlines(ground, rect, |index| is_wet[index])).unwrap_or_default();
-    let feature = |shape| OutcomeFeature {
-        shape,
-        name: String::new(),
-        role: FeatureRole::Outline,
-        properties: vec![("level_m", PropertyValue::Number(f64::from(level)))],
-    };
+    let deepest = deepest_m(&depths);
+    let property = ("level_m", PropertyValue::Number(f64::from(level)));
     Ok(Outcome {
-        features: shapes.into_iter().map(feature).collect(),
+        features: outline_features(ground, property, |index| is_wet[index]),
         raster: Some(numbers("depth", "m", depths, ValueClass::of_rows(DEPTHS))),
         figures: vec![
             Figure::new("flooded area", area, "km²"),
             Figure::new("volume of water", volume_m3, "m³"),
-            Figure::new("greatest depth", f64::from(deepest), "m"),
+            Figure::new("greatest depth", deepest, "m"),
         ],
         notes: water.notes,
         ..Outcome::default()
@@ -96,6 +88,11 @@ pub(super) fn volume_m3(ground: &Lattice, depths: &[f32]) -> f64 {
     sum * ground.cell_m2()
 }
 
+/// The greatest of these depths in meters; 0 where all is dry.
+pub(super) fn deepest_m(depths: &[f32]) -> f64 {
+    f64::from(depths.iter().copied().filter(|depth| *depth > 0.0).fold(0.0, f32::max))
+}
+
 /// The posts of sources; `None` where none is stated.
 fn sources(ground: &Lattice, arguments: &AnalysisArguments) -> Result<Option<Vec<usize>>, AnalysisError> {
     let (points, line) = (arguments.points("from"), arguments.points("from_line"));
@@ -104,12 +101,7 @@ fn sources(ground: &Lattice, arguments: &AnalysisArguments) -> Result<Option<Vec
     }
     let mut posts = Vec::new();
     for &at in points {
-        let post = nearest_post(ground, at).filter(|&index| !ground.heights()[index].is_nan());
-        posts.push(post.ok_or_else(|| AnalysisError::Place {
-            key: "from",
-            at,
-            problem: missing_ground(ground, at),
-        })?);
+        posts.push(post_under(ground, "from", at)?);
     }
     if !line.is_empty() {
         let before = posts.len();

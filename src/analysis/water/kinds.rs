@@ -66,6 +66,10 @@ pub(crate) fn flow(
     let water = WaterGround::of(land, arguments, stop)?;
     let drainage = water.drained(stop)?;
     let cell_m2 = land.ground.cell_m2();
+    let area = |(index, posts): (usize, f64)| match drainage.has_data(index) {
+        true => (posts * cell_m2) as f32,
+        false => f32::NAN,
+    };
     let shows_direction = arguments.word("show") == "direction";
     let raster = match arguments.word("method").as_str() {
         "dinf" => {
@@ -75,12 +79,8 @@ pub(crate) fn flow(
                 let posts = (0..drainage.codes.len()).into_par_iter().with_min_len(1 << 12);
                 numbers("direction", "°", posts.map(degrees).collect(), Vec::new())
             } else {
-                let amounts = flow.accumulation(stop)?;
-                let area = |(index, amount): (usize, f64)| match drainage.has_data(index) {
-                    true => (amount * cell_m2) as f32,
-                    false => f32::NAN,
-                };
-                numbers("drained area", "m²", amounts.into_iter().enumerate().map(area).collect(), Vec::new())
+                let amounts = flow.accumulation(stop)?.into_iter();
+                numbers("drained area", "m²", amounts.enumerate().map(area).collect(), Vec::new())
             }
         }
         _ if shows_direction => {
@@ -88,12 +88,8 @@ pub(crate) fn flow(
             OutcomeRaster { name: "direction", unit: "", values, classes: Vec::new() }
         }
         _ => {
-            let counts = drainage.accumulation();
-            let area = |(index, count): (usize, u32)| match drainage.has_data(index) {
-                true => (f64::from(count) * cell_m2) as f32,
-                false => f32::NAN,
-            };
-            numbers("drained area", "m²", counts.into_iter().enumerate().map(area).collect(), Vec::new())
+            let counts = drainage.accumulation().into_iter().map(f64::from);
+            numbers("drained area", "m²", counts.enumerate().map(area).collect(), Vec::new())
         }
     };
     Ok(Outcome { raster: Some(raster), notes: water.notes, ..Outcome::default() })

@@ -14,7 +14,7 @@ const HALVINGS: usize = 40;
 
 /// A reach of a valley.
 pub(super) struct ValleyReach {
-    /// The heights of its posts above its bed, rising, and the sums of those before each, meters.
+    /// The heights of its posts above its bed, rising, and the sums up to each, meters.
     heights_m: Vec<f64>,
     sums_m: Vec<f64>,
     /// The ground of a post in m².
@@ -41,12 +41,11 @@ impl ValleyReach {
     pub fn new(mut heights_m: Vec<f64>, cell_m2: f64, (length_m, fall_m): (f64, f64)) -> Self {
         heights_m.retain(|height| height.is_finite());
         heights_m.sort_unstable_by(f64::total_cmp);
-        let before = |sum: &mut f64, height: &f64| {
-            let before = *sum;
+        let add = |sum: &mut f64, height: &f64| {
             *sum += height;
-            Some(before)
+            Some(*sum)
         };
-        let sums_m = heights_m.iter().scan(0.0, before).collect();
+        let sums_m = heights_m.iter().scan(0.0, add).collect();
         Self { heights_m, sums_m, cell_m2, length_m, slope: (fall_m / length_m).max(LEAST_SLOPE) }
     }
 
@@ -56,8 +55,7 @@ impl ValleyReach {
         if count == 0 {
             return ReachFlow { depth_m, section_m2: 0.0, width_m: 0.0, discharge: 0.0 };
         }
-        let sum = self.sums_m[count - 1] + self.heights_m[count - 1];
-        let volume_m3 = (count as f64 * depth_m - sum) * self.cell_m2;
+        let volume_m3 = (count as f64 * depth_m - self.sums_m[count - 1]) * self.cell_m2;
         let (section_m2, width_m) = (volume_m3 / self.length_m, count as f64 * self.cell_m2 / self.length_m);
         // The bed is as wide as the water, its sides as high as the mean depth.
         let perimeter_m = width_m + 2.0 * section_m2 / width_m;

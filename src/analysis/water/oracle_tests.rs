@@ -110,7 +110,8 @@ mod tests {
     /// Compares what follows from drained ground with the last columns of the table.
     fn derived(name: &str, ground: &Lattice, drainage: &Drainage, fields: &[&str]) {
         let [orders, hand, east, north] = fields else { panic!("{fields:?}") };
-        let net = StreamNet::new(drainage, ground, 200.0 * ground.cell_m2());
+        let downstream = drainage.downstream();
+        let net = StreamNet::new(drainage, &downstream, ground, 200.0 * ground.cell_m2());
         let by_post = net.orders(drainage);
         let of_order = |order: u8| {
             let is_one = |&&index: &&u32| by_post[index as usize].strahler() == order;
@@ -121,7 +122,7 @@ mod tests {
         assert_eq!(found.join(","), *orders, "{name}: posts of streams by order");
         let mut is_bed = vec![false; drainage.codes.len()];
         net.order.iter().for_each(|&index| is_bed[index as usize] = true);
-        let above = above_bed(drainage, |index| is_bed[index].then_some(drainage.filled_m[index]));
+        let above = above_bed(drainage, &downstream, &is_bed);
         assert_eq!(crc_of_heights(&above), *hand, "{name}: heights above drainage");
         let flow = InfiniteFlow::new(ground, drainage);
         let (columns, rows) = (ground.columns() as usize, ground.rows() as usize);

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, IVec2};
 
-use crate::outcome::OutcomeShape;
+use crate::outcome::{FeatureRole, OutcomeFeature, OutcomeShape, PropertyValue};
 use sandtable_geom::cell_outlines::cell_outlines;
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::post_rect::PostRect;
@@ -14,14 +14,24 @@ pub(crate) fn rect_of(ground: &Lattice, is_inside: impl Fn(usize) -> bool) -> Op
 }
 
 /// A rectangle with one more post.
-pub(crate) fn grown(rect: Option<PostRect>, Post { column, row }: Post) -> PostRect {
-    let Some(PostRect { first, last }) = rect else {
-        return PostRect { first: Post { column, row }, last: Post { column, row } };
+pub(crate) fn grown(rect: Option<PostRect>, post: Post) -> PostRect {
+    rect.unwrap_or(PostRect { first: post, last: post }).with(post)
+}
+
+/// The outlines of the posts for which `is_inside` holds of their numbers, as features with a property.
+pub(crate) fn outline_features(
+    ground: &Lattice,
+    property: (&'static str, PropertyValue),
+    is_inside: impl Fn(usize) -> bool + Copy,
+) -> Vec<OutcomeFeature> {
+    let shapes = rect_of(ground, is_inside).map(|rect| outlines(ground, rect, is_inside));
+    let feature = |shape| OutcomeFeature {
+        shape,
+        name: String::new(),
+        role: FeatureRole::Outline,
+        properties: vec![property.clone()],
     };
-    PostRect {
-        first: Post { column: first.column.min(column), row: first.row.min(row) },
-        last: Post { column: last.column.max(column), row: last.row.max(row) },
-    }
+    shapes.into_iter().flatten().map(feature).collect()
 }
 
 /// The outlines of the posts of a rectangle for which `is_inside` holds of their numbers.

@@ -18,12 +18,12 @@ pub(crate) struct StreamNet {
 }
 
 impl StreamNet {
-    /// The posts that drain at least an area in m².
-    pub fn new(drainage: &Drainage, ground: &Lattice, area_m2: f64) -> Self {
+    /// The posts that drain at least an area in m². `downstream` is what [`Drainage::downstream`] gives.
+    pub fn new(drainage: &Drainage, downstream: &[u32], ground: &Lattice, area_m2: f64) -> Self {
         let least = least_posts(ground, area_m2);
         let counts = drainage.accumulation();
         let is_stream = |&index: &u32| f64::from(counts[index as usize]) >= least;
-        let order: Vec<u32> = drainage.downstream().into_iter().filter(is_stream).collect();
+        let order: Vec<u32> = downstream.iter().copied().filter(is_stream).collect();
         let mut entering = vec![0_u8; counts.len()];
         for to in order.iter().filter_map(|&index| drainage.to(index as usize)) {
             entering[to] += 1;
@@ -97,7 +97,7 @@ pub(crate) fn streams(
 ) -> Result<Outcome, AnalysisError> {
     let water = WaterGround::of(land, arguments, stop)?;
     let drainage = water.drained(stop)?;
-    let net = StreamNet::new(&drainage, &land.ground, arguments.number("area_m2"));
+    let net = StreamNet::new(&drainage, &drainage.downstream(), &land.ground, arguments.number("area_m2"));
     let is_shreve = arguments.word("order") == "shreve";
     let orders = net.orders(&drainage);
     let mut features = Vec::new();
