@@ -9,6 +9,7 @@ use crate::graphic_colors::{HIDDEN_LINE, SEEN_LINE};
 use sandtable_analysis::outcome::{
     FeatureRole, Hatching, OutcomeFeature, OutcomeRaster, PropertyValue, ValueClass,
 };
+use sandtable_base::message::numbers::trimmed;
 use sandtable_draw::color::Srgba;
 use sandtable_scene::analyses::SceneAnalysis;
 
@@ -221,14 +222,9 @@ fn powers(middle: f32, greatest: f32) -> Vec<f32> {
     (first..=to.max(first)).map(|power| libm::pow(10.0, f64::from(power)) as f32).collect()
 }
 
-/// A number without needless zeros.
+/// A number with three decimals at most.
 fn short(number: f32) -> String {
-    let text = format!("{number:.3}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    match text {
-        "-0" => "0".to_owned(),
-        text => text.to_owned(),
-    }
+    trimmed(number, 3)
 }
 
 /// The color of the lines of a feature of an analysis.

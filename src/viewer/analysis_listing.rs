@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use sandtable_analysis::outcome::{Figure, OutcomeTable, TableColumn, ValueClass};
-use sandtable_base::message::numbers::fixed;
+use sandtable_base::message::numbers::trimmed;
 use sandtable_catalog::kind::AnalysisKind;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::FeatureId;
@@ -81,9 +81,7 @@ impl ListedTable {
 
 /// A figure with its unit, with three decimals at most.
 pub fn figure_text(figure: &Figure) -> String {
-    let text = fixed(figure.value, 3);
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    format!("{text} {}", figure.unit).trim_end().to_owned()
+    format!("{} {}", trimmed(figure.value, 3), figure.unit).trim_end().to_owned()
 }
 
 #[cfg(test)]

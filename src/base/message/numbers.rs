@@ -15,6 +15,17 @@ pub fn fixed(value: impl Into<f64>, decimals: usize) -> String {
     unsigned.map(str::to_owned).unwrap_or(text)
 }
 
+/// `value` with at most `decimals` digits after the point and without needless zeros, as [`fixed`] rounds it.
+///
+/// ```
+/// use sandtable_base::message::numbers::trimmed;
+/// assert_eq!((trimmed(12.50, 3), trimmed(100.0, 0)), ("12.5".to_owned(), "100".to_owned()));
+/// ```
+pub fn trimmed(value: impl Into<f64>, decimals: usize) -> String {
+    let text = fixed(value, decimals);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
 /// A count with its noun.
 ///
 /// ```
@@ -44,6 +55,14 @@ mod tests {
         }
         assert_eq!((fixed(f64::NAN, 1), fixed(f64::NEG_INFINITY, 1)), ("NaN".into(), "-inf".into()));
         assert_eq!(fixed(-0.001f32, 2), "0.00");
+    }
+
+    #[test]
+    fn only_zeros_after_the_point_are_needless() {
+        let texts = [1.5, -84.25, 0.0, -1e-12, 100.0].map(|number| trimmed(number, 9));
+        assert_eq!(texts, ["1.5", "-84.25", "0", "0", "100"]);
+        assert_eq!((trimmed(1234.0, 0), trimmed(-0.0, 0)), ("1234".into(), "0".into()));
+        assert_eq!((trimmed(f64::NAN, 3), trimmed(f64::INFINITY, 3)), ("NaN".into(), "inf".into()));
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use super::xml_text::{XmlText, decimal};
+use super::xml_text::XmlText;
 use super::{
     ExportFeature, ExportKind, ExportLayer, ExportShape, ExportedFeatures, FeatureExportError, MadeFile,
     counted, written,
@@ -12,6 +12,7 @@ use super::{
 use crate::page::PageSymbol;
 use crate::page_symbols::symbol_picture;
 use sandtable_base::archive::zip;
+use sandtable_base::message::numbers::trimmed;
 use sandtable_draw::color::Srgba;
 use sandtable_files::png::encode_png;
 use sandtable_scene::scene_model::SceneModel;
@@ -105,7 +106,7 @@ fn style(xml: &mut XmlText, layer: &ExportLayer) {
     xml.open("Style", &[("id", layer.name)]);
     xml.open("LineStyle", &[])
         .element("color", &stroke)
-        .element("width", &decimal(f64::from(width), 2))
+        .element("width", &trimmed(f64::from(width), 2))
         .close();
     if layer.kind == ExportKind::Polygons {
         xml.open("PolyStyle", &[]);
@@ -131,9 +132,9 @@ fn icon_style(xml: &mut XmlText, number: usize, icon: &PageSymbol) {
     let scale = width.max(height) / ICON_PX * ICON_SCALE;
     let hot = [f64::from(icon.anchor_px.x) / width, 1.0 - f64::from(icon.anchor_px.y) / height];
     xml.open("Style", &[("id", &format!("symbol-{number}"))]);
-    xml.open("IconStyle", &[]).element("scale", &decimal(scale, 3));
+    xml.open("IconStyle", &[]).element("scale", &trimmed(scale, 3));
     xml.open("Icon", &[]).element("href", &format!("symbols/{number}.png")).close();
-    let [x, y] = hot.map(|share| decimal(share, 4));
+    let [x, y] = hot.map(|share| trimmed(share, 4));
     xml.element_with("hotSpot", &[("x", &x), ("y", &y), ("xunits", "fraction"), ("yunits", "fraction")], "");
     xml.close();
     // The picture says what the symbol is called.
@@ -185,8 +186,8 @@ fn placemark(xml: &mut XmlText, layer: &ExportLayer, feature: &ExportFeature, ic
 }
 
 fn tuple(at: &DVec3) -> String {
-    let (x, y) = (decimal(at.x, 9), decimal(at.y, 9));
-    if at.z.is_finite() { format!("{x},{y},{}", decimal(at.z, 3)) } else { format!("{x},{y}") }
+    let (x, y) = (trimmed(at.x, 9), trimmed(at.y, 9));
+    if at.z.is_finite() { format!("{x},{y},{}", trimmed(at.z, 3)) } else { format!("{x},{y}") }
 }
 
 fn tuples<'a>(places: impl Iterator<Item = &'a DVec3>) -> String {

@@ -4,8 +4,9 @@
 use glam::DVec3;
 
 use super::nvg::left_out;
-use super::xml_text::{XmlText, decimal};
+use super::xml_text::XmlText;
 use super::{ExportFeature, ExportLayer, ExportShape, ExportedFeatures, FeatureExportError, MadeFile};
+use sandtable_base::message::numbers::trimmed;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_symbology::code::SymbolCode;
 use sandtable_symbology::fields::{SymbolIdentity, SymbolSet};
@@ -197,8 +198,8 @@ fn relation(xml: &mut XmlText, side: usize) {
 
 fn location(xml: &mut XmlText, at: &DVec3) {
     xml.open("Location", &[]).element("CoordinateChoice", "GDC").open("CoordinateData", &[]).open("GDC", &[]);
-    xml.element("Latitude", &decimal(at.y, 9))
-        .element("Longitude", &decimal(at.x, 9))
+    xml.element("Latitude", &trimmed(at.y, 9))
+        .element("Longitude", &trimmed(at.x, 9))
         .element("ElevationAGL", "0");
     xml.close().close().close();
 }

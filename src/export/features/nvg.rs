@@ -1,9 +1,10 @@
 //! Symbols and graphics as NATO Vector Graphics 2.0: points, polylines and polygons with their codes, fields and styles.
 
-use super::xml_text::{XmlText, decimal};
+use super::xml_text::XmlText;
 use super::{
     ExportFeature, ExportLayer, ExportShape, ExportedFeatures, FeatureExportError, MadeFile, counted, written,
 };
+use sandtable_base::message::numbers::trimmed;
 use sandtable_draw::color::Srgba;
 use sandtable_vector::overlay_schema as schema;
 
@@ -68,12 +69,12 @@ fn element(xml: &mut XmlText, layer: &ExportLayer, feature: &ExportFeature) {
     let places = |points: &[glam::DVec3]| {
         points
             .iter()
-            .map(|at| format!("{},{}", decimal(at.x, 9), decimal(at.y, 9)))
+            .map(|at| format!("{},{}", trimmed(at.x, 9), trimmed(at.y, 9)))
             .collect::<Vec<_>>()
             .join(" ")
     };
     let mut attributes: Vec<(&str, String)> = match &feature.shape {
-        ExportShape::Point(at) => vec![("x", decimal(at.x, 9)), ("y", decimal(at.y, 9))],
+        ExportShape::Point(at) => vec![("x", trimmed(at.x, 9)), ("y", trimmed(at.y, 9))],
         ExportShape::Line(line) => vec![("points", places(line))],
         ExportShape::Polygon(rings) => {
             vec![("points", rings.first().map(|ring| places(ring)).unwrap_or_default())]

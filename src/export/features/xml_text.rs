@@ -69,13 +69,6 @@ impl XmlText {
     }
 }
 
-/// A number of degrees or meters without needless zeros.
-pub(super) fn decimal(number: f64, places: usize) -> String {
-    let text = format!("{number:.places$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -89,12 +82,5 @@ mod tests {
             text,
             "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<a b=\"&lt;&amp;&quot;\">\n  <c>x &amp; y</c>\n  <d/>\n</a>\n"
         );
-    }
-
-    #[test]
-    fn numbers_are_as_short_as_they_can_be() {
-        let texts = [1.5, -84.25, 0.0, -1e-12, 100.0].map(|number| decimal(number, 9));
-        assert_eq!(texts, ["1.5", "-84.25", "0", "0", "100"]);
-        assert_eq!(decimal(1234.0, 0), "1234");
     }
 }
