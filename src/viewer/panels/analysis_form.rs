@@ -130,7 +130,7 @@ fn field_rows(
         if !allowed.is_empty() {
             ui.weak(allowed);
         }
-        if field.is_picked() {
+        if parameter.form.is_positions() {
             let is_picked = picking == Some(parameter.name);
             let button = ui.selectable_label(is_picked, "Pick").on_hover_text("Click on the ground");
             let button = button.accessible_name(format!("Pick {}", parameter.name));
