@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use sandtable_analysis::outcome::{Figure, OutcomeTable, TableColumn, ValueClass};
+use sandtable_analysis::outcome::{Figure, OutcomeTable, ValueClass, with_unit};
 use sandtable_base::message::numbers::trimmed;
 use sandtable_catalog::kind::AnalysisKind;
 use sandtable_draw::color::Srgba;
@@ -64,17 +64,10 @@ impl AnalysisListing {
 
 impl ListedTable {
     fn new(table: &OutcomeTable) -> Self {
-        let heading = |&TableColumn { name, unit, .. }: &TableColumn| match unit {
-            "" => name.to_owned(),
-            unit => format!("{name} ({unit})"),
-        };
-        let cells = table.rows.iter().map(|row| {
-            row.iter().zip(&table.columns).map(|(value, column)| value.written(column.decimals)).collect()
-        });
         Self {
             title: table.title.clone(),
-            columns: table.columns.iter().map(heading).collect(),
-            rows: cells.collect(),
+            columns: table.columns.iter().map(|column| with_unit(column.name, column.unit)).collect(),
+            rows: table.written_rows().collect(),
         }
     }
 }
@@ -87,7 +80,7 @@ pub fn figure_text(figure: &Figure) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_analysis::outcome::PropertyValue;
+    use sandtable_analysis::outcome::{PropertyValue, TableColumn};
 
     #[test]
     fn figures_have_no_needless_zeros() {

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use sandtable_analysis::movement::vehicle::{BUILT_IN_NAMES, Vehicle};
-use sandtable_analysis::outcome::{Hatching, Outcome, OutcomeRaster, OutcomeShape};
+use sandtable_analysis::outcome::{Hatching, Outcome, OutcomeRaster, OutcomeShape, with_unit};
 use sandtable_catalog::kind::{AnalysisFamily, AnalysisKind, AnalysisReach};
 use sandtable_catalog::kinds;
 use sandtable_catalog::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
@@ -274,10 +274,6 @@ fn given(outcome: &Outcome) -> String {
         let _ = writeln!(text, "- figures: {}{more}", figures.join(", "));
     }
     text
-}
-
-fn with_unit(name: &str, unit: &str) -> String {
-    if unit.is_empty() { name.to_owned() } else { format!("{name} ({unit})") }
 }
 
 fn given_raster(raster: &OutcomeRaster) -> String {
