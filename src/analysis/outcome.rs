@@ -202,6 +202,16 @@ pub struct OutcomeTable {
     pub rows: Vec<Vec<PropertyValue>>,
 }
 
+impl OutcomeTable {
+    /// The cells of each row as text, with the decimals of their columns.
+    pub fn written_rows(&self) -> impl Iterator<Item = Vec<String>> {
+        let cells = |row: &Vec<PropertyValue>| {
+            row.iter().zip(&self.columns).map(|(value, column)| value.written(column.decimals)).collect()
+        };
+        self.rows.iter().map(cells)
+    }
+}
+
 /// A column of a table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TableColumn {
@@ -218,6 +228,11 @@ impl TableColumn {
     pub const fn new(name: &'static str, unit: &'static str, decimals: usize) -> Self {
         Self { name, unit, decimals }
     }
+}
+
+/// What numbers are, with their unit in brackets where they have one: `length (km)`.
+pub fn with_unit(name: &str, unit: &str) -> String {
+    if unit.is_empty() { name.to_owned() } else { format!("{name} ({unit})") }
 }
 
 /// A number about the whole.

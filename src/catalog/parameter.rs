@@ -51,6 +51,13 @@ pub enum ParameterForm {
     Extent,
 }
 
+impl ParameterForm {
+    /// Whether its values are positions, which can be picked on the ground.
+    pub const fn is_positions(self) -> bool {
+        matches!(self, Self::Points { .. } | Self::Line | Self::Area | Self::Extent)
+    }
+}
+
 /// The word for the elevation before the scene's earthworks.
 pub const SOURCE_GROUND: &str = "source";
 

@@ -15,7 +15,7 @@ use crate::output::{print, print_lines, row, warn};
 use crate::output_format::output_format;
 use crate::progress::StepTimer;
 use crate::render::find_camera;
-use sandtable_analysis::outcome::{Figure, Outcome, OutcomeTable, PropertyValue};
+use sandtable_analysis::outcome::{Figure, Outcome, OutcomeTable, with_unit};
 use sandtable_base::message::numbers::trimmed;
 use sandtable_catalog::kind::{AnalysisKind, AnalysisYield};
 use sandtable_catalog::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
@@ -358,13 +358,8 @@ fn text(command: &AnalyzeCommand, outcome: &Outcome) -> Vec<String> {
 
 /// A table in columns.
 fn table_lines(table: &OutcomeTable) -> Vec<String> {
-    let heading =
-        |name: &str, unit: &str| if unit.is_empty() { name.to_owned() } else { format!("{name} ({unit})") };
-    let head: Vec<String> = table.columns.iter().map(|column| heading(column.name, column.unit)).collect();
-    let cells = |row: &Vec<PropertyValue>| -> Vec<String> {
-        row.iter().zip(&table.columns).map(|(value, column)| value.written(column.decimals)).collect()
-    };
-    let rows: Vec<Vec<String>> = std::iter::once(head).chain(table.rows.iter().map(cells)).collect();
+    let head: Vec<String> = table.columns.iter().map(|column| with_unit(column.name, column.unit)).collect();
+    let rows: Vec<Vec<String>> = std::iter::once(head).chain(table.written_rows()).collect();
     let width = |column: usize| {
         rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max().unwrap_or(0)
     };

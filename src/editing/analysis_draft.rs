@@ -39,14 +39,6 @@ pub struct DraftField {
 }
 
 impl DraftField {
-    /// Whether its value is positions, which can be picked on the ground.
-    pub fn is_picked(&self) -> bool {
-        matches!(
-            self.parameter.form,
-            ParameterForm::Points { .. } | ParameterForm::Line | ParameterForm::Area | ParameterForm::Extent
-        )
-    }
-
     /// States positions in map coordinates of the scene.
     pub fn set_points(&mut self, points: &[DVec2]) {
         let written = |at: &DVec2| format!("{:.*},{:.*}", PICKED_DECIMALS, at.x, PICKED_DECIMALS, at.y);

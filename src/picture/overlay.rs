@@ -21,7 +21,7 @@ pub(super) fn planned(
     (scene, tried): (&SceneModel, Option<&SceneAnalysis>),
     camera: &Camera,
 ) -> (Vec<LinePlan>, Vec<PlacedText>) {
-    if is_empty(scene) && tried.is_none() {
+    if !scene.has_overlay() && tried.is_none() {
         return (Vec::new(), Vec::new());
     }
     let view = GraphicView::around(scene, camera);
@@ -42,7 +42,7 @@ pub(super) fn planned(
 /// The colors of all that [`planned`] plans of the scene, each once.
 pub(super) fn colors(scene: &SceneModel) -> BTreeSet<[u8; 4]> {
     let lines = sight::line_colors(scene).filter(|_| !scene.sight.is_empty());
-    let casing = [CASING].into_iter().filter(|_| !is_empty(scene));
+    let casing = [CASING].into_iter().filter(|_| scene.has_overlay());
     let analyses = scene.analyses.iter().flat_map(|analysis| analyses::colors(analysis, scene));
     let all = lines.chain(graphics::colors(scene)).chain(analyses).chain(casing);
     all.map(|Srgba(color)| color).collect()
@@ -56,7 +56,7 @@ pub(super) fn add(
     displayed: &dyn TriangleSurface,
     progress: &dyn Fn(&'static str),
 ) -> Vec<PlacedText> {
-    if is_empty(scene) {
+    if !scene.has_overlay() {
         return Vec::new();
     }
     let view = GraphicView::new(scene, camera);
@@ -76,11 +76,6 @@ pub(super) fn add(
     add_parts(list, casings.into_iter().chain(lines));
     names_first(&mut texts);
     texts
-}
-
-/// Whether a scene has none.
-fn is_empty(scene: &SceneModel) -> bool {
-    scene.graphics.is_empty() && scene.sight.is_empty() && scene.analyses.is_empty()
 }
 
 /// The layer of tints of the ground: over what covers it, under water and roads, whose colors they leave as they are.

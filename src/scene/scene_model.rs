@@ -167,6 +167,11 @@ pub struct SceneModel {
 }
 
 impl SceneModel {
+    /// Whether lines, tints or texts lie over the ground: tactical graphics, layers of sight, analyses.
+    pub fn has_overlay(&self) -> bool {
+        !(self.graphics.is_empty() && self.sight.is_empty() && self.analyses.is_empty())
+    }
+
     /// The ground as it is drawn, made on first use; its measures are computed at first use, too.
     pub fn ground(&self) -> &MeasuredGround {
         self.ground.get_or_init(|| MeasuredGround::with_layout(self.scale.drawn(&self.lattice), self.layout))

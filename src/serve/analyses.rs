@@ -244,11 +244,7 @@ fn written(
     most: usize,
 ) -> Result<String, HttpError> {
     let name = parameter.name;
-    let is_positions = matches!(
-        parameter.form,
-        ParameterForm::Points { .. } | ParameterForm::Line | ParameterForm::Area | ParameterForm::Extent
-    );
-    if !is_positions {
+    if !parameter.form.is_positions() {
         return Ok(text.to_owned());
     }
     let positions: Vec<&str> =

@@ -28,7 +28,7 @@ const EDGE: f32 = 0.45;
 
 /// The sides, obstacles and tints that `picture` shows of `scene`, in order.
 pub fn overlay_entries(scene: &SceneModel, picture: &Rendering) -> Vec<LegendEntry> {
-    if scene.graphics.is_empty() && scene.sight.is_empty() && scene.analyses.is_empty() {
+    if !scene.has_overlay() {
         return Vec::new();
     }
     let shown: BTreeSet<FeatureId> = picture.features.iter().copied().collect();

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, UVec2, Vec2, Vec3};
 
-use sandtable_analysis::outcome::{OutcomeTable, PropertyValue};
+use sandtable_analysis::outcome::OutcomeTable;
 use sandtable_annotate::locator::LocatorMap;
 use sandtable_annotate::margin::MarginNotes;
 use sandtable_annotate::margin_table::MarginTable;
@@ -100,10 +100,7 @@ fn tables(scene: &SceneModel) -> Vec<MarginTable> {
 
 fn margin_table(title: String, table: &OutcomeTable) -> MarginTable {
     let columns = table.columns.iter().map(|column| (column.name.to_owned(), column.unit.to_owned()));
-    let row = |row: &Vec<PropertyValue>| {
-        row.iter().zip(&table.columns).map(|(value, column)| value.written(column.decimals)).collect()
-    };
-    MarginTable { title, columns: columns.collect(), rows: table.rows.iter().map(row).collect() }
+    MarginTable { title, columns: columns.collect(), rows: table.written_rows().collect() }
 }
 
 /// The norths at map coordinates; `None` where they have no place on Earth.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use sandtable_analysis::outcome::{Figure, OutcomeTable, TableColumn, ValueClass};
+use sandtable_analysis::outcome::{Figure, Hatching, OutcomeTable, ValueClass, with_unit};
 use sandtable_base::message::numbers::trimmed;
 use sandtable_catalog::kind::AnalysisKind;
 use sandtable_draw::color::Srgba;
@@ -19,7 +19,7 @@ pub struct AnalysisListing {
     pub kind: &'static AnalysisKind,
     /// The feature that it is.
     pub feature: FeatureId,
-    /// The classes of its raster that the land has.
+    /// The classes of its raster that the land has, with what is drawn of their looks.
     pub classes: Vec<ValueClass>,
     /// What its lines are.
     pub lines: BTreeMap<&'static str, Srgba>,
@@ -52,7 +52,7 @@ impl AnalysisListing {
             name: analysis.name.clone(),
             kind: analysis.kind,
             feature: analysis.feature,
-            classes: legend_classes(analysis),
+            classes: drawn_classes(analysis),
             lines: legend_lines(analysis),
             figures: outcome.figures.clone(),
             features: outcome.features.len(),
@@ -62,19 +62,28 @@ impl AnalysisListing {
     }
 }
 
+/// The classes of an analysis without the tints, or without the hatching, that are not drawn. Hatching without a tint keeps its
+/// color.
+fn drawn_classes(analysis: &SceneAnalysis) -> Vec<ValueClass> {
+    let (is_tinted, is_hatched) = (analysis.tinted_raster().is_some(), analysis.hatched_raster().is_some());
+    let mut classes = legend_classes(analysis);
+    for ValueClass { look, .. } in &mut classes {
+        if !is_tinted {
+            look.tint[3] = 0;
+        }
+        if !is_hatched {
+            look.hatching = Hatching::None;
+        }
+    }
+    classes
+}
+
 impl ListedTable {
     fn new(table: &OutcomeTable) -> Self {
-        let heading = |&TableColumn { name, unit, .. }: &TableColumn| match unit {
-            "" => name.to_owned(),
-            unit => format!("{name} ({unit})"),
-        };
-        let cells = table.rows.iter().map(|row| {
-            row.iter().zip(&table.columns).map(|(value, column)| value.written(column.decimals)).collect()
-        });
         Self {
             title: table.title.clone(),
-            columns: table.columns.iter().map(heading).collect(),
-            rows: cells.collect(),
+            columns: table.columns.iter().map(|column| with_unit(column.name, column.unit)).collect(),
+            rows: table.written_rows().collect(),
         }
     }
 }
@@ -87,12 +96,45 @@ pub fn figure_text(figure: &Figure) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_analysis::outcome::PropertyValue;
+    use glam::DVec2;
+    use sandtable_analysis::outcome::{Outcome, OutcomeRaster, PostValues, PropertyValue, TableColumn};
+    use sandtable_description::words::AnalysisDraw;
+    use sandtable_terrain::lattice::Lattice;
+    use std::sync::Arc;
 
     #[test]
     fn figures_have_no_needless_zeros() {
         let text = |value: f64, unit: &'static str| figure_text(&Figure::new("area", value, unit));
         assert_eq!([text(12.5, "km²"), text(100.0, ""), text(0.0004, "m")], ["12.5 km²", "100", "0 m"]);
+    }
+
+    #[test]
+    fn classes_look_as_they_are_drawn() {
+        let looks = |draw: AnalysisDraw| {
+            let raster = OutcomeRaster {
+                name: "obstacles",
+                unit: "",
+                values: PostValues::Codes(vec![1; 4]),
+                classes: vec![ValueClass::new(1.0, "restricted", [200, 10, 20, 90], Hatching::Single)],
+            };
+            let analysis = SceneAnalysis {
+                name: "Overlay".to_owned(),
+                kind: sandtable_catalog::kind("obstacles").expect("a kind"),
+                number: 0,
+                draw,
+                color: None,
+                feature: FeatureId(2),
+                ground: Arc::new(Lattice::new(DVec2::ZERO, DVec2::ONE, 2, vec![0.0; 4]).expect("sound")),
+                outcome: Outcome { raster: Some(raster), ..Outcome::default() },
+            };
+            let classes = AnalysisListing::new(&analysis).classes;
+            classes.iter().map(|class| (class.look.tint, class.look.hatching)).collect::<Vec<_>>()
+        };
+        assert_eq!(looks(AnalysisDraw::All), [([200, 10, 20, 90], Hatching::Single)]);
+        assert_eq!(looks(AnalysisDraw::Tints), [([200, 10, 20, 90], Hatching::None)]);
+        assert_eq!(looks(AnalysisDraw::Hatching), [([200, 10, 20, 0], Hatching::Single)]);
+        assert_eq!(looks(AnalysisDraw::Features), []);
+        assert_eq!(looks(AnalysisDraw::Nothing), []);
     }
 
     #[test]

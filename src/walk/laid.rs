@@ -265,8 +265,7 @@ impl LaidGround {
 
     /// Plans symbols and graphics for the camera where it has moved by a share of its height above the ground.
     fn plan_lines(&mut self, scene: &SceneModel, lattice: &Lattice, camera: &Camera) {
-        let has_graphics = self.sheets.has_graphics()
-            || !(scene.graphics.is_empty() && scene.sight.is_empty() && scene.analyses.is_empty());
+        let has_graphics = self.sheets.has_graphics() || scene.has_overlay();
         if scene.symbols.is_empty() && !has_graphics {
             return;
         }

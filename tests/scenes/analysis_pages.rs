@@ -13,11 +13,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
-use sandtable_catalog::kind::AnalysisKind;
+use sandtable_catalog::kind::{AnalysisFamily, AnalysisKind};
 use sandtable_catalog::kinds;
 
 use crate::analysis_pages::examples::{EXAMPLES, example};
-use crate::analysis_pages::page::{FAMILIES, contents, family_page, family_texts, kind_page};
+use crate::analysis_pages::page::{contents, family_page, family_texts, kind_page};
 use crate::analysis_pages::picture::{difference, made, write};
 use crate::common::golden;
 
@@ -62,7 +62,7 @@ fn faults(kind: &'static AnalysisKind) -> Vec<String> {
 fn every_kind_has_its_page_and_its_picture_in_the_book() {
     let kinds: Vec<&AnalysisKind> = kinds().collect();
     let mut wrong: Vec<String> = kinds.into_par_iter().flat_map_iter(faults).collect();
-    for family in FAMILIES {
+    for family in AnalysisFamily::ALL {
         let [name, ..] = family_texts(family);
         wrong.extend(check_page(&folder().join(name).with_extension("md"), &family_page(family)));
     }
@@ -88,9 +88,13 @@ fn every_file_beside_the_pages_is_of_a_kind_or_a_family_that_is_there() {
     }
     let of_kinds =
         kinds().flat_map(|kind| ["md", "png"].map(|extension| format!("{}.{extension}", kind.name)));
-    let of_families = FAMILIES.into_iter().map(|family| format!("{}.md", family_texts(family)[0]));
+    let of_families = AnalysisFamily::ALL.into_iter().map(|family| format!("{}.md", family_texts(family)[0]));
     let known: BTreeSet<String> = of_kinds.chain(of_families).collect();
-    assert_eq!(known.len(), 2 * kinds().count() + FAMILIES.len(), "a family has the name of a kind");
+    assert_eq!(
+        known.len(),
+        2 * kinds().count() + AnalysisFamily::ALL.len(),
+        "a family has the name of a kind"
+    );
     let entries = fs::read_dir(folder()).expect("the pages are there").map(|entry| entry.expect("readable"));
     let (mut names, mut bytes) = (BTreeSet::new(), 0);
     for entry in entries {

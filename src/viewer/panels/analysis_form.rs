@@ -1,6 +1,6 @@
 //! The form of a new analysis: its kind, and a field for each of the kind's parameters.
 
-use egui::{Color32, ComboBox, Response, TextEdit, Ui};
+use egui::{ComboBox, Response, TextEdit, Ui};
 
 use sandtable_catalog::kind::{AnalysisFamily, AnalysisKind};
 use sandtable_catalog::kinds;
@@ -113,24 +113,24 @@ fn field_rows(
     let parameter = field.parameter;
     ui.horizontal(|ui| {
         let label = ui.label(parameter.name).on_hover_text(parameter.doc);
-        let before = field.text.clone();
         let response = match parameter.form {
             ParameterForm::Word(words) => choice(ui, field, words.iter().copied()),
             ParameterForm::Vehicle => choice(ui, field, vehicles.iter().map(String::as_str)),
             _ => {
                 let text = TextEdit::singleline(&mut field.text).hint_text(hint(parameter));
-                ui.add(text.desired_width(FIELD_WIDTH))
+                let response = ui.add(text.desired_width(FIELD_WIDTH));
+                if response.changed() {
+                    field.problem = None;
+                }
+                response
             }
         };
         response.labelled_by(label.id).on_hover_text(parameter.doc);
-        if field.text != before {
-            field.problem = None;
-        }
         let allowed = allowed(parameter);
         if !allowed.is_empty() {
             ui.weak(allowed);
         }
-        if field.is_picked() {
+        if parameter.form.is_positions() {
             let is_picked = picking == Some(parameter.name);
             let button = ui.selectable_label(is_picked, "Pick").on_hover_text("Click on the ground");
             let button = button.accessible_name(format!("Pick {}", parameter.name));
@@ -141,8 +141,7 @@ fn field_rows(
         }
     });
     if let Some(problem) = &field.problem {
-        let color: Color32 = ui.visuals().error_fg_color;
-        ui.colored_label(color, problem);
+        ui.colored_label(ui.visuals().error_fg_color, problem);
     }
     event
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use sandtable_analysis::movement::vehicle::{BUILT_IN_NAMES, Vehicle};
-use sandtable_analysis::outcome::{Hatching, Outcome, OutcomeRaster, OutcomeShape};
+use sandtable_analysis::outcome::{Hatching, Outcome, OutcomeRaster, OutcomeShape, with_unit};
 use sandtable_catalog::kind::{AnalysisFamily, AnalysisKind, AnalysisReach};
 use sandtable_catalog::kinds;
 use sandtable_catalog::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
@@ -17,16 +17,6 @@ const WIDTH: usize = 100;
 
 /// Figures that a page names; of more, such as one for each peak, it says that there are more.
 const MOST_FIGURES: usize = 8;
-
-/// Every family, in the order of the book.
-pub const FAMILIES: [AnalysisFamily; 6] = [
-    AnalysisFamily::Surface,
-    AnalysisFamily::Movement,
-    AnalysisFamily::Observation,
-    AnalysisFamily::Landing,
-    AnalysisFamily::Water,
-    AnalysisFamily::Earth,
-];
 
 /// The name of a family's page, its title, and what its kinds answer.
 pub fn family_texts(family: AnalysisFamily) -> [&'static str; 3] {
@@ -63,7 +53,7 @@ fn kinds_of(family: AnalysisFamily) -> impl Iterator<Item = &'static AnalysisKin
 
 /// The lines of the table of contents below the overview.
 pub fn contents() -> String {
-    FAMILIES.into_iter().fold(String::new(), |mut lines, family| {
+    AnalysisFamily::ALL.into_iter().fold(String::new(), |mut lines, family| {
         let [name, title, _] = family_texts(family);
         let _ = writeln!(lines, "  - [{title}](analysis/{name}.md)");
         for kind in kinds_of(family) {
@@ -274,10 +264,6 @@ fn given(outcome: &Outcome) -> String {
         let _ = writeln!(text, "- figures: {}{more}", figures.join(", "));
     }
     text
-}
-
-fn with_unit(name: &str, unit: &str) -> String {
-    if unit.is_empty() { name.to_owned() } else { format!("{name} ({unit})") }
 }
 
 fn given_raster(raster: &OutcomeRaster) -> String {
