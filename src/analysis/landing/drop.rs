@@ -16,12 +16,13 @@ use super::suitability::{
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::{Land, LandCover};
+use crate::measures::post_grid;
 use crate::outcome::{
     FeatureRole, Figure, Outcome, OutcomeFeature, OutcomeShape, OutcomeTable, PostValues, PropertyValue,
     TableColumn,
 };
 use sandtable_base::limits::memory::check_memory;
-use sandtable_geom::distance_field::{RegionGrid, distances_m};
+use sandtable_geom::distance_field::distances_m;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::stop_flag::StopFlag;
 
@@ -148,8 +149,7 @@ fn raise_codes(
 ) -> Result<Vec<f32>, AnalysisError> {
     let columns = ground.columns() as usize;
     let is_fit: Vec<bool> = hindrances.par_iter().map(|&hindrance| hindrance <= limit).collect();
-    let cell = ground.cell();
-    let distances = distances_m(&is_fit, RegionGrid { columns, step_m: [cell.x, cell.y] });
+    let distances = distances_m(&is_fit, post_grid(ground));
     let clear_m: Vec<f32> = distances.into_par_iter().map(|distance| distance as f32).collect();
     let counts = RowCounts::new(&is_fit, columns);
     drop(is_fit);

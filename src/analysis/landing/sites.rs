@@ -16,13 +16,14 @@ use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::{Land, LandCover, WaterKind};
 use crate::line_posts::along_line;
+use crate::measures::post_grid;
 use crate::observation::lookout::{Lookout, check_looks, curvature, look, posts_within, range_m};
 use crate::outcome::{
     FeatureRole, Outcome, OutcomeFeature, OutcomeShape, OutcomeTable, PostValues, PropertyValue, TableColumn,
 };
 use crate::ring::holds;
 use sandtable_base::limits::memory::check_memory;
-use sandtable_geom::distance_field::{RegionGrid, distances_m};
+use sandtable_geom::distance_field::distances_m;
 use sandtable_terrain::sight::viewshed::{PostVisibility, ViewshedOptions};
 use sandtable_terrain::stop_flag::StopFlag;
 
@@ -165,9 +166,8 @@ fn site_ground(
     stop: &StopFlag,
 ) -> Result<SiteGround, AnalysisError> {
     let ground = &*land.ground;
-    let cell = ground.cell();
     let columns = ground.columns() as usize;
-    let grid = RegionGrid { columns, step_m: [cell.x, cell.y] };
+    let grid = post_grid(ground);
     let cover = match arguments.word("cover").as_str() {
         "open" => SiteCover::Open,
         "concealed" => SiteCover::Concealed,
@@ -201,7 +201,8 @@ fn site_ground(
     }
     rule_out_seen(land, arguments, &mut values, stop)?;
     let masks = masks(land, arguments, &mut values, stop)?;
-    let disk = DiskRows::new(arguments.number("size_m") / 2.0, cell, columns.max(ground.rows() as usize));
+    let disk =
+        DiskRows::new(arguments.number("size_m") / 2.0, ground.cell(), columns.max(ground.rows() as usize));
     let steepest = disk.maxima(&values, columns, f32::INFINITY);
     Ok(SiteGround { steepest, water_m, road_m, masks })
 }

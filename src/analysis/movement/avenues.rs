@@ -9,15 +9,15 @@ use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::line_posts::along_line;
+use crate::measures::post_grid;
 use crate::movement::corridors::{FreeGround, echelon};
-use crate::movement::going::{RESTRICTED, UNRESTRICTED};
 use crate::movement::route::{RouteMeasures, way_line};
 use crate::movement::search::TravelGoal;
 use crate::movement::travel::{TravelGround, travel_ground};
 use crate::outcome::{
     FeatureRole, Figure, Outcome, OutcomeFeature, OutcomeShape, OutcomeTable, PropertyValue, TableColumn,
 };
-use sandtable_geom::distance_field::{RegionGrid, distances_m};
+use sandtable_geom::distance_field::distances_m;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// A route does not differ where more than this share of its posts lie near earlier ones.
@@ -73,13 +73,10 @@ fn find_avenues(
     let (mut ground, codes, mut notes) = travel_ground(land, arguments)?;
     let starts = open_posts(&ground, "from_line", arguments.points("from_line"))?;
     let ends = open_posts(&ground, "to_line", arguments.points("to_line"))?;
-    let greatest = if arguments.word("through") == "restricted" { RESTRICTED } else { UNRESTRICTED };
-    let free = FreeGround::new(&land.ground, &codes, greatest)?;
-    let free_m = free.distances_m();
+    let free = FreeGround::new(&land.ground, &codes, arguments)?;
     let count = arguments.number("count") as usize;
     let (apart_m, penalty) = (arguments.number("apart_m"), arguments.number("penalty") as f32);
-    let cell = land.ground.cell();
-    let grid = RegionGrid { columns: land.ground.columns() as usize, step_m: [cell.x, cell.y] };
+    let grid = post_grid(&land.ground);
     let mut is_near = vec![false; codes.len()];
     let mut avenues: Vec<Avenue> = Vec::new();
     for _ in 0..count {
@@ -117,7 +114,7 @@ fn find_avenues(
                 slowed.push(index);
             }
         }
-        let widths_m = way.iter().map(|&index| free.width_at_m(&free_m, index)).collect();
+        let widths_m = way.iter().map(|&index| free.width_at_m(index)).collect();
         let line = way_line(&land.ground, &way);
         avenues.push(Avenue { way, line, measures: RouteMeasures::default(), widths_m, shared });
         ground.slow_down(slowed, penalty);
