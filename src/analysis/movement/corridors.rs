@@ -97,13 +97,7 @@ pub(crate) fn corridors(
     arguments: &AnalysisArguments,
     stop: &StopFlag,
 ) -> Result<Outcome, AnalysisError> {
-    let widths = arguments.numbers("widths_m");
-    if widths.len() > MOST_WIDTHS || !widths.windows(2).all(|pair| pair[0] < pair[1]) {
-        return Err(AnalysisError::argument(
-            "widths_m",
-            format!("must be up to {MOST_WIDTHS} rising numbers"),
-        ));
-    }
+    let widths = arguments.rising_numbers("widths_m", MOST_WIDTHS)?;
     let vehicle = Vehicle::named(land, &arguments.word("vehicle"))?;
     let Going { mut codes, notes, .. } = Going::new(land, &vehicle)?;
     let free = FreeGround::new(&land.ground, &codes, arguments)?;

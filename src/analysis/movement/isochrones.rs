@@ -34,13 +34,7 @@ pub(crate) fn time(
     arguments: &AnalysisArguments,
     stop: &StopFlag,
 ) -> Result<Outcome, AnalysisError> {
-    let limits = arguments.numbers("classes_min");
-    if limits.len() > MOST_CLASSES || !limits.windows(2).all(|pair| pair[0] < pair[1]) {
-        return Err(AnalysisError::argument(
-            "classes_min",
-            format!("must be up to {MOST_CLASSES} rising numbers"),
-        ));
-    }
+    let limits = arguments.rising_numbers("classes_min", MOST_CLASSES)?;
     let (ground, _, notes) = travel_ground(land, arguments)?;
     let places = arguments.points("from");
     let starts = places
