@@ -80,8 +80,7 @@ fn find_avenues(
     let mut is_near = vec![false; codes.len()];
     let mut avenues: Vec<Avenue> = Vec::new();
     for _ in 0..count {
-        let goal = TravelGoal { most_s: f32::INFINITY, any_of: Some(&ends) };
-        let times = ground.times(&starts, goal, stop);
+        let times = ground.times(&starts, TravelGoal::any_of(&ends), stop);
         if stop.is_stopped() {
             return Err(AnalysisError::Stopped);
         }

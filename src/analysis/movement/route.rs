@@ -79,8 +79,7 @@ pub(crate) fn route(
     let start_min = arguments.number("start_h") * 60.0;
     let (mut rows, mut total) = (Vec::new(), RouteMeasures::default());
     for (leg, ends) in posts.windows(2).enumerate() {
-        let goal = TravelGoal { most_s: f32::INFINITY, any_of: Some(&[ends[1]]) };
-        let times = ground.times(&[ends[0]], goal, stop);
+        let times = ground.times(&ends[..1], TravelGoal::any_of(&ends[1..]), stop);
         if stop.is_stopped() {
             return Err(AnalysisError::Stopped);
         }

@@ -319,20 +319,26 @@ mod tests {
     use crate::test_land::{flat, shaped};
     use sandtable_terrain::stop_flag::StopFlag;
 
-    pub(super) const ALL: TravelGoal<'static> = TravelGoal { most_s: f32::INFINITY, any_of: None };
+    pub(super) fn travel<'a>(land: &'a Land, vehicle: &Vehicle) -> TravelGround<'a> {
+        let going = Going::new(land, vehicle).expect("memory");
+        TravelGround::new(land, going, vehicle, false).expect("memory")
+    }
 
-    fn travel<'a>(land: &'a Land, name: &str) -> TravelGround<'a> {
-        let vehicle = Vehicle::named(land, name).expect("a vehicle");
-        let going = Going::new(land, &vehicle).expect("memory");
-        TravelGround::new(land, going, &vehicle, false).expect("memory")
+    fn built_in(name: &str) -> Vehicle {
+        Vehicle::built_in(name).expect("built in")
+    }
+
+    /// The times to all posts.
+    pub(super) fn everywhere(ground: &TravelGround<'_>, starts: &[usize]) -> Vec<f32> {
+        ground.times(starts, TravelGoal::within(f32::INFINITY), &StopFlag::default())
     }
 
     #[test]
     fn on_level_ground_times_are_at_most_2_point_8_percent_too_long() {
         let land = flat(41, 41, 10.0);
-        let ground = travel(&land, "truck");
+        let ground = travel(&land, &built_in("truck"));
         let center = 20 * 41 + 20;
-        let times = ground.times(&[center], ALL, &StopFlag::default());
+        let times = everywhere(&ground, &[center]);
         let pace = 3.6 / 15.0;
         for post in land.ground.posts() {
             let straight = (post.grid() - 20.0).length() * 10.0 * pace;
@@ -356,8 +362,8 @@ mod tests {
         let line = vec![DVec2::new(80.0, 0.0), DVec2::new(110.0, 90.0)];
         land.steps = vec![Step { line, height_m: 3.0 }];
         for name in ["foot", "tracked", "truck"] {
-            let ground = travel(&land, name);
-            let times = ground.times(&[0, 20], ALL, &StopFlag::default());
+            let ground = travel(&land, &built_in(name));
+            let times = everywhere(&ground, &[0, 20]);
             let mut slow = vec![f32::INFINITY; times.len()];
             (slow[0], slow[20]) = (0.0, 0.0);
             loop {
@@ -390,8 +396,8 @@ mod tests {
             let mut land = flat(10, 10, 10.0);
             let line = vec![DVec2::new(0.0, 0.0), to, to * 3.0];
             land.steps = vec![Step { line, height_m: 5.0 }];
-            let ground = travel(&land, "foot");
-            let times = ground.times(&[9], ALL, &StopFlag::default());
+            let ground = travel(&land, &built_in("foot"));
+            let times = everywhere(&ground, &[9]);
             assert!(times[9 * 10].is_infinite(), "{to}");
             assert!(times[9 * 10 + 9].is_infinite() || to.x != to.y);
         }
@@ -400,9 +406,9 @@ mod tests {
     #[test]
     fn uphill_takes_longer_than_down() {
         let land = shaped(9, 3, 10.0, |column, _| column as f32 * 2.0);
-        let ground = travel(&land, "foot");
-        let up = ground.times(&[9], ALL, &StopFlag::default())[17];
-        let down = ground.times(&[17], ALL, &StopFlag::default())[9];
+        let ground = travel(&land, &built_in("foot"));
+        let up = everywhere(&ground, &[9])[17];
+        let down = everywhere(&ground, &[17])[9];
         let tobler = |grade: f64| 80.0 * 3.6 / (6.0 * libm::exp(-3.5 * (grade + 0.05f64).abs()));
         assert!((f64::from(up) - tobler(0.2)).abs() < 0.01, "{up}");
         assert!((f64::from(down) - tobler(-0.2)).abs() < 0.01, "{down}");
