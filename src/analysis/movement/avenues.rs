@@ -297,19 +297,13 @@ fn narrow_places(land: &Land, rank: usize, avenue: &Avenue) -> Vec<ChokePoint> {
 mod tests {
     use super::*;
     use crate::arguments::ArgumentValue;
-    use crate::land::LandCover;
     use crate::run::run;
-    use crate::test_land::flat;
+    use crate::test_land::{flat, swamp};
 
     /// 31 × 21 posts, 100 m apart, with a swamp across: gaps of three posts at rows 4 to 6 and of one at row 15.
     fn two_gaps() -> Land {
         let mut land = flat(31, 21, 100.0);
-        let is_swamp = |index: usize| {
-            let (column, row) = (index % 31, index / 31);
-            (14..=16).contains(&column) && !(4..=6).contains(&row) && row != 15
-        };
-        let cover = (0..651).map(|index| if is_swamp(index) { LandCover::Wetland } else { LandCover::Open });
-        land.cover = Some(cover.collect());
+        swamp(&mut land, |column, row| (14..=16).contains(&column) && !(4..=6).contains(&row) && row != 15);
         land
     }
 
@@ -361,8 +355,7 @@ mod tests {
     #[test]
     fn a_line_in_the_swamp_or_behind_it_is_an_error_that_names_it() {
         let mut land = two_gaps();
-        let cover = (0..651).map(|index| if index % 31 == 15 { LandCover::Wetland } else { LandCover::Open });
-        land.cover = Some(cover.collect());
+        swamp(&mut land, |column, _| column == 15);
         for to_column in [15.0, 30.0] {
             let error = found(&land, "avenues", 1.0, to_column).expect_err("not reached");
             assert_eq!(error.key(), Some("to_line"), "{error}");
@@ -372,8 +365,7 @@ mod tests {
     #[test]
     fn routes_that_do_not_differ_are_left_out_with_a_note() {
         let mut land = flat(21, 3, 100.0);
-        let cover = (0..63).map(|index| if index / 21 == 1 { LandCover::Open } else { LandCover::Wetland });
-        land.cover = Some(cover.collect());
+        swamp(&mut land, |_, row| row != 1);
         let outcome = found(&land, "avenues", 4.0, 20.0).expect("sound");
         assert_eq!(outcome.tables[0].rows.len(), 1);
         assert!(

@@ -159,25 +159,19 @@ mod tests {
     use crate::arguments::ArgumentValue;
     use crate::land::LandCover;
     use crate::run::run;
-    use crate::test_land::flat;
+    use crate::test_land::{codes_of, flat, swamp};
 
     fn codes(land: &Land, widths: &[f64]) -> Vec<u8> {
         let kind = sandtable_catalog::kind("corridors").expect("a kind");
         let arguments =
             AnalysisArguments::new(kind).with("widths_m", ArgumentValue::Numbers(widths.to_vec()));
-        let found = run(land, &arguments, &StopFlag::default()).expect("sound");
-        match found.raster.expect("a raster").values {
-            PostValues::Codes(codes) => codes,
-            PostValues::Numbers(_) => panic!("codes"),
-        }
+        codes_of(run(land, &arguments, &StopFlag::default()).expect("sound"))
     }
 
     #[test]
     fn a_band_of_five_posts_is_a_corridor_of_five_cells_and_no_more() {
         let mut land = flat(9, 30, 100.0);
-        let cover = (0..270)
-            .map(|index| if (2..7).contains(&(index % 9)) { LandCover::Open } else { LandCover::Wetland });
-        land.cover = Some(cover.collect());
+        swamp(&mut land, |column, _| !(2..7).contains(&column));
         for (width_m, code) in [(499.0, 1), (500.0, 1), (501.0, 0)] {
             let found = codes(&land, &[width_m]);
             let row = &found[15 * 9..16 * 9];

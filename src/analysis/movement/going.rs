@@ -262,7 +262,7 @@ fn built_up_rule(vehicle: &Vehicle) -> GroundRule {
 mod tests {
     use super::*;
     use crate::land::{Gap, RoadLine, Step};
-    use crate::test_land::{flat, shaped};
+    use crate::test_land::{flat, flood, shaped};
     use glam::DVec2;
 
     fn tracked() -> Vehicle {
@@ -298,11 +298,7 @@ mod tests {
     #[test]
     fn roads_and_bridges_make_ground_unrestricted_and_weak_bridges_do_not() {
         let mut land = flat(5, 3, 10.0);
-        let mut water = vec![WaterPost::default(); 15];
-        for row in 0..3 {
-            water[row * 5 + 2] = WaterPost { kind: WaterKind::River, depth_m: f32::NAN };
-        }
-        land.water = Some(water);
+        flood(&mut land, 2, f32::NAN);
         land.roads = Some(Vec::new());
         assert_eq!(Going::new(&land, &tracked()).expect("memory").codes[7], SEVERELY_RESTRICTED);
         let line = vec![DVec2::new(10.0, 10.0), DVec2::new(30.0, 10.0)];

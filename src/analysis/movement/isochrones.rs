@@ -99,9 +99,9 @@ fn classes(limits: &[f64]) -> Vec<ValueClass> {
 mod tests {
     use super::*;
     use crate::arguments::ArgumentValue;
-    use crate::land::{RoadClass, RoadLine, WaterKind, WaterPost};
+    use crate::land::{RoadClass, RoadLine};
     use crate::run::run;
-    use crate::test_land::flat;
+    use crate::test_land::{flat, flood};
     use glam::DVec2;
 
     fn minutes(land: &Land, max_min: f64, from: &[DVec2]) -> Result<Vec<f32>, AnalysisError> {
@@ -130,11 +130,7 @@ mod tests {
     #[test]
     fn water_blocks_the_way_and_places_in_it_or_beyond_the_ground_are_errors() {
         let mut land = flat(5, 5, 100.0);
-        let mut water = vec![WaterPost::default(); 25];
-        for row in 0..5 {
-            water[row * 5 + 2] = WaterPost { kind: WaterKind::River, depth_m: 3.0 };
-        }
-        land.water = Some(water);
+        flood(&mut land, 2, 3.0);
         let found = minutes(&land, 1e4, &[DVec2::ZERO]).expect("sound");
         assert!(found[1].is_finite() && found[2].is_nan() && found[3].is_nan() && found[24].is_nan());
         for at in [DVec2::new(200.0, 0.0), DVec2::new(900.0, 0.0), DVec2::NAN] {
