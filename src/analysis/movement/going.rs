@@ -76,23 +76,22 @@ impl Going {
                 speeds[column] = (vehicle.speed_kmh * rule.share) as f32;
             }
         });
-        going.closed = closed;
-        going.slow_over_gaps(land, vehicle);
+        if let Some(closed) = &closed {
+            going.slow_over_gaps(closed, land, vehicle);
+        }
         going.place_steps(land, vehicle);
         going.place_ways(land, vehicle);
-        Ok(going)
+        Ok(Self { closed, ..going })
     }
 
     /// Gaps of the ground itself that are closed for the vehicle restrict it where they are deeper than it steps.
-    fn slow_over_gaps(&mut self, land: &Land, vehicle: &Vehicle) {
-        let Some(closed) = self.closed.take() else { return };
+    fn slow_over_gaps(&mut self, closed: &Lattice, land: &Land, vehicle: &Vehicle) {
         let heights = closed.heights().iter().zip(land.ground.heights());
         for (index, (&closed_m, &ground_m)) in heights.enumerate() {
             if f64::from(closed_m - ground_m) > vehicle.step_m {
                 self.hinder(index, vehicle, true);
             }
         }
-        self.closed = Some(closed);
     }
 
     /// Walls, banks and ditches: what the vehicle does not climb or cross is severely restricted, what it does is restricted.
