@@ -9,6 +9,7 @@ use crate::land::Land;
 use crate::movement::going::{Going, SEVERELY_RESTRICTED};
 use crate::movement::grade::GradeTable;
 use crate::movement::vehicle::Vehicle;
+use crate::outcome::PostValues;
 use glam::DVec2;
 use sandtable_base::limits::memory::check_memory;
 use sandtable_terrain::lattice::{Lattice, Post};
@@ -217,14 +218,13 @@ impl<'a> TravelGround<'a> {
         if !self.grades.has_across() {
             return 1.0;
         }
-        let (columns, rows) = (self.ground.columns() as i32, self.ground.rows() as i32);
+        let (columns, rows) = (self.ground.columns(), self.ground.rows());
         let own = self.posts[from].height_m;
         let height = |sign: i32| {
             let (east, north) = (column - sign * step.rows, row + sign * step.columns);
-            let is_within = east >= 0 && north >= 0 && east < columns && north < rows;
-            let height =
-                if is_within { self.posts[(north * columns + east) as usize].height_m } else { f32::NAN };
-            if height.is_nan() { None } else { Some(height) }
+            let height = is_on(columns, rows, east, north)
+                .then(|| self.posts[(north * columns as i32 + east) as usize].height_m);
+            height.filter(|height| !height.is_nan())
         };
         let cell = self.ground.cell().as_vec2();
         let span = glam::Vec2::new(step.rows as f32 * cell.x, step.columns as f32 * cell.y).length();
@@ -306,7 +306,7 @@ pub(crate) fn travel_ground<'a>(
     let mut going = Going::new(land, &vehicle)?;
     let codes = std::mem::take(&mut going.codes);
     let notes = std::mem::take(&mut going.notes);
-    debug_assert!(codes.iter().all(|&code| code <= SEVERELY_RESTRICTED || code == 255));
+    debug_assert!(codes.iter().all(|&code| code <= SEVERELY_RESTRICTED || code == PostValues::NO_CODE));
     let ground = TravelGround::new(land, going, &vehicle, arguments.word("method") == "langmuir")?;
     Ok((ground, codes, notes))
 }
