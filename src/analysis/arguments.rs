@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use crate::error::AnalysisError;
 use sandtable_catalog::kind::{AnalysisKind, AnalysisReach};
 use sandtable_catalog::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
 
@@ -71,6 +72,18 @@ impl AnalysisArguments {
             Some(ArgumentValue::Number(number)) => vec![number],
             _ => Vec::new(),
         }
+    }
+
+    /// Numbers of which each is above the one before it.
+    ///
+    /// # Errors
+    /// They are not, or they are more than `most`.
+    pub(crate) fn rising_numbers(&self, name: &'static str, most: usize) -> Result<Vec<f64>, AnalysisError> {
+        let numbers = self.numbers(name);
+        if numbers.len() > most || !numbers.windows(2).all(|pair| pair[0] < pair[1]) {
+            return Err(AnalysisError::argument(name, format!("must be up to {most} rising numbers")));
+        }
+        Ok(numbers)
     }
 
     /// A word: as stated, or the default; empty where there is none.

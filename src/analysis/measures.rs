@@ -1,10 +1,16 @@
-//! Areas and shares of posts.
+//! Areas and shares of posts, and the grid on which distances between them are found.
 
+use sandtable_geom::distance_field::RegionGrid;
 use sandtable_terrain::lattice::Lattice;
 
 /// A part of a whole in percent; 0 of nothing.
 pub(crate) fn percent(part: usize, whole: usize) -> f64 {
     if whole == 0 { 0.0 } else { part as f64 / whole as f64 * 100.0 }
+}
+
+/// The posts as cells between which distances are found.
+pub(crate) fn post_grid(ground: &Lattice) -> RegionGrid {
+    RegionGrid { columns: ground.columns() as usize, step_m: ground.cell().to_array() }
 }
 
 /// So many posts as an area in km².

@@ -6,8 +6,8 @@ use glam::DVec2;
 
 use crate::arguments::{AnalysisArguments, ArgumentValue};
 use crate::error::AnalysisError;
-use crate::land::Land;
-use crate::outcome::{Outcome, OutcomeRaster};
+use crate::land::{Land, LandCover, WaterKind, WaterPost};
+use crate::outcome::{Outcome, OutcomeRaster, PostValues};
 use crate::run::run;
 use sandtable_geom::crs::Crs;
 use sandtable_terrain::lattice::{Lattice, Post};
@@ -31,6 +31,41 @@ pub(crate) fn shaped(columns: u32, rows: u32, cell_m: f64, height: impl Fn(u32, 
     bare((DVec2::ZERO, DVec2::splat(cell_m)), columns, heights)
 }
 
+/// Gives each post a cover, by its column and row.
+pub(crate) fn paint(land: &mut Land, cover: impl Fn(u32, u32) -> LandCover) {
+    land.cover = Some(land.ground.posts().map(|post| cover(post.column, post.row)).collect());
+}
+
+/// Makes swamp of posts by column and row, and open ground of the others.
+pub(crate) fn swamp(land: &mut Land, is_swamp: impl Fn(u32, u32) -> bool) {
+    paint(land, |column, row| if is_swamp(column, row) { LandCover::Wetland } else { LandCover::Open });
+}
+
+/// Makes a column of posts a river of this depth, and all others dry.
+pub(crate) fn flood(land: &mut Land, column: u32, depth_m: f32) {
+    let water = |post: Post| match post.column == column {
+        true => WaterPost { kind: WaterKind::River, depth_m },
+        false => WaterPost::default(),
+    };
+    land.water = Some(land.ground.posts().map(water).collect());
+}
+
+/// Plants a tree of up to 12 m at some 1 % of the posts, the same for the same seed.
+pub(crate) fn plant(land: &mut Land, seed: u64) {
+    let mut bits = random(seed);
+    let mut share = || bits() as f32 / (1_u64 << 31) as f32;
+    let mut tree = |_| if share() < 0.01 { share() * 12.0 } else { 0.0 };
+    land.obstacles_m = Some((0..land.ground.heights().len()).map(&mut tree).collect());
+}
+
+/// Random numbers of 31 bits, the same for the same seed.
+pub(crate) fn random(mut state: u64) -> impl FnMut() -> u64 {
+    move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state >> 33
+    }
+}
+
 /// The outcome of a kind with these arguments.
 pub(crate) fn run_kind<'a>(
     name: &str,
@@ -46,6 +81,14 @@ pub(crate) fn run_kind<'a>(
 /// The values of a raster.
 pub(crate) fn values_of(raster: &OutcomeRaster) -> Vec<f32> {
     (0..raster.values.len()).map(|index| raster.values.value(index)).collect()
+}
+
+/// The codes of a raster.
+pub(crate) fn codes_of(outcome: Outcome) -> Vec<u8> {
+    match outcome.raster.expect("a raster").values {
+        PostValues::Codes(codes) => codes,
+        PostValues::Numbers(_) => panic!("codes"),
+    }
 }
 
 /// What `task` gives on so many threads.

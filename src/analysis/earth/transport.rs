@@ -157,6 +157,7 @@ impl<'a> TransportPlan<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_land::random;
 
     fn cost(plan: &[Shipment], costs: &TransportCosts) -> u64 {
         plan.iter()
@@ -201,11 +202,8 @@ mod tests {
 
     #[test]
     fn plans_cost_the_least_of_all_plans_whichever_side_has_more() {
-        let mut state = 7_u64;
-        let mut random = |below: u64| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 33) % below
-        };
+        let mut bits = random(7);
+        let mut random = |below: u64| bits() % below;
         for _ in 0..300 {
             let (sources, sinks) = (1 + random(3) as usize, 1 + random(3) as usize);
             let mut supplies: Vec<u64> = (0..sources).map(|_| random(4)).collect();

@@ -30,9 +30,9 @@ impl DiskRows {
             maxima.fill(f32::NEG_INFINITY);
             for (away, &half) in self.half_widths.iter().enumerate() {
                 let north = (row + away < rows).then_some(row + away);
-                let south = row.checked_sub(away);
-                let both = if away == 0 { [north, north] } else { [south, north] };
-                for from in both.into_iter().take(if away == 0 { 1 } else { 2 }) {
+                // The center's row is the only one so near.
+                let south = (away > 0).then(|| row.checked_sub(away));
+                for from in south.into_iter().chain([north]) {
                     match from {
                         Some(from) => {
                             let line = &values[from * columns..][..columns];

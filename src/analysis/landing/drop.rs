@@ -9,20 +9,22 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::rectangle::{RectangleRows, RowCounts};
+use super::suitability::{
+    SuitedSlopes, class_name, code_raster, cover_at, first_apart, hindrances, is_low_and_dry, is_suited,
+    suited_ground,
+};
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
-use crate::land::{Land, LandCover, WaterKind};
+use crate::land::{Land, LandCover};
+use crate::measures::post_grid;
 use crate::outcome::{
-    FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, OutcomeTable,
-    PostValues, PropertyValue, TableColumn, ValueClass,
+    FeatureRole, Figure, Outcome, OutcomeFeature, OutcomeShape, OutcomeTable, PostValues, PropertyValue,
+    TableColumn,
 };
 use sandtable_base::limits::memory::check_memory;
-use sandtable_geom::distance_field::{RegionGrid, distances_m};
+use sandtable_geom::distance_field::distances_m;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::stop_flag::StopFlag;
-
-/// The greatest height in meters of what may stand on a drop zone.
-const LOW_M: f32 = 0.45;
 
 /// Degrees between the headings that are tried where none is stated.
 const HEADING_STEP_DEG: usize = 10;
@@ -77,15 +79,11 @@ pub(crate) fn drop_zones(
     arguments: &AnalysisArguments,
     stop: &StopFlag,
 ) -> Result<Outcome, AnalysisError> {
-    let (free, greatest) = (arguments.number("free_slope"), arguments.number("greatest_slope"));
-    if free > greatest {
-        return Err(AnalysisError::argument("free_slope", "is above `greatest_slope`; state a lower one"));
-    }
+    let SuitedSlopes { free, greatest } = SuitedSlopes::of(arguments)?;
     let needs = DropNeeds::new(arguments)?;
     let ground = &*land.ground;
     let posts = ground.heights().len();
     check_memory(posts as u64 * BYTES_PER_POST, "the analysis", "name a smaller `extent`")?;
-    let [free, greatest] = [free, greatest].map(|degrees| libm::tan(degrees.to_radians()) as f32);
     let headings: Vec<f64> = match arguments.number_if("heading") {
         Some(heading) => vec![heading],
         None => (0..180).step_by(HEADING_STEP_DEG).map(|heading| heading as f64).collect(),
@@ -93,13 +91,12 @@ pub(crate) fn drop_zones(
     let size = DVec2::new(needs.length_m, needs.width_m);
     let rectangles: Vec<RectangleRows> =
         headings.iter().map(|&heading| RectangleRows::new(heading, size, ground)).collect();
-    let hindrances = hindrances(land, free);
+    let hindrances = hindrances(ground, free, |index| fitness(land, index));
     let mut codes: Vec<u8> =
         ground.heights().iter().map(|height| if height.is_nan() { PostValues::NO_CODE } else { 0 }).collect();
     let clear_m = raise_codes(ground, &mut codes, (&hindrances, greatest), &rectangles, 1, stop)?;
     raise_codes(ground, &mut codes, (&hindrances, free), &rectangles, 2, stop)?;
-    let mut order: Vec<u32> =
-        (0..posts as u32).filter(|&index| matches!(codes[index as usize], 1 | 2)).collect();
+    let mut order: Vec<u32> = (0..posts as u32).filter(|&index| is_suited(codes[index as usize])).collect();
     let suited = order.len();
     order.par_sort_unstable_by(|&one, &other| {
         let [a, b] = [one, other].map(|index| index as usize);
@@ -108,15 +105,7 @@ pub(crate) fn drop_zones(
     let apart_m = needs.length_m + arguments.number("separation_m");
     let count = arguments.number("count") as usize;
     let at = |index: u32| ground.map_position(ground.post_at(index as usize));
-    let mut best: Vec<u32> = Vec::new();
-    for &index in &order {
-        if best.len() >= count {
-            break;
-        }
-        if best.iter().all(|&other| at(other).distance(at(index)) >= apart_m) {
-            best.push(index);
-        }
-    }
+    let best = first_apart(&order, count, apart_m, at);
     let zones: Vec<DropZone> = best
         .iter()
         .filter_map(|&index| {
@@ -141,14 +130,9 @@ pub(crate) fn drop_zones(
         figures: vec![
             Figure::new("length", needs.length_m, "m"),
             Figure::new("jumpers a pass", needs.jumpers() as f64, ""),
-            Figure::new("suited ground", suited as f64 * ground.cell_m2() / 1e4, "ha"),
+            suited_ground(ground, suited),
         ],
-        raster: Some(OutcomeRaster {
-            name: "drop",
-            unit: "",
-            values: PostValues::Codes(codes),
-            classes: classes(),
-        }),
+        raster: Some(code_raster("drop", codes)),
         ..Outcome::default()
     })
 }
@@ -165,8 +149,7 @@ fn raise_codes(
 ) -> Result<Vec<f32>, AnalysisError> {
     let columns = ground.columns() as usize;
     let is_fit: Vec<bool> = hindrances.par_iter().map(|&hindrance| hindrance <= limit).collect();
-    let cell = ground.cell();
-    let distances = distances_m(&is_fit, RegionGrid { columns, step_m: [cell.x, cell.y] });
+    let distances = distances_m(&is_fit, post_grid(ground));
     let clear_m: Vec<f32> = distances.into_par_iter().map(|distance| distance as f32).collect();
     let counts = RowCounts::new(&is_fit, columns);
     drop(is_fit);
@@ -183,34 +166,19 @@ fn raise_codes(
     if stop.is_stopped() { Err(AnalysisError::Stopped) } else { Ok(clear_m) }
 }
 
-/// The tangent of the slope at each post; raised just above the limit without caution by a surface that wants caution,
-/// infinite where nobody can land or the ground has no data.
-fn hindrances(land: &Land, free: f32) -> Vec<f32> {
-    let ground = &*land.ground;
-    let columns = ground.columns() as usize;
-    let mut values = vec![f32::INFINITY; ground.heights().len()];
-    values.par_chunks_mut(columns).enumerate().for_each(|(row, values)| {
-        for (column, (value, slopes)) in values.iter_mut().zip(ground.slopes_of_row(row as u32)).enumerate() {
-            let index = row * columns + column;
-            let slope = slopes.length();
-            let is_low = land.obstacles_m.as_ref().is_none_or(|heights| heights[index] <= LOW_M);
-            let is_dry = land.water.as_ref().is_none_or(|water| water[index].kind == WaterKind::None);
-            let is_clear = land.woods.as_ref().is_none_or(|woods| woods[index].spacing_m <= 0.0);
-            if ground.heights()[index].is_nan() || !is_low || !is_dry || !is_clear {
-                continue;
-            }
-            *value = match land.cover.as_ref().map_or(LandCover::Unknown, |cover| cover[index]) {
-                LandCover::Unknown | LandCover::Open | LandCover::Crops | LandCover::Sand => slope,
-                LandCover::Scrub | LandCover::Wetland | LandCover::Paved => slope.max(free.next_up()),
-                LandCover::Orchard
-                | LandCover::Wood
-                | LandCover::Rock
-                | LandCover::BuiltUp
-                | LandCover::Building => continue,
-            };
+/// How what covers a post suits a zone: 2 well, 1 with caution, 0 not.
+fn fitness(land: &Land, index: usize) -> u8 {
+    let is_clear = land.woods.as_ref().is_none_or(|woods| woods[index].spacing_m <= 0.0);
+    if !is_clear || !is_low_and_dry(land, index) {
+        return 0;
+    }
+    match cover_at(land, index) {
+        LandCover::Unknown | LandCover::Open | LandCover::Crops | LandCover::Sand => 2,
+        LandCover::Scrub | LandCover::Wetland | LandCover::Paved => 1,
+        LandCover::Orchard | LandCover::Wood | LandCover::Rock | LandCover::BuiltUp | LandCover::Building => {
+            0
         }
-    });
-    values
+    }
 }
 
 /// A zone: its center's post, and the heading of the least slope.
@@ -264,10 +232,9 @@ fn table(ground: &Lattice, zones: &[DropZone], needs: &DropNeeds) -> OutcomeTabl
         column("jumpers a pass", "", 0),
     ];
     let row = |(rank, zone): (usize, &DropZone)| {
-        let class = if zone.code == 2 { "suited" } else { "with caution" };
         vec![
             PropertyValue::Whole(rank as i64 + 1),
-            PropertyValue::Text(class.to_owned()),
+            PropertyValue::Text(class_name(zone.code).to_owned()),
             PropertyValue::Number(zone.heading_deg),
             PropertyValue::Number(needs.length_m),
             PropertyValue::Number(needs.width_m),
@@ -278,15 +245,6 @@ fn table(ground: &Lattice, zones: &[DropZone], needs: &DropNeeds) -> OutcomeTabl
     };
     let rows = zones.iter().enumerate().map(row).collect();
     OutcomeTable { title: "Drop zones".to_owned(), columns, rows }
-}
-
-fn classes() -> Vec<ValueClass> {
-    let rows = [
-        (0.0, "unsuited", [0, 0, 0, 0], Hatching::None),
-        (1.0, "with caution", [254, 217, 118, 110], Hatching::Dots),
-        (2.0, "suited", [90, 180, 90, 120], Hatching::Single),
-    ];
-    ValueClass::of_rows(rows)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::arguments::ArgumentValue;
-use crate::test_land::{bare, flat, on_pool, run_kind, shaped, values_of};
+use crate::test_land::{bare, flat, on_pool, paint, plant, run_kind, shaped, values_of};
 
 fn number(value: f64) -> ArgumentValue {
     ArgumentValue::Number(value)
@@ -25,11 +25,6 @@ fn the_length_is_that_of_the_manuals_example() {
 
 /// Hills with 1 % of random trees and a hole.
 fn hills(seed: u64, columns: u32, rows: u32) -> Land {
-    let mut state = seed;
-    let mut random = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) as f32 / (1_u64 << 31) as f32
-    };
     let posts = columns * rows;
     let height = |index: u32| {
         let (x, y) = ((index % columns) as f32, (index / columns) as f32);
@@ -38,8 +33,7 @@ fn hills(seed: u64, columns: u32, rows: u32) -> Land {
     let mut heights: Vec<f32> = (0..posts).map(height).collect();
     heights[200] = f32::NAN;
     let mut land = bare((DVec2::new(500.0, 900.0), DVec2::new(10.0, 8.0)), columns, heights);
-    let mut obstacle = || if random() < 0.01 { random() * 12.0 } else { 0.0 };
-    land.obstacles_m = Some((0..posts).map(|_| obstacle()).collect());
+    plant(&mut land, seed);
     land
 }
 
@@ -114,11 +108,7 @@ fn codes_are_those_of_the_definition_post_by_post_among_random_trees() {
 fn a_zone_lies_along_the_level_strip_between_woods() {
     // Open posts up to 50 m from the axis, woods from 60 m on; the ground rises 1 % to the north.
     let mut land = shaped(61, 61, 10.0, |_, row| row as f32 * 0.1);
-    let cover = (0..61 * 61).map(|index| match index % 61 {
-        25..=35 => LandCover::Open,
-        _ => LandCover::Wood,
-    });
-    land.cover = Some(cover.collect());
+    paint(&mut land, |column, _| if (25..=35).contains(&column) { LandCover::Open } else { LandCover::Wood });
     let arguments = [("length_m", number(400.0)), ("width_m", number(100.0)), ("count", number(5.0))];
     let outcome = run_kind("drop-zones", &land, arguments).expect("sound");
     assert_eq!(outcome.features.len(), 1, "there is one place for a zone and its separation");

@@ -7,6 +7,7 @@ mod mask;
 mod oracle_tests;
 mod rectangle;
 mod sites;
+mod suitability;
 pub mod zones;
 
 use crate::run::KindFunction;

@@ -1,8 +1,7 @@
 //! Landing zones against their definition in numpy, on real ground.
 
 use crate::arguments::ArgumentValue;
-use crate::outcome::PostValues;
-use crate::test_land::run_kind;
+use crate::test_land::{codes_of, run_kind};
 use crate::test_places::{PLACES, place, table};
 
 /// The CRC-32 of zlib.
@@ -29,7 +28,7 @@ fn landing_zones_are_those_of_the_definition_on_three_places() {
                 ("approach_m", ArgumentValue::Number(row[2].parse().expect("a number"))),
             ];
             let outcome = run_kind("landing-zones", &land, arguments).expect("sound");
-            let PostValues::Codes(codes) = outcome.raster.expect("a raster").values else { panic!("codes") };
+            let codes = codes_of(outcome);
             let found = [0, 1, 2, 255].map(|code| codes.iter().filter(|&&found| found == code).count());
             let wanted = [3, 4, 5, 6].map(|cell: usize| row[cell].parse::<usize>().expect("a number"));
             assert_eq!(found, wanted, "{name}, size {}", row[1]);

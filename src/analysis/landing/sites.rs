@@ -8,23 +8,24 @@ use rayon::prelude::*;
 
 use super::disk::{DiskRows, circle};
 use super::mask::mask_tangents;
+use super::suitability::{
+    LOW_M, SuitedSlopes, class_name, code_raster, cover_at, first_apart, hindrances, is_suited,
+    suited_ground, tangent,
+};
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::{Land, LandCover, WaterKind};
 use crate::line_posts::along_line;
+use crate::measures::post_grid;
 use crate::observation::lookout::{Lookout, check_looks, curvature, look, posts_within, range_m};
 use crate::outcome::{
-    FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, OutcomeTable,
-    PostValues, PropertyValue, TableColumn, ValueClass,
+    FeatureRole, Outcome, OutcomeFeature, OutcomeShape, OutcomeTable, PostValues, PropertyValue, TableColumn,
 };
 use crate::ring::is_in_area;
 use sandtable_base::limits::memory::check_memory;
-use sandtable_geom::distance_field::{RegionGrid, distances_m};
+use sandtable_geom::distance_field::distances_m;
 use sandtable_terrain::sight::viewshed::{PostVisibility, ViewshedOptions};
 use sandtable_terrain::stop_flag::StopFlag;
-
-/// The greatest height in meters of what may stand on a site in the open.
-const LOW_M: f32 = 0.45;
 
 /// The most directions of an enemy.
 const MOST_DIRECTIONS: usize = 36;
@@ -53,8 +54,7 @@ struct SiteGround {
 
 /// The limits of a site as a whole.
 struct SiteLimits {
-    free: f32,
-    greatest: f32,
+    slopes: SuitedSlopes,
     water_m: Option<f64>,
     road_m: Option<f64>,
 }
@@ -84,12 +84,12 @@ pub(crate) fn sites(
     let code = |index: usize| {
         if ground.heights()[index].is_nan() || !is_within(index) {
             PostValues::NO_CODE
-        } else if site.steepest[index] > limits.greatest
+        } else if site.steepest[index] > limits.slopes.greatest
             || !is_near(&site.water_m, index, limits.water_m)
             || !is_near(&site.road_m, index, limits.road_m)
         {
             0
-        } else if site.steepest[index] > limits.free {
+        } else if site.steepest[index] > limits.slopes.free {
             1
         } else {
             2
@@ -101,7 +101,7 @@ pub(crate) fn sites(
     }
     let mut order: Vec<(f32, u32)> = (0..posts as u32)
         .into_par_iter()
-        .filter(|&index| matches!(codes[index as usize], 1 | 2))
+        .filter(|&index| is_suited(codes[index as usize]))
         .map(|index| (score(&site, &limits, index as usize), index))
         .collect();
     let suited = order.len();
@@ -113,15 +113,7 @@ pub(crate) fn sites(
     let count = arguments.number("count") as usize;
     let apart_m = size_m + arguments.number("separation_m");
     let at = |index: u32| ground.map_position(ground.post_at(index as usize));
-    let mut best: Vec<(f32, u32)> = Vec::new();
-    for &(score, index) in &order {
-        if best.len() >= count {
-            break;
-        }
-        if best.iter().all(|&(_, other)| at(other).distance(at(index)) >= apart_m) {
-            best.push((score, index));
-        }
-    }
+    let best = first_apart(&order, count, apart_m, |(_, index)| at(index));
     let rows: Vec<SiteRow> = best
         .iter()
         .enumerate()
@@ -138,26 +130,15 @@ pub(crate) fn sites(
     Ok(Outcome {
         features: features.collect(),
         tables: vec![table(&rows)],
-        figures: vec![Figure::new("suited ground", suited as f64 * ground.cell_m2() / 1e4, "ha")],
-        raster: Some(OutcomeRaster {
-            name: "sites",
-            unit: "",
-            values: PostValues::Codes(codes),
-            classes: classes(),
-        }),
+        figures: vec![suited_ground(ground, suited)],
+        raster: Some(code_raster("sites", codes)),
         ..Outcome::default()
     })
 }
 
 fn site_limits(arguments: &AnalysisArguments) -> Result<SiteLimits, AnalysisError> {
-    let (free, greatest) = (arguments.number("free_slope"), arguments.number("greatest_slope"));
-    if free > greatest {
-        return Err(AnalysisError::argument("free_slope", "is above `greatest_slope`; state a lower one"));
-    }
-    let tangent = |degrees: f64| libm::tan(degrees.to_radians()) as f32;
     let limits = SiteLimits {
-        free: tangent(free),
-        greatest: tangent(greatest),
+        slopes: SuitedSlopes::of(arguments)?,
         water_m: arguments.number_if("water_m"),
         road_m: arguments.number_if("road_m"),
     };
@@ -185,9 +166,8 @@ fn site_ground(
     stop: &StopFlag,
 ) -> Result<SiteGround, AnalysisError> {
     let ground = &*land.ground;
-    let cell = ground.cell();
     let columns = ground.columns() as usize;
-    let grid = RegionGrid { columns, step_m: [cell.x, cell.y] };
+    let grid = post_grid(ground);
     let cover = match arguments.word("cover").as_str() {
         "open" => SiteCover::Open,
         "concealed" => SiteCover::Concealed,
@@ -211,7 +191,7 @@ fn site_ground(
     if stop.is_stopped() {
         return Err(AnalysisError::Stopped);
     }
-    let mut values = hindrances(land, cover, limits.free);
+    let mut values = hindrances(ground, limits.slopes.free, |index| fitness(land, cover, index));
     let dry_m = arguments.number("dry_m");
     if let Some(water_m) = &water_m {
         rule_out(&mut values, |index| water_m[index] == 0.0 || water_m[index] < dry_m);
@@ -221,7 +201,8 @@ fn site_ground(
     }
     rule_out_seen(land, arguments, &mut values, stop)?;
     let masks = masks(land, arguments, &mut values, stop)?;
-    let disk = DiskRows::new(arguments.number("size_m") / 2.0, cell, columns.max(ground.rows() as usize));
+    let disk =
+        DiskRows::new(arguments.number("size_m") / 2.0, ground.cell(), columns.max(ground.rows() as usize));
     let steepest = disk.maxima(&values, columns, f32::INFINITY);
     Ok(SiteGround { steepest, water_m, road_m, masks })
 }
@@ -278,7 +259,7 @@ fn masks(
             format!("must be up to {MOST_DIRECTIONS} directions"),
         ));
     }
-    let [least, greatest] = [least, greatest].map(|degrees| libm::tan(degrees.to_radians()) as f32);
+    let [least, greatest] = [least, greatest].map(tangent);
     let mut lowest: Option<Vec<f32>> = None;
     for azimuth in azimuths {
         if stop.is_stopped() {
@@ -294,32 +275,9 @@ fn masks(
     Ok(lowest)
 }
 
-/// The tangent of the slope at each post; raised just above the limit without caution by a cover that wants caution,
-/// infinite where no site can be or the ground has no data.
-fn hindrances(land: &Land, cover: SiteCover, free: f32) -> Vec<f32> {
-    let ground = &*land.ground;
-    let columns = ground.columns() as usize;
-    let mut values = vec![f32::INFINITY; ground.heights().len()];
-    values.par_chunks_mut(columns).enumerate().for_each(|(row, values)| {
-        for (column, (value, slopes)) in values.iter_mut().zip(ground.slopes_of_row(row as u32)).enumerate() {
-            let index = row * columns + column;
-            let slope = slopes.length();
-            if ground.heights()[index].is_nan() {
-                continue;
-            }
-            *value = match fitness(land, cover, index) {
-                2 => slope,
-                1 => slope.max(free.next_up()),
-                _ => continue,
-            };
-        }
-    });
-    values
-}
-
 /// How the cover of a post suits a site: 2 well, 1 with caution, 0 not.
 fn fitness(land: &Land, wanted: SiteCover, index: usize) -> u8 {
-    let cover = land.cover.as_ref().map_or(LandCover::Unknown, |cover| cover[index]);
+    let cover = cover_at(land, index);
     let has_trees = land.woods.as_ref().is_some_and(|woods| woods[index].spacing_m > 0.0);
     let is_tall = land.obstacles_m.as_ref().is_some_and(|heights| heights[index] > LOW_M);
     let cover = if has_trees && cover != LandCover::Building { LandCover::Wood } else { cover };
@@ -337,7 +295,8 @@ fn fitness(land: &Land, wanted: SiteCover, index: usize) -> u8 {
 /// From 0 to 1: the mean of what is left of each limit, of the slope and of the stated distances to water and roads.
 fn score(site: &SiteGround, limits: &SiteLimits, index: usize) -> f32 {
     let left = |value: f64, limit: f64| if limit > 0.0 { 1.0 - (value / limit).min(1.0) } else { 1.0 };
-    let (mut sum, mut parts) = (left(f64::from(site.steepest[index]), f64::from(limits.greatest)), 1.0);
+    let (mut sum, mut parts) =
+        (left(f64::from(site.steepest[index]), f64::from(limits.slopes.greatest)), 1.0);
     for (distances, limit_m) in [(&site.water_m, limits.water_m), (&site.road_m, limits.road_m)] {
         if let (Some(distances), Some(limit_m)) = (distances, limit_m) {
             sum += left(distances[index], limit_m);
@@ -403,10 +362,9 @@ fn table(rows: &[SiteRow]) -> OutcomeTable {
         vec![column("site", "", 0), column("class", "", 0), column("score", "", 2), column("slope", "°", 1)];
     columns.extend(shown().map(|(column, _)| column.clone()));
     let cells = |row: &SiteRow| {
-        let class = if row.code == 2 { "suited" } else { "with caution" };
         let mut cells = vec![
             PropertyValue::Whole(row.number as i64),
-            PropertyValue::Text(class.to_owned()),
+            PropertyValue::Text(class_name(row.code).to_owned()),
             PropertyValue::Number(row.score),
             PropertyValue::Number(row.slope_deg),
         ];
@@ -417,15 +375,6 @@ fn table(rows: &[SiteRow]) -> OutcomeTable {
         cells
     };
     OutcomeTable { title: "Sites".to_owned(), columns, rows: rows.iter().map(cells).collect() }
-}
-
-fn classes() -> Vec<ValueClass> {
-    let rows = [
-        (0.0, "unsuited", [0, 0, 0, 0], Hatching::None),
-        (1.0, "with caution", [254, 217, 118, 110], Hatching::Dots),
-        (2.0, "suited", [90, 180, 90, 120], Hatching::Single),
-    ];
-    ValueClass::of_rows(rows)
 }
 
 #[cfg(test)]

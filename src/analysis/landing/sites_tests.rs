@@ -4,8 +4,8 @@ use glam::DVec2;
 
 use super::*;
 use crate::arguments::ArgumentValue;
-use crate::land::{RoadClass, RoadLine, Stand, WaterPost};
-use crate::test_land::{flat, on_pool, run_kind, shaped, values_of};
+use crate::land::{RoadClass, RoadLine, Stand};
+use crate::test_land::{flat, flood, on_pool, run_kind, shaped, values_of};
 
 fn number(value: f64) -> ArgumentValue {
     ArgumentValue::Number(value)
@@ -23,11 +23,7 @@ fn codes<'a>(land: &Land, arguments: impl IntoIterator<Item = (&'a str, Argument
 /// 21 × 21 posts 10 m apart; water in the west, a road in the north.
 fn place() -> Land {
     let mut land = flat(21, 21, 10.0);
-    let mut water = vec![WaterPost::default(); 441];
-    for row in 0..21 {
-        water[row * 21] = WaterPost { kind: WaterKind::River, depth_m: 1.0 };
-    }
-    land.water = Some(water);
+    flood(&mut land, 0, 1.0);
     let line = vec![DVec2::new(0.0, 200.0), DVec2::new(200.0, 200.0)];
     land.roads = Some(vec![RoadLine { name: String::new(), line, surface: RoadClass::Road, width_m: 5.0 }]);
     land

@@ -6,17 +6,15 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::disk::{DiskRows, circle};
+use super::suitability::{
+    LOW_M, SuitedSlopes, code_raster, cover_at, first_apart, hindrances, is_low_and_dry, is_suited,
+    suited_ground,
+};
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
-use crate::land::{Land, LandCover, WaterKind};
-use crate::outcome::{
-    FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, PostValues,
-    PropertyValue, ValueClass,
-};
+use crate::land::{Land, LandCover};
+use crate::outcome::{FeatureRole, Outcome, OutcomeFeature, OutcomeShape, PostValues, PropertyValue};
 use sandtable_terrain::stop_flag::StopFlag;
-
-/// The greatest height in meters of what may stand in a touchdown disk: 18 inches.
-const LOW_M: f32 = 0.45;
 
 /// Steps by column and row to the neighbors, clockwise from the north; the opposite of `n` is `n + 4`.
 const HEADINGS: [(i64, i64); 8] = [(0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1)];
@@ -43,19 +41,14 @@ pub(crate) fn landing_zones(
     arguments: &AnalysisArguments,
     stop: &StopFlag,
 ) -> Result<Outcome, AnalysisError> {
-    let (free, caution) = (arguments.number("free_slope"), arguments.number("greatest_slope"));
-    if free > caution {
-        return Err(AnalysisError::argument("free_slope", "is above `greatest_slope`; state a lower one"));
-    }
-    let tangent = |degrees: f64| libm::tan(degrees.to_radians()) as f32;
-    let limits = [tangent(free), tangent(caution)];
+    let limits = SuitedSlopes::of(arguments)?;
     let ground = &*land.ground;
     let (columns, rows, cell) = (ground.columns() as usize, ground.rows() as usize, ground.cell());
     let diameter = diameter_m(&arguments.word("size"));
     // Where posts lie farther apart than the disk is wide, the ground beside a post is judged by the posts beside it.
     let radius_m = (diameter / 2.0).max(cell.max_element());
     let disk = DiskRows::new(radius_m, cell, columns.max(rows));
-    let slopes = hindrances(land, limits);
+    let slopes = hindrances(ground, limits.free, |index| fitness(land, index));
     let greatest = disk.maxima(&slopes, columns, f32::INFINITY);
     drop(slopes);
     if stop.is_stopped() {
@@ -69,16 +62,15 @@ pub(crate) fn landing_zones(
     let code = |index: usize| {
         if ground.heights()[index].is_nan() {
             PostValues::NO_CODE
-        } else if greatest[index] > limits[1] || axis(headings[index]).is_none() {
+        } else if greatest[index] > limits.greatest || axis(headings[index]).is_none() {
             0
-        } else if greatest[index] > limits[0] {
+        } else if greatest[index] > limits.free {
             1
         } else {
             2
         }
     };
     let codes: Vec<u8> = (0..greatest.len()).into_par_iter().map(code).collect();
-    let is_suited = |code: u8| code == 1 || code == 2;
     let mut order: Vec<u32> =
         (0..codes.len() as u32).filter(|&index| is_suited(codes[index as usize])).collect();
     let suited = order.len();
@@ -87,15 +79,7 @@ pub(crate) fn landing_zones(
     let (count, apart) = (arguments.number("count") as usize, diameter + arguments.number("separation_m"));
     let at =
         |index: u32| DVec2::new(f64::from(index % columns as u32), f64::from(index / columns as u32)) * cell;
-    let mut sites: Vec<u32> = Vec::new();
-    for &index in &order {
-        if sites.len() >= count {
-            break;
-        }
-        if sites.iter().all(|&site| at(site).distance(at(index)) >= apart) {
-            sites.push(index);
-        }
-    }
+    let sites = first_apart(&order, count, apart, at);
     let features = sites.iter().enumerate().map(|(rank, &index)| {
         let center = ground.map_position(ground.post_at(index as usize));
         let mut properties = vec![
@@ -115,41 +99,28 @@ pub(crate) fn landing_zones(
         }
     });
     let features = features.collect();
-    let figure = Figure::new("suited ground", suited as f64 * ground.cell_m2() / 1e4, "ha");
-    let raster =
-        OutcomeRaster { name: "landing", unit: "", values: PostValues::Codes(codes), classes: classes() };
-    Ok(Outcome { raster: Some(raster), features, figures: vec![figure], ..Outcome::default() })
+    Ok(Outcome {
+        raster: Some(code_raster("landing", codes)),
+        features,
+        figures: vec![suited_ground(ground, suited)],
+        ..Outcome::default()
+    })
 }
 
-/// The tangent of the slope at each post; raised just above the limit without caution by a surface that wants caution,
-/// infinite where nothing can land or the ground has no data.
-fn hindrances(land: &Land, [free, _]: [f32; 2]) -> Vec<f32> {
-    let ground = &*land.ground;
-    let columns = ground.columns() as usize;
-    let mut values = vec![f32::INFINITY; ground.heights().len()];
-    values.par_chunks_mut(columns).enumerate().for_each(|(row, values)| {
-        for (column, (value, slopes)) in values.iter_mut().zip(ground.slopes_of_row(row as u32)).enumerate() {
-            let index = row * columns + column;
-            let slope = slopes.length();
-            let is_low = land.obstacles_m.as_ref().is_none_or(|heights| heights[index] <= LOW_M);
-            let is_dry = land.water.as_ref().is_none_or(|water| water[index].kind == WaterKind::None);
-            if ground.heights()[index].is_nan() || !is_low || !is_dry {
-                continue;
-            }
-            *value = match land.cover.as_ref().map_or(LandCover::Unknown, |cover| cover[index]) {
-                LandCover::Unknown | LandCover::Open | LandCover::Paved => slope,
-                LandCover::Crops | LandCover::Scrub | LandCover::Sand | LandCover::Rock => {
-                    slope.max(free.next_up())
-                }
-                LandCover::Orchard
-                | LandCover::Wood
-                | LandCover::Wetland
-                | LandCover::BuiltUp
-                | LandCover::Building => continue,
-            };
-        }
-    });
-    values
+/// How what covers a post suits a touchdown disk: 2 well, 1 with caution, 0 not.
+fn fitness(land: &Land, index: usize) -> u8 {
+    if !is_low_and_dry(land, index) {
+        return 0;
+    }
+    match cover_at(land, index) {
+        LandCover::Unknown | LandCover::Open | LandCover::Paved => 2,
+        LandCover::Crops | LandCover::Scrub | LandCover::Sand | LandCover::Rock => 1,
+        LandCover::Orchard
+        | LandCover::Wood
+        | LandCover::Wetland
+        | LandCover::BuiltUp
+        | LandCover::Building => 0,
+    }
 }
 
 /// For each post, a bit for each heading in which a lane as wide as the disk is clear: at `t` meters from the disk,
@@ -211,15 +182,6 @@ fn clear_headings(land: &Land, disk: &DiskRows, ratio: f64, length_m: f64) -> Ve
 /// The first heading that is clear with its opposite: the way in and the way out.
 fn axis(headings: u8) -> Option<usize> {
     (0..4).find(|&heading| headings >> heading & 0b1_0001 == 0b1_0001)
-}
-
-fn classes() -> Vec<ValueClass> {
-    let rows = [
-        (0.0, "unsuited", [0, 0, 0, 0], Hatching::None),
-        (1.0, "with caution", [254, 217, 118, 110], Hatching::Dots),
-        (2.0, "suited", [90, 180, 90, 120], Hatching::Single),
-    ];
-    ValueClass::of_rows(rows)
 }
 
 #[cfg(test)]

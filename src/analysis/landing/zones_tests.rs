@@ -1,11 +1,8 @@
 //! Landing zones against brute force, and by hand.
 
-use std::sync::Arc;
-
 use super::*;
 use crate::arguments::ArgumentValue;
-use sandtable_geom::crs::Crs;
-use sandtable_terrain::lattice::Lattice;
+use crate::test_land::{bare, codes_of, plant};
 
 const COLUMNS: usize = 41;
 const ROWS: usize = 37;
@@ -18,22 +15,14 @@ fn arguments(size: &str) -> AnalysisArguments {
 }
 
 fn land(seed: u64) -> Land {
-    let mut state = seed;
-    let mut random = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) as f32 / (1_u64 << 31) as f32
-    };
     let height = |index: usize| {
         let (x, y) = ((index % COLUMNS) as f32, (index / COLUMNS) as f32);
         16.0 * (x / 9.0).sin() * (y / 7.0).cos() + y * 0.2
     };
     let mut heights: Vec<f32> = (0..COLUMNS * ROWS).map(height).collect();
     heights[700] = f32::NAN;
-    let ground = Lattice::new(DVec2::new(500.0, 900.0), DVec2::new(10.0, 8.0), COLUMNS as u32, heights)
-        .expect("valid input");
-    let mut land = Land::bare(Arc::new(ground), Crs::from_epsg(32733).expect("a known system"));
-    let mut obstacle = || if random() < 0.01 { random() * 12.0 } else { 0.0 };
-    land.obstacles_m = Some((0..COLUMNS * ROWS).map(|_| obstacle()).collect());
+    let mut land = bare((DVec2::new(500.0, 900.0), DVec2::new(10.0, 8.0)), COLUMNS as u32, heights);
+    plant(&mut land, seed);
     land
 }
 
@@ -91,8 +80,7 @@ fn codes_are_those_of_the_definition_post_by_post_among_random_obstacles() {
         for (size, radius) in [("1", 12.5), ("3", 25.0), ("5", 50.0)] {
             let land = land(seed);
             let outcome = landing_zones(&land, &arguments(size), &StopFlag::default()).expect("valid input");
-            let PostValues::Codes(codes) = outcome.raster.expect("a raster").values else { panic!("codes") };
-            for (index, &code) in codes.iter().enumerate() {
+            for (index, &code) in codes_of(outcome).iter().enumerate() {
                 let wanted = brute(&land, radius, (index % COLUMNS) as i64, (index / COLUMNS) as i64);
                 assert_eq!(code, wanted, "seed {seed} size {size} post {index}");
                 if code < 3 {
@@ -120,10 +108,8 @@ fn sites_lie_apart_and_a_land_of_four_posts_has_none() {
     for (index, center) in centers.iter().enumerate() {
         assert!(centers[..index].iter().all(|other| other.distance(*center) >= 74.999), "{centers:?}");
     }
-    let ground = Lattice::new(DVec2::ZERO, DVec2::ONE, 2, vec![0.0, f32::NAN, f32::NAN, f32::NAN])
-        .expect("valid input");
-    let bare = Land::bare(Arc::new(ground), Crs::from_epsg(32733).expect("a known system"));
+    let four = bare((DVec2::ZERO, DVec2::ONE), 2, vec![0.0, f32::NAN, f32::NAN, f32::NAN]);
     assert!(
-        landing_zones(&bare, &arguments("7"), &StopFlag::default()).expect("valid input").features.is_empty()
+        landing_zones(&four, &arguments("7"), &StopFlag::default()).expect("valid input").features.is_empty()
     );
 }

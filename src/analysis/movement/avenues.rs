@@ -9,15 +9,15 @@ use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::line_posts::along_line;
+use crate::measures::post_grid;
 use crate::movement::corridors::{FreeGround, echelon};
-use crate::movement::going::{RESTRICTED, UNRESTRICTED};
 use crate::movement::route::{RouteMeasures, way_line};
 use crate::movement::search::TravelGoal;
 use crate::movement::travel::{TravelGround, travel_ground};
 use crate::outcome::{
     FeatureRole, Figure, Outcome, OutcomeFeature, OutcomeShape, OutcomeTable, PropertyValue, TableColumn,
 };
-use sandtable_geom::distance_field::{RegionGrid, distances_m};
+use sandtable_geom::distance_field::distances_m;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// A route does not differ where more than this share of its posts lie near earlier ones.
@@ -73,18 +73,14 @@ fn find_avenues(
     let (mut ground, codes, mut notes) = travel_ground(land, arguments)?;
     let starts = open_posts(&ground, "from_line", arguments.points("from_line"))?;
     let ends = open_posts(&ground, "to_line", arguments.points("to_line"))?;
-    let greatest = if arguments.word("through") == "restricted" { RESTRICTED } else { UNRESTRICTED };
-    let free = FreeGround::new(&land.ground, &codes, greatest)?;
-    let free_m = free.distances_m();
+    let free = FreeGround::new(&land.ground, &codes, arguments)?;
     let count = arguments.number("count") as usize;
     let (apart_m, penalty) = (arguments.number("apart_m"), arguments.number("penalty") as f32);
-    let cell = land.ground.cell();
-    let grid = RegionGrid { columns: land.ground.columns() as usize, step_m: [cell.x, cell.y] };
+    let grid = post_grid(&land.ground);
     let mut is_near = vec![false; codes.len()];
     let mut avenues: Vec<Avenue> = Vec::new();
     for _ in 0..count {
-        let goal = TravelGoal { most_s: f32::INFINITY, any_of: Some(&ends) };
-        let times = ground.times(&starts, goal, stop);
+        let times = ground.times(&starts, TravelGoal::any_of(&ends), stop);
         if stop.is_stopped() {
             return Err(AnalysisError::Stopped);
         }
@@ -117,7 +113,7 @@ fn find_avenues(
                 slowed.push(index);
             }
         }
-        let widths_m = way.iter().map(|&index| free.width_at_m(&free_m, index)).collect();
+        let widths_m = way.iter().map(|&index| free.width_at_m(index)).collect();
         let line = way_line(&land.ground, &way);
         avenues.push(Avenue { way, line, measures: RouteMeasures::default(), widths_m, shared });
         ground.slow_down(slowed, penalty);
@@ -301,19 +297,13 @@ fn narrow_places(land: &Land, rank: usize, avenue: &Avenue) -> Vec<ChokePoint> {
 mod tests {
     use super::*;
     use crate::arguments::ArgumentValue;
-    use crate::land::LandCover;
     use crate::run::run;
-    use crate::test_land::flat;
+    use crate::test_land::{flat, swamp};
 
     /// 31 × 21 posts, 100 m apart, with a swamp across: gaps of three posts at rows 4 to 6 and of one at row 15.
     fn two_gaps() -> Land {
         let mut land = flat(31, 21, 100.0);
-        let is_swamp = |index: usize| {
-            let (column, row) = (index % 31, index / 31);
-            (14..=16).contains(&column) && !(4..=6).contains(&row) && row != 15
-        };
-        let cover = (0..651).map(|index| if is_swamp(index) { LandCover::Wetland } else { LandCover::Open });
-        land.cover = Some(cover.collect());
+        swamp(&mut land, |column, row| (14..=16).contains(&column) && !(4..=6).contains(&row) && row != 15);
         land
     }
 
@@ -365,8 +355,7 @@ mod tests {
     #[test]
     fn a_line_in_the_swamp_or_behind_it_is_an_error_that_names_it() {
         let mut land = two_gaps();
-        let cover = (0..651).map(|index| if index % 31 == 15 { LandCover::Wetland } else { LandCover::Open });
-        land.cover = Some(cover.collect());
+        swamp(&mut land, |column, _| column == 15);
         for to_column in [15.0, 30.0] {
             let error = found(&land, "avenues", 1.0, to_column).expect_err("not reached");
             assert_eq!(error.key(), Some("to_line"), "{error}");
@@ -376,8 +365,7 @@ mod tests {
     #[test]
     fn routes_that_do_not_differ_are_left_out_with_a_note() {
         let mut land = flat(21, 3, 100.0);
-        let cover = (0..63).map(|index| if index / 21 == 1 { LandCover::Open } else { LandCover::Wetland });
-        land.cover = Some(cover.collect());
+        swamp(&mut land, |_, row| row != 1);
         let outcome = found(&land, "avenues", 4.0, 20.0).expect("sound");
         assert_eq!(outcome.tables[0].rows.len(), 1);
         assert!(

@@ -6,7 +6,7 @@
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
-use crate::measures::area_km2;
+use crate::measures::{area_km2, post_grid};
 use crate::movement::going::{Going, RESTRICTED, UNRESTRICTED};
 use crate::movement::vehicle::Vehicle;
 use crate::outcome::{Figure, Hatching, Outcome, OutcomeRaster, PostValues, ValueClass};
@@ -27,36 +27,31 @@ const TINTS: [[u8; 4]; 4] =
 
 /// The ground that counts as free in a corridor.
 pub(crate) struct FreeGround {
-    is_free: Vec<bool>,
+    /// The distance from each post to the nearest that is not free, meters; infinite where there is none.
+    free_m: Vec<f64>,
     grid: RegionGrid,
 }
 
 impl FreeGround {
-    /// Posts of these codes up to `greatest`.
-    pub fn new(ground: &Lattice, codes: &[u8], greatest: u8) -> Result<Self, AnalysisError> {
+    /// Posts of these codes that the argument `through` allows.
+    pub fn new(ground: &Lattice, codes: &[u8], arguments: &AnalysisArguments) -> Result<Self, AnalysisError> {
         check_memory(codes.len() as u64 * 28, "the analysis", "name a smaller `extent`")?;
-        let is_free = codes.iter().map(|&code| code <= greatest).collect();
-        let cell = ground.cell();
-        Ok(Self {
-            is_free,
-            grid: RegionGrid { columns: ground.columns() as usize, step_m: [cell.x, cell.y] },
-        })
-    }
-
-    /// The distance from each post to the nearest that is not free, meters; infinite where there is none.
-    pub fn distances_m(&self) -> Vec<f64> {
-        distances_m(&self.is_free, self.grid)
+        let greatest = if arguments.word("through") == "restricted" { RESTRICTED } else { UNRESTRICTED };
+        let is_free: Vec<bool> = codes.iter().map(|&code| code <= greatest).collect();
+        let grid = post_grid(ground);
+        Ok(Self { free_m: distances_m(&is_free, grid), grid })
     }
 
     /// Half a cell: what is not free begins half a cell before its post.
-    pub fn half_cell_m(&self) -> f64 {
+    fn half_cell_m(&self) -> f64 {
         self.grid.step_m[0].max(self.grid.step_m[1]) / 2.0
     }
 
     /// The width of the free ground around a post, meters: that of a free disk which holds it, found by climbing the
     /// distances from the post on for as long as the disk holds it. 0 where the post is not free, infinite where nothing
     /// limits it.
-    pub fn width_at_m(&self, free_m: &[f64], index: usize) -> f64 {
+    pub fn width_at_m(&self, index: usize) -> f64 {
+        let free_m = &self.free_m;
         let columns = self.grid.columns;
         let rows = free_m.len() / columns;
         let offset_m = |one: usize, other: usize| {
@@ -83,10 +78,11 @@ impl FreeGround {
     }
 
     /// Which posts lie in a free disk of this width.
-    fn opened(&self, free_m: &[f64], width_m: f64) -> Vec<bool> {
+    fn opened(&self, width_m: f64) -> Vec<bool> {
         let radius_m = width_m / 2.0 + self.half_cell_m();
         // Rounding of distances must not close ground that is exactly as wide.
-        let is_no_center: Vec<bool> = free_m.iter().map(|&free| free < radius_m * (1.0 - 1e-9)).collect();
+        let is_no_center: Vec<bool> =
+            self.free_m.iter().map(|&free| free < radius_m * (1.0 - 1e-9)).collect();
         let to_center = distances_m(&is_no_center, self.grid);
         to_center.iter().map(|&distance| distance < radius_m * (1.0 - 1e-6)).collect()
     }
@@ -101,18 +97,10 @@ pub(crate) fn corridors(
     arguments: &AnalysisArguments,
     stop: &StopFlag,
 ) -> Result<Outcome, AnalysisError> {
-    let widths = arguments.numbers("widths_m");
-    if widths.len() > MOST_WIDTHS || !widths.windows(2).all(|pair| pair[0] < pair[1]) {
-        return Err(AnalysisError::argument(
-            "widths_m",
-            format!("must be up to {MOST_WIDTHS} rising numbers"),
-        ));
-    }
+    let widths = arguments.rising_numbers("widths_m", MOST_WIDTHS)?;
     let vehicle = Vehicle::named(land, &arguments.word("vehicle"))?;
     let Going { mut codes, notes, .. } = Going::new(land, &vehicle)?;
-    let greatest = if arguments.word("through") == "restricted" { RESTRICTED } else { UNRESTRICTED };
-    let free = FreeGround::new(&land.ground, &codes, greatest)?;
-    let free_m = free.distances_m();
+    let free = FreeGround::new(&land.ground, &codes, arguments)?;
     codes.iter_mut().filter(|code| **code != PostValues::NO_CODE).for_each(|code| *code = 0);
     let mut figures = Vec::new();
     for (index, &width_m) in widths.iter().enumerate() {
@@ -120,7 +108,7 @@ pub(crate) fn corridors(
             return Err(AnalysisError::Stopped);
         }
         let mut posts = 0usize;
-        for (code, is_open) in codes.iter_mut().zip(free.opened(&free_m, width_m)) {
+        for (code, is_open) in codes.iter_mut().zip(free.opened(width_m)) {
             if is_open && *code != PostValues::NO_CODE {
                 *code = index as u8 + 1;
                 posts += 1;
@@ -171,25 +159,19 @@ mod tests {
     use crate::arguments::ArgumentValue;
     use crate::land::LandCover;
     use crate::run::run;
-    use crate::test_land::flat;
+    use crate::test_land::{codes_of, flat, swamp};
 
     fn codes(land: &Land, widths: &[f64]) -> Vec<u8> {
         let kind = sandtable_catalog::kind("corridors").expect("a kind");
         let arguments =
             AnalysisArguments::new(kind).with("widths_m", ArgumentValue::Numbers(widths.to_vec()));
-        let found = run(land, &arguments, &StopFlag::default()).expect("sound");
-        match found.raster.expect("a raster").values {
-            PostValues::Codes(codes) => codes,
-            PostValues::Numbers(_) => panic!("codes"),
-        }
+        codes_of(run(land, &arguments, &StopFlag::default()).expect("sound"))
     }
 
     #[test]
     fn a_band_of_five_posts_is_a_corridor_of_five_cells_and_no_more() {
         let mut land = flat(9, 30, 100.0);
-        let cover = (0..270)
-            .map(|index| if (2..7).contains(&(index % 9)) { LandCover::Open } else { LandCover::Wetland });
-        land.cover = Some(cover.collect());
+        swamp(&mut land, |column, _| !(2..7).contains(&column));
         for (width_m, code) in [(499.0, 1), (500.0, 1), (501.0, 0)] {
             let found = codes(&land, &[width_m]);
             let row = &found[15 * 9..16 * 9];

@@ -76,23 +76,22 @@ impl Going {
                 speeds[column] = (vehicle.speed_kmh * rule.share) as f32;
             }
         });
-        going.closed = closed;
-        going.slow_over_gaps(land, vehicle);
+        if let Some(closed) = &closed {
+            going.slow_over_gaps(closed, land, vehicle);
+        }
         going.place_steps(land, vehicle);
         going.place_ways(land, vehicle);
-        Ok(going)
+        Ok(Self { closed, ..going })
     }
 
     /// Gaps of the ground itself that are closed for the vehicle restrict it where they are deeper than it steps.
-    fn slow_over_gaps(&mut self, land: &Land, vehicle: &Vehicle) {
-        let Some(closed) = self.closed.take() else { return };
+    fn slow_over_gaps(&mut self, closed: &Lattice, land: &Land, vehicle: &Vehicle) {
         let heights = closed.heights().iter().zip(land.ground.heights());
         for (index, (&closed_m, &ground_m)) in heights.enumerate() {
             if f64::from(closed_m - ground_m) > vehicle.step_m {
                 self.hinder(index, vehicle, true);
             }
         }
-        self.closed = Some(closed);
     }
 
     /// Walls, banks and ditches: what the vehicle does not climb or cross is severely restricted, what it does is restricted.
@@ -262,7 +261,7 @@ fn built_up_rule(vehicle: &Vehicle) -> GroundRule {
 mod tests {
     use super::*;
     use crate::land::{Gap, RoadLine, Step};
-    use crate::test_land::{flat, shaped};
+    use crate::test_land::{flat, flood, shaped};
     use glam::DVec2;
 
     fn tracked() -> Vehicle {
@@ -298,11 +297,7 @@ mod tests {
     #[test]
     fn roads_and_bridges_make_ground_unrestricted_and_weak_bridges_do_not() {
         let mut land = flat(5, 3, 10.0);
-        let mut water = vec![WaterPost::default(); 15];
-        for row in 0..3 {
-            water[row * 5 + 2] = WaterPost { kind: WaterKind::River, depth_m: f32::NAN };
-        }
-        land.water = Some(water);
+        flood(&mut land, 2, f32::NAN);
         land.roads = Some(Vec::new());
         assert_eq!(Going::new(&land, &tracked()).expect("memory").codes[7], SEVERELY_RESTRICTED);
         let line = vec![DVec2::new(10.0, 10.0), DVec2::new(30.0, 10.0)];

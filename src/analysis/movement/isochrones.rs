@@ -34,13 +34,7 @@ pub(crate) fn time(
     arguments: &AnalysisArguments,
     stop: &StopFlag,
 ) -> Result<Outcome, AnalysisError> {
-    let limits = arguments.numbers("classes_min");
-    if limits.len() > MOST_CLASSES || !limits.windows(2).all(|pair| pair[0] < pair[1]) {
-        return Err(AnalysisError::argument(
-            "classes_min",
-            format!("must be up to {MOST_CLASSES} rising numbers"),
-        ));
-    }
+    let limits = arguments.rising_numbers("classes_min", MOST_CLASSES)?;
     let (ground, _, notes) = travel_ground(land, arguments)?;
     let places = arguments.points("from");
     let starts = places
@@ -48,7 +42,7 @@ pub(crate) fn time(
         .map(|&at| ground.post_near("from", at))
         .collect::<Result<Vec<usize>, AnalysisError>>()?;
     let most_s = arguments.number("max_min") as f32 * 60.0;
-    let mut values = ground.times(&starts, TravelGoal { most_s, any_of: None }, stop);
+    let mut values = ground.times(&starts, TravelGoal::within(most_s), stop);
     let mut reached = 0usize;
     let mut latest = 0.0f32;
     for value in &mut values {
@@ -105,9 +99,9 @@ fn classes(limits: &[f64]) -> Vec<ValueClass> {
 mod tests {
     use super::*;
     use crate::arguments::ArgumentValue;
-    use crate::land::{RoadClass, RoadLine, WaterKind, WaterPost};
+    use crate::land::{RoadClass, RoadLine};
     use crate::run::run;
-    use crate::test_land::flat;
+    use crate::test_land::{flat, flood};
     use glam::DVec2;
 
     fn minutes(land: &Land, max_min: f64, from: &[DVec2]) -> Result<Vec<f32>, AnalysisError> {
@@ -136,11 +130,7 @@ mod tests {
     #[test]
     fn water_blocks_the_way_and_places_in_it_or_beyond_the_ground_are_errors() {
         let mut land = flat(5, 5, 100.0);
-        let mut water = vec![WaterPost::default(); 25];
-        for row in 0..5 {
-            water[row * 5 + 2] = WaterPost { kind: WaterKind::River, depth_m: 3.0 };
-        }
-        land.water = Some(water);
+        flood(&mut land, 2, 3.0);
         let found = minutes(&land, 1e4, &[DVec2::ZERO]).expect("sound");
         assert!(found[1].is_finite() && found[2].is_nan() && found[3].is_nan() && found[24].is_nan());
         for at in [DVec2::new(200.0, 0.0), DVec2::new(900.0, 0.0), DVec2::NAN] {

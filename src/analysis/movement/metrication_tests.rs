@@ -1,5 +1,6 @@
 //! How far times over sixteen neighbors are from those over all directions: on planes the quickest way is known.
 
+use super::tests::{everywhere, travel};
 use super::*;
 use crate::land::{RoadClass, RoadLine};
 use crate::movement::search::TravelGoal;
@@ -8,11 +9,6 @@ use sandtable_terrain::stop_flag::StopFlag;
 
 /// Directions of the brute force.
 const DIRECTIONS: usize = 720;
-
-fn travel<'a>(land: &'a Land, vehicle: &Vehicle) -> TravelGround<'a> {
-    let going = Going::new(land, vehicle).expect("memory");
-    TravelGround::new(land, going, vehicle, false).expect("memory")
-}
 
 /// The least seconds to go by (1, 0) turned by `toward`, where a meter in each direction takes `costs`: along it, or to and
 /// fro in two directions around it. No way with more directions is quicker in the plane (Carathéodory 1911).
@@ -40,8 +36,7 @@ fn least_seconds(costs: &[f64], toward: f64) -> f64 {
 fn ratios(slope: f64, vehicle: &Vehicle) -> (f64, f64) {
     let land = shaped(65, 65, 10.0, |column, _| column as f32 * (slope * 10.0) as f32);
     let ground = travel(&land, vehicle);
-    let goal = TravelGoal { most_s: f32::INFINITY, any_of: None };
-    let times = ground.times(&[32 * 65 + 32], goal, &StopFlag::default());
+    let times = everywhere(&ground, &[32 * 65 + 32]);
     let cost = |index: usize| {
         let angle = index as f64 * std::f64::consts::TAU / DIRECTIONS as f64;
         let across = ground.grades.across((slope * angle.sin()).abs() as f32);
@@ -91,15 +86,13 @@ fn toward_a_goal_times_are_those_of_looking_everywhere() {
     let road =
         |ends| RoadLine { name: String::new(), line: line(ends), surface: RoadClass::Main, width_m: 6.0 };
     land.roads = Some(vec![road([[0.0, 100.0], [1200.0, 300.0]]), road([[300.0, 0.0], [900.0, 920.0]])]);
-    let everywhere = TravelGoal { most_s: f32::INFINITY, any_of: None };
     for name in ["foot", "truck", "tracked"] {
         let mut ground = travel(&land, &Vehicle::built_in(name).expect("built in"));
         ground.slow_down(1000..1100, 3.0);
         for start in [0, 61 * 20 + 7, 61 * 47 - 1] {
-            let all = ground.times(&[start], everywhere, &StopFlag::default());
+            let all = everywhere(&ground, &[start]);
             for ends in [vec![61 * 30 + 50], vec![5, 6, 7, 70], vec![61 * 46, 61 * 46 + 60], vec![start]] {
-                let goal = TravelGoal { most_s: f32::INFINITY, any_of: Some(&ends) };
-                let times = ground.times(&[start], goal, &StopFlag::default());
+                let times = ground.times(&[start], TravelGoal::any_of(&ends), &StopFlag::default());
                 let nearest = |times: &[f32]| {
                     ends.iter().copied().min_by(|&a, &b| times[a].total_cmp(&times[b])).expect("ends")
                 };

@@ -1,12 +1,11 @@
 //! Times against GRASS `r.walk` and `r.cost`, routes against scikit-image, on real ground.
 
+use super::tests::everywhere;
 use super::*;
 use crate::movement::search::TravelGoal;
 use crate::test_land::shaped;
 use crate::test_places::{PLACES, place, table};
 use sandtable_terrain::stop_flag::StopFlag;
-
-const ALL: TravelGoal<'static> = TravelGoal { most_s: f32::INFINITY, any_of: None };
 
 /// People on foot whom no slope stops, as `r.walk` has them.
 fn walker() -> Vehicle {
@@ -65,20 +64,25 @@ fn start(land: &Land) -> usize {
     (rows / 3 * columns + columns / 3) as usize
 }
 
+/// The times with sixteen neighbors and then with eight, as the columns of these tools have them.
+fn check_times(ground: &mut TravelGround<'_>, name: &str, tools: [&str; 2], start: usize) {
+    let rows = table(&format!("movement_{name}.csv"));
+    for (tool, count) in tools.into_iter().zip([16, 8]) {
+        ground.steps.truncate(count);
+        let times = everywhere(ground, &[start]);
+        let greatest = greatest_difference(&times, ground.lattice().columns() as usize, &rows, tool);
+        println!("{name} {tool} {greatest:.2e}");
+        assert!(greatest < 0.005, "{name} {tool}: {greatest}");
+    }
+}
+
 #[test]
 fn times_on_foot_are_those_of_r_walk_on_three_places() {
     for (name, file) in PLACES {
         let Some(land) = place(file) else { return };
-        let rows = table(&format!("movement_{name}.csv"));
         let going = Going::new(&land, &walker()).expect("memory");
         let mut ground = TravelGround::new(&land, going, &walker(), true).expect("memory");
-        for (tool, count) in [("walk16", 16), ("walk8", 8)] {
-            ground.steps.truncate(count);
-            let times = ground.times(&[start(&land)], ALL, &StopFlag::default());
-            let greatest = greatest_difference(&times, land.ground.columns() as usize, &rows, tool);
-            println!("{name} {tool} {greatest:.2e}");
-            assert!(greatest < 0.005, "{name} {tool}: {greatest}");
-        }
+        check_times(&mut ground, name, ["walk16", "walk8"], start(&land));
     }
 }
 
@@ -86,16 +90,9 @@ fn times_on_foot_are_those_of_r_walk_on_three_places() {
 fn times_over_level_ground_are_those_of_r_cost_on_three_places() {
     for (name, file) in PLACES {
         let Some(land) = place(file) else { return };
-        let rows = table(&format!("movement_{name}.csv"));
         let level = level(&land);
         let mut ground = with_paces(&level, &paces(&land));
-        for (tool, count) in [("cost16", 16), ("cost8", 8)] {
-            ground.steps.truncate(count);
-            let times = ground.times(&[start(&land)], ALL, &StopFlag::default());
-            let greatest = greatest_difference(&times, land.ground.columns() as usize, &rows, tool);
-            println!("{name} {tool} {greatest:.2e}");
-            assert!(greatest < 0.005, "{name} {tool}: {greatest}");
-        }
+        check_times(&mut ground, name, ["cost16", "cost8"], start(&land));
     }
 }
 
@@ -107,14 +104,13 @@ fn routes_cost_what_those_of_scikit_image_do_and_never_more() {
         let columns = land.ground.columns() as usize;
         let level = level(&land);
         let mut ground = with_paces(&level, &paces(&land));
-        let of_sixteen = ground.times(&[start(&land)], ALL, &StopFlag::default());
+        let of_sixteen = everywhere(&ground, &[start(&land)]);
         ground.steps.truncate(8);
         for row in rows.iter().filter(|row| row[0] == "route") {
             let [column, line] = [1, 2].map(|cell: usize| row[cell].parse::<usize>().expect("a number"));
             let wanted: f64 = row[3].parse().expect("a number");
             let end = line * columns + column;
-            let goal = TravelGoal { most_s: f32::INFINITY, any_of: Some(&[end]) };
-            let times = ground.times(&[start(&land)], goal, &StopFlag::default());
+            let times = ground.times(&[start(&land)], TravelGoal::any_of(&[end]), &StopFlag::default());
             let way = ground.way_to(&times, end);
             let along = *ground.seconds_along(&way).last().expect("posts");
             assert!((along / wanted - 1.0).abs() < 1e-4, "{name} {row:?}: {along}");

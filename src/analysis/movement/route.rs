@@ -79,8 +79,7 @@ pub(crate) fn route(
     let start_min = arguments.number("start_h") * 60.0;
     let (mut rows, mut total) = (Vec::new(), RouteMeasures::default());
     for (leg, ends) in posts.windows(2).enumerate() {
-        let goal = TravelGoal { most_s: f32::INFINITY, any_of: Some(&[ends[1]]) };
-        let times = ground.times(&[ends[0]], goal, stop);
+        let times = ground.times(&ends[..1], TravelGoal::any_of(&ends[1..]), stop);
         if stop.is_stopped() {
             return Err(AnalysisError::Stopped);
         }
@@ -161,9 +160,9 @@ fn clock(minutes: f64) -> String {
 mod tests {
     use super::*;
     use crate::arguments::ArgumentValue;
-    use crate::land::{Crossing, CrossingKind, Step, WaterKind, WaterPost};
+    use crate::land::{Crossing, CrossingKind, Step};
     use crate::run::run;
-    use crate::test_land::{flat, shaped};
+    use crate::test_land::{flat, flood, shaped};
 
     fn found(land: &Land, places: [&[DVec2]; 3]) -> Result<Outcome, AnalysisError> {
         let kind = sandtable_catalog::kind("route").expect("a kind");
@@ -179,11 +178,7 @@ mod tests {
     #[test]
     fn a_route_goes_over_the_bridge_and_its_table_adds_up() {
         let mut land = flat(9, 9, 100.0);
-        let mut water = vec![WaterPost::default(); 81];
-        for row in 0..9 {
-            water[row * 9 + 4] = WaterPost { kind: WaterKind::River, depth_m: 3.0 };
-        }
-        land.water = Some(water);
+        flood(&mut land, 4, 3.0);
         let line = vec![DVec2::new(300.0, 700.0), DVec2::new(500.0, 700.0)];
         let (name, load_t) = (String::new(), None);
         land.crossings = vec![Crossing { name, kind: CrossingKind::Bridge, line, width_m: 5.0, load_t }];

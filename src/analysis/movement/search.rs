@@ -16,9 +16,21 @@ const POSTS_PER_LOOK: usize = 1 << 16;
 #[derive(Clone, Copy)]
 pub(crate) struct TravelGoal<'a> {
     /// No post is reached later, seconds.
-    pub most_s: f32,
+    most_s: f32,
     /// It ends as soon as one of these posts is reached for certain; `None` to reach all.
-    pub any_of: Option<&'a [usize]>,
+    any_of: Option<&'a [usize]>,
+}
+
+impl<'a> TravelGoal<'a> {
+    /// All posts that are reached in so many seconds.
+    pub fn within(most_s: f32) -> Self {
+        Self { most_s, any_of: None }
+    }
+
+    /// One of these posts, which rise, whenever it is reached.
+    pub fn any_of(posts: &'a [usize]) -> Self {
+        Self { most_s: f32::INFINITY, any_of: Some(posts) }
+    }
 }
 
 /// The least time from a post to a goal: straight to the rectangle of its posts, on the best ground there is.

@@ -9,6 +9,7 @@ use crate::land::Land;
 use crate::movement::going::{Going, SEVERELY_RESTRICTED};
 use crate::movement::grade::GradeTable;
 use crate::movement::vehicle::Vehicle;
+use crate::outcome::PostValues;
 use crate::place::nearest_post;
 use glam::DVec2;
 use sandtable_base::limits::memory::check_memory;
@@ -213,14 +214,13 @@ impl<'a> TravelGround<'a> {
         if !self.grades.has_across() {
             return 1.0;
         }
-        let (columns, rows) = (self.ground.columns() as i32, self.ground.rows() as i32);
+        let (columns, rows) = (self.ground.columns(), self.ground.rows());
         let own = self.posts[from].height_m;
         let height = |sign: i32| {
             let (east, north) = (column - sign * step.rows, row + sign * step.columns);
-            let is_within = east >= 0 && north >= 0 && east < columns && north < rows;
-            let height =
-                if is_within { self.posts[(north * columns + east) as usize].height_m } else { f32::NAN };
-            if height.is_nan() { None } else { Some(height) }
+            let height = is_on(columns, rows, east, north)
+                .then(|| self.posts[(north * columns as i32 + east) as usize].height_m);
+            height.filter(|height| !height.is_nan())
         };
         let cell = self.ground.cell().as_vec2();
         let span = glam::Vec2::new(step.rows as f32 * cell.x, step.columns as f32 * cell.y).length();
@@ -302,7 +302,7 @@ pub(crate) fn travel_ground<'a>(
     let mut going = Going::new(land, &vehicle)?;
     let codes = std::mem::take(&mut going.codes);
     let notes = std::mem::take(&mut going.notes);
-    debug_assert!(codes.iter().all(|&code| code <= SEVERELY_RESTRICTED || code == 255));
+    debug_assert!(codes.iter().all(|&code| code <= SEVERELY_RESTRICTED || code == PostValues::NO_CODE));
     let ground = TravelGround::new(land, going, &vehicle, arguments.word("method") == "langmuir")?;
     Ok((ground, codes, notes))
 }
@@ -316,20 +316,26 @@ mod tests {
     use sandtable_terrain::lattice::Post;
     use sandtable_terrain::stop_flag::StopFlag;
 
-    pub(super) const ALL: TravelGoal<'static> = TravelGoal { most_s: f32::INFINITY, any_of: None };
+    pub(super) fn travel<'a>(land: &'a Land, vehicle: &Vehicle) -> TravelGround<'a> {
+        let going = Going::new(land, vehicle).expect("memory");
+        TravelGround::new(land, going, vehicle, false).expect("memory")
+    }
 
-    fn travel<'a>(land: &'a Land, name: &str) -> TravelGround<'a> {
-        let vehicle = Vehicle::named(land, name).expect("a vehicle");
-        let going = Going::new(land, &vehicle).expect("memory");
-        TravelGround::new(land, going, &vehicle, false).expect("memory")
+    fn built_in(name: &str) -> Vehicle {
+        Vehicle::built_in(name).expect("built in")
+    }
+
+    /// The times to all posts.
+    pub(super) fn everywhere(ground: &TravelGround<'_>, starts: &[usize]) -> Vec<f32> {
+        ground.times(starts, TravelGoal::within(f32::INFINITY), &StopFlag::default())
     }
 
     #[test]
     fn on_level_ground_times_are_at_most_2_point_8_percent_too_long() {
         let land = flat(41, 41, 10.0);
-        let ground = travel(&land, "truck");
+        let ground = travel(&land, &built_in("truck"));
         let center = 20 * 41 + 20;
-        let times = ground.times(&[center], ALL, &StopFlag::default());
+        let times = everywhere(&ground, &[center]);
         let pace = 3.6 / 15.0;
         for post in land.ground.posts() {
             let straight = (post.grid() - 20.0).length() * 10.0 * pace;
@@ -353,8 +359,8 @@ mod tests {
         let line = vec![DVec2::new(80.0, 0.0), DVec2::new(110.0, 90.0)];
         land.steps = vec![Step { line, height_m: 3.0 }];
         for name in ["foot", "tracked", "truck"] {
-            let ground = travel(&land, name);
-            let times = ground.times(&[0, 20], ALL, &StopFlag::default());
+            let ground = travel(&land, &built_in(name));
+            let times = everywhere(&ground, &[0, 20]);
             let mut slow = vec![f32::INFINITY; times.len()];
             (slow[0], slow[20]) = (0.0, 0.0);
             loop {
@@ -387,8 +393,8 @@ mod tests {
             let mut land = flat(10, 10, 10.0);
             let line = vec![DVec2::new(0.0, 0.0), to, to * 3.0];
             land.steps = vec![Step { line, height_m: 5.0 }];
-            let ground = travel(&land, "foot");
-            let times = ground.times(&[9], ALL, &StopFlag::default());
+            let ground = travel(&land, &built_in("foot"));
+            let times = everywhere(&ground, &[9]);
             assert!(times[9 * 10].is_infinite(), "{to}");
             assert!(times[9 * 10 + 9].is_infinite() || to.x != to.y);
         }
@@ -397,9 +403,9 @@ mod tests {
     #[test]
     fn uphill_takes_longer_than_down() {
         let land = shaped(9, 3, 10.0, |column, _| column as f32 * 2.0);
-        let ground = travel(&land, "foot");
-        let up = ground.times(&[9], ALL, &StopFlag::default())[17];
-        let down = ground.times(&[17], ALL, &StopFlag::default())[9];
+        let ground = travel(&land, &built_in("foot"));
+        let up = everywhere(&ground, &[9])[17];
+        let down = everywhere(&ground, &[17])[9];
         let tobler = |grade: f64| 80.0 * 3.6 / (6.0 * libm::exp(-3.5 * (grade + 0.05f64).abs()));
         assert!((f64::from(up) - tobler(0.2)).abs() < 0.01, "{up}");
         assert!((f64::from(down) - tobler(-0.2)).abs() < 0.01, "{down}");
