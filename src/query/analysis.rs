@@ -1,22 +1,21 @@
-//! Terrain analyses of a dataset: arguments from text, the land, and rasters of outcomes.
+//! Terrain analyses of a dataset: arguments from text, and the land.
 
 use std::path::Path;
 use std::sync::Arc;
 
 use glam::DVec2;
 
-use crate::analysis_bands::described;
 use crate::analysis_extent;
 use crate::dataset::{Dataset, DatasetOptions, OpenError, QueryError};
 use crate::ground::{GroundError, QueriedGround};
 use crate::positions::{PositionArgument, position_list};
-use crate::post_raster::{part_header, post_header};
+use crate::post_raster::post_header;
 use crate::windowed_elevation::GroundReach;
 use sandtable_analysis::arguments::{AnalysisArguments, ArgumentValue};
 use sandtable_analysis::error::AnalysisError;
 use sandtable_analysis::extent::{LandExtent, PlacedOutcome, ground_part, run_part, run_within};
 use sandtable_analysis::land::Land;
-use sandtable_analysis::outcome::{Outcome, OutcomeRaster, PostValues};
+use sandtable_analysis::outcome::Outcome;
 use sandtable_base::message::suggest::{quoted, remedy};
 use sandtable_catalog::kind::{AnalysisKind, AnalysisReach};
 use sandtable_catalog::parameter::{
@@ -468,37 +467,6 @@ fn points(text: &str, least: usize, crs: &Crs, land_crs: &Crs) -> Result<Argumen
             points.len()
         )),
     }
-}
-
-/// The raster of an outcome, north up, its samples at the posts of `ground`.
-pub fn raster(outcome: &OutcomeRaster, ground: &Lattice, crs: &Crs) -> Raster {
-    posts_raster(&outcome.values, outcome.name, (ground, PostRect::all(ground)), crs)
-}
-
-/// The raster of values at posts of a ground, north up; `name` is its driver.
-fn posts_raster(
-    values: &PostValues,
-    name: &'static str,
-    (ground, posts): (&Lattice, PostRect),
-    crs: &Crs,
-) -> Raster {
-    let columns = posts.width();
-    let samples = (0..posts.height())
-        .rev()
-        .flat_map(|row| (row * columns..(row + 1) * columns).map(|index| values.value(index)));
-    let header = posts_header(values, name, (ground, posts), crs);
-    Raster { samples: Samples::F32(samples.collect()), ..header }
-}
-
-/// The raster of values of the type of `values` at posts of a ground, north up, without its samples.
-pub fn posts_header(
-    values: &PostValues,
-    name: &'static str,
-    place: (&Lattice, PostRect),
-    crs: &Crs,
-) -> Raster {
-    let (data_type, nodata) = described(values);
-    part_header(place, crs, (name, data_type), nodata)
 }
 
 /// The raster of the heights of a ground, north up.

@@ -14,7 +14,7 @@ use sandtable_dem::dem_format::DemFormat;
 use sandtable_dem::hints::DemOptions;
 use sandtable_files::error::FileError;
 use sandtable_files::raster_file::{self, WriteRasterError};
-use sandtable_query::analysis::posts_header;
+use sandtable_query::analysis_bands::posts_header;
 use sandtable_query::dem;
 use sandtable_raster::error::DemErrorKind;
 use sandtable_raster::raster::{Raster, Samples};

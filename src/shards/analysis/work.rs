@@ -11,7 +11,8 @@ use sandtable_dem::write;
 use sandtable_dem::written::WriteError;
 use sandtable_files::error::FileError;
 use sandtable_files::raster_file::WriteRasterError;
-use sandtable_query::analysis::{Analyzed, raster};
+use sandtable_query::analysis::Analyzed;
+use sandtable_query::analysis_bands::OutcomeWindows;
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::stop_flag::StopFlag;
 
@@ -29,7 +30,8 @@ pub fn result(plan: &ShardPlan, opened: &OpenedAnalysis, shard: &Shard) -> Resul
     let values = outcome.raster.as_ref();
     let values = values.unwrap_or_else(|| panic!("{} gives a raster", opened.kind.name));
     let format = DemFormat::to_write(EXTENSION).expect("GeoTIFF is written");
-    let written = write::write(&raster(values, ground, crs), format, "").map_err(|error| {
+    let raster = OutcomeWindows::new(values, ground, crs).raster();
+    let written = write::write(&raster, format, "").map_err(|error| {
         WriteRasterError::from(FileError::<WriteError>::new(&result_path(plan, shard.id, EXTENSION), error))
     })?;
     Ok(written.bytes)
