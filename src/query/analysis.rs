@@ -23,8 +23,8 @@ use sandtable_catalog::parameter::{
 };
 use sandtable_geom::crs::{Crs, CrsError};
 use sandtable_raster::raster::{Raster, Samples};
-use sandtable_scene::analyses::interpolation_between;
-use sandtable_terrain::lattice::{Lattice, LatticeError, Post};
+use sandtable_scene::analyses::ground_at_posts;
+use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::query::Surface;
 use sandtable_terrain::stop_flag::StopFlag;
@@ -353,22 +353,9 @@ fn other_ground(
             (find(file).ok_or_else(unknown)?, Surface::Ground)
         }
     };
-    let interpolation = interpolation_between(surface, &land.ground);
-    let (columns, rows) = (land.ground.columns(), land.ground.rows());
-    let mut heights = Vec::with_capacity(columns as usize * rows as usize);
-    for row in 0..rows {
-        let at: Vec<DVec2> =
-            (0..columns).map(|column| land.ground.map_position(Post { column, row })).collect();
-        let answers = other.heights(surface, interpolation, &land.crs, &at)?;
-        heights
-            .extend(answers.iter().map(|answer| answer.height_m().map_or(f32::NAN, |height| height as f32)));
-    }
-    let none = |_| AnalyzeError::argument(name, format!("{file} has no ground at the posts of the land"));
-    if heights.iter().all(|height| height.is_nan()) {
-        return Err(none(LatticeError::Empty));
-    }
-    let frame = (land.ground.origin(), land.ground.cell());
-    Lattice::part(frame, land.ground.first(), columns, heights).map(Arc::new).map_err(none)
+    let heights = |interpolation, at: &[DVec2]| other.heights(surface, interpolation, &land.crs, at);
+    ground_at_posts(&land.ground, surface, heights)?
+        .ok_or_else(|| AnalyzeError::argument(name, format!("{file} has no ground at the posts of the land")))
 }
 
 /// The arguments of a kind from what users wrote, without the extent, positions brought from `crs` to `land_crs`.
