@@ -24,7 +24,7 @@ use sandtable_catalog::parameter::{
 use sandtable_geom::crs::{Crs, CrsError};
 use sandtable_raster::raster::{Raster, Samples};
 use sandtable_scene::analyses::ground_at_posts;
-use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::query::Surface;
 use sandtable_terrain::stop_flag::StopFlag;
@@ -290,7 +290,7 @@ impl PartedAnalysis {
             return part(land, posts);
         }
         let needed = posts.grown((self.reach(), self.reach()), &self.frame.lattice);
-        part(&bare_posts(dataset, &self.frame, needed)?, within(posts, needed))
+        part(&bare_posts(dataset, &self.frame, needed)?, posts.counted_in(needed))
     }
 }
 
@@ -303,12 +303,6 @@ pub fn check_parts(kind: &'static AnalysisKind) -> Result<(), AnalyzeError> {
         AnalysisReach::Whole => Err(AnalyzeError::Whole { kind: kind.name }),
         _ => Ok(()),
     }
-}
-
-/// Posts of the whole counted in a part of it.
-fn within(posts: PostRect, part: PostRect) -> PostRect {
-    let from = |post: Post| Post { column: post.column - part.first.column, row: post.row - part.first.row };
-    PostRect { first: from(posts.first), last: from(posts.last) }
 }
 
 /// The ground that an analysis compares with, at the posts of the land; `None` for one that states none.
