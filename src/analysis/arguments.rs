@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use crate::error::AnalysisError;
 use sandtable_catalog::kind::{AnalysisKind, AnalysisReach};
 use sandtable_catalog::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
 
@@ -61,6 +62,24 @@ impl AnalysisArguments {
         match self.get(name) {
             Some(ArgumentValue::Number(number)) => Some(number),
             _ => None,
+        }
+    }
+
+    /// A number of posts: as stated, or the default.
+    ///
+    /// # Errors
+    /// It is not whole.
+    ///
+    /// # Panics
+    /// As [`AnalysisArguments::number`].
+    pub fn posts(&self, name: &'static str) -> Result<usize, AnalysisError> {
+        let number = self.number(name);
+        match number.fract() == 0.0 {
+            true => Ok(number as usize),
+            false => {
+                let problem = format!("is {number}; it must be a whole number of posts");
+                Err(AnalysisError::argument(name, problem))
+            }
         }
     }
 

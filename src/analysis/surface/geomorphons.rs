@@ -65,12 +65,7 @@ pub(crate) fn geomorphons(
     arguments: &AnalysisArguments,
     stop: &StopFlag,
 ) -> Result<Outcome, AnalysisError> {
-    let posts = |key: &'static str| {
-        let number = arguments.number(key);
-        let problem = || format!("is {number}; it must be a whole number of posts");
-        if number.fract() == 0.0 { Ok(number as usize) } else { Err(AnalysisError::argument(key, problem())) }
-    };
-    let (radius, skip) = (posts("radius")?, posts("skip")?);
+    let (radius, skip) = (arguments.posts("radius")?, arguments.posts("skip")?);
     if skip + 1 >= radius {
         let problem = format!("is {skip}, which leaves nothing of a `radius` of {radius} posts; state less");
         return Err(AnalysisError::argument("skip", problem));
