@@ -9,8 +9,8 @@ use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::outcome::{
-    ClassLook, FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape,
-    PostValues, PropertyValue, ValueClass,
+    FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, PostValues,
+    PropertyValue, ValueClass,
 };
 use sandtable_geom::isolines::{ValueGrid, isolines};
 use sandtable_terrain::lattice::{Lattice, Post};
@@ -155,11 +155,8 @@ fn band_class(band: f64, interval: f64, index: i64, bands: i64) -> ValueClass {
         (RAMP[from][channel] + (RAMP[from + 1][channel] - RAMP[from][channel]) * part).round() as u8
     };
     let (low, high) = (band * interval, (band + 1.0) * interval);
-    ValueClass {
-        from: low as f32,
-        label: format!("{}–{} m", number_text(low), number_text(high)),
-        look: ClassLook { tint: [channel(0), channel(1), channel(2), 130], hatching: Hatching::None },
-    }
+    let label = format!("{}–{} m", number_text(low), number_text(high));
+    ValueClass::new(low as f32, label, [channel(0), channel(1), channel(2), 130], Hatching::None)
 }
 
 #[cfg(test)]
