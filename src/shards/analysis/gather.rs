@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use crate::analysis::arguments::AnalysisPlan;
-use crate::analysis::work::{EXTENSION, ground_posts};
+use crate::analysis::work::ground_posts;
 use crate::error::{PlanError, PlanFault, ShardError};
 use crate::plan::ShardPlan;
+use crate::raster_result::EXTENSION;
 use crate::record::result_path;
 use sandtable_analysis::outcome::PostValues;
 use sandtable_base::limits::RASTER_SAMPLES;
