@@ -17,7 +17,7 @@ use sandtable_query::analysis::{AnalyzeError, Analyzed, WrittenArgument, analyze
 use sandtable_query::analysis_bands::OutcomeWindows;
 use sandtable_query::dataset::Dataset;
 use sandtable_scene::land::land_of;
-use sandtable_scene::scene_file::open_scene_true_to_scale;
+use sandtable_scene::scene_file::open_scene_land;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::vertical_scale::VerticalScale;
 use sandtable_terrain::stop_flag::StopFlag;
@@ -121,7 +121,7 @@ impl Scene {
         if let Some(kept) = self.true_to_scale.get() {
             return Ok(kept);
         }
-        let opened = open_scene_true_to_scale(&self.path, &self.allowed, &|_| ())?;
+        let opened = open_scene_land(&self.path, &self.allowed, &|_| ())?;
         // Another thread that was first opened the same.
         Ok(self.true_to_scale.get_or_init(|| Box::new(opened)))
     }
