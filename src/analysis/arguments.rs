@@ -65,6 +65,24 @@ impl AnalysisArguments {
         }
     }
 
+    /// A number of posts: as stated, or the default.
+    ///
+    /// # Errors
+    /// It is not whole.
+    ///
+    /// # Panics
+    /// As [`AnalysisArguments::number`].
+    pub fn posts(&self, name: &'static str) -> Result<usize, AnalysisError> {
+        let number = self.number(name);
+        match number.fract() == 0.0 {
+            true => Ok(number as usize),
+            false => {
+                let problem = format!("is {number}; it must be a whole number of posts");
+                Err(AnalysisError::argument(name, problem))
+            }
+        }
+    }
+
     /// Numbers: as stated, or the default; empty where there is none.
     pub fn numbers(&self, name: &str) -> Vec<f64> {
         match self.get(name) {

@@ -87,9 +87,7 @@ pub fn run_part<E: From<AnalysisError>>(
         true => run_all(land, arguments, compared, stop)?,
         false => run_all(&land_part(land, needed).map_err(no_lattice)?, arguments, compared, stop)?,
     };
-    let from =
-        |post: Post| Post { column: post.column - needed.first.column, row: post.row - needed.first.row };
-    let posts = PostRect { first: from(posts.first), last: from(posts.last) };
+    let posts = posts.counted_in(needed);
     let ground = ground_part(&placed.ground, posts).map_err(no_lattice)?;
     let PlacedOutcome { ground: around, mut outcome } = placed;
     if let Some(raster) = outcome.raster.take() {

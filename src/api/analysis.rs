@@ -13,10 +13,11 @@ use sandtable_catalog::{kind, kinds};
 use sandtable_export::features::analysis_json::{catalog_json, outcome_json};
 use sandtable_export::features::outcome::outcome_geojson;
 use sandtable_geom::crs::Crs;
-use sandtable_query::analysis::{AnalyzeError, Analyzed, WrittenArgument, analyze, bare_land, raster};
+use sandtable_query::analysis::{AnalyzeError, Analyzed, WrittenArgument, analyze, bare_land};
+use sandtable_query::analysis_bands::OutcomeWindows;
 use sandtable_query::dataset::Dataset;
 use sandtable_scene::land::land_of;
-use sandtable_scene::scene_file::open_scene_true_to_scale;
+use sandtable_scene::scene_file::open_scene_land;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::vertical_scale::VerticalScale;
 use sandtable_terrain::stop_flag::StopFlag;
@@ -120,7 +121,7 @@ impl Scene {
         if let Some(kept) = self.true_to_scale.get() {
             return Ok(kept);
         }
-        let opened = open_scene_true_to_scale(&self.path, &self.allowed, &|_| ())?;
+        let opened = open_scene_land(&self.path, &self.allowed, &|_| ())?;
         // Another thread that was first opened the same.
         Ok(self.true_to_scale.get_or_init(|| Box::new(opened)))
     }
@@ -139,8 +140,9 @@ impl Analysis {
 
     /// A value for each post, from the north-west, NaN where there is none; `None` of a kind that gives none.
     pub fn raster(&self) -> Option<Dem> {
-        let values = self.analyzed.outcome.raster.as_ref()?;
-        Some(Dem { raster: Arc::new(raster(values, &self.analyzed.ground, &self.analyzed.crs)) })
+        let Analyzed { ground, crs, outcome } = &self.analyzed;
+        let windows = OutcomeWindows::new(outcome.raster.as_ref()?, ground, crs);
+        Some(Dem { raster: Arc::new(windows.raster()) })
     }
 
     /// Whether the values are codes of a byte, of which 255 is none.

@@ -26,9 +26,7 @@ use sandtable_export::features::FeatureFormat;
 use sandtable_export::features::analysis_json::outcome_json;
 use sandtable_export::features::outcome::{OutcomeFrame, export_outcome};
 use sandtable_files::{disk, raster_file};
-use sandtable_query::analysis::{
-    AnalyzeError, Analyzed, WrittenArgument, analyze, bare_land, ground_raster, raster,
-};
+use sandtable_query::analysis::{AnalyzeError, Analyzed, WrittenArgument, analyze, bare_land, ground_raster};
 use sandtable_query::analysis_bands::{AnalysisBands, OutcomeWindows, analysis_bands};
 use sandtable_render::RenderBackend;
 use sandtable_scene::analysis_map::{MapTexts, ground_map, scene_map};
@@ -326,7 +324,7 @@ fn write(
             let values = values.unwrap_or_else(|| panic!("{} gives a raster", command.kind.name));
             let mut windows = OutcomeWindows::new(values, ground, crs);
             if raster_file::write_windows(&mut windows, format, path, &command.dataset.file)?.is_none() {
-                raster_file::write(&raster(values, ground, crs), format, path, inputs)?;
+                raster_file::write(&windows.raster(), format, path, inputs)?;
             }
         }
         AnalysisFormat::Features(format) => {

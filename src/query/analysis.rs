@@ -1,22 +1,21 @@
-//! Terrain analyses of a dataset: arguments from text, the land, and rasters of outcomes.
+//! Terrain analyses of a dataset: arguments from text, and the land.
 
 use std::path::Path;
 use std::sync::Arc;
 
 use glam::DVec2;
 
-use crate::analysis_bands::described;
 use crate::analysis_extent;
 use crate::dataset::{Dataset, DatasetOptions, OpenError, QueryError};
 use crate::ground::{GroundError, QueriedGround};
 use crate::positions::{PositionArgument, position_list};
-use crate::post_raster::{part_header, post_header};
+use crate::post_raster::post_header;
 use crate::windowed_elevation::GroundReach;
 use sandtable_analysis::arguments::{AnalysisArguments, ArgumentValue};
 use sandtable_analysis::error::AnalysisError;
 use sandtable_analysis::extent::{LandExtent, PlacedOutcome, ground_part, run_part, run_within};
 use sandtable_analysis::land::Land;
-use sandtable_analysis::outcome::{Outcome, OutcomeRaster, PostValues};
+use sandtable_analysis::outcome::Outcome;
 use sandtable_base::message::suggest::{quoted, remedy};
 use sandtable_catalog::kind::{AnalysisKind, AnalysisReach};
 use sandtable_catalog::parameter::{
@@ -24,8 +23,8 @@ use sandtable_catalog::parameter::{
 };
 use sandtable_geom::crs::{Crs, CrsError};
 use sandtable_raster::raster::{Raster, Samples};
-use sandtable_scene::analyses::interpolation_between;
-use sandtable_terrain::lattice::{Lattice, LatticeError, Post};
+use sandtable_scene::analyses::ground_at_posts;
+use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::query::Surface;
 use sandtable_terrain::stop_flag::StopFlag;
@@ -291,7 +290,7 @@ impl PartedAnalysis {
             return part(land, posts);
         }
         let needed = posts.grown((self.reach(), self.reach()), &self.frame.lattice);
-        part(&bare_posts(dataset, &self.frame, needed)?, within(posts, needed))
+        part(&bare_posts(dataset, &self.frame, needed)?, posts.counted_in(needed))
     }
 }
 
@@ -304,12 +303,6 @@ pub fn check_parts(kind: &'static AnalysisKind) -> Result<(), AnalyzeError> {
         AnalysisReach::Whole => Err(AnalyzeError::Whole { kind: kind.name }),
         _ => Ok(()),
     }
-}
-
-/// Posts of the whole counted in a part of it.
-fn within(posts: PostRect, part: PostRect) -> PostRect {
-    let from = |post: Post| Post { column: post.column - part.first.column, row: post.row - part.first.row };
-    PostRect { first: from(posts.first), last: from(posts.last) }
 }
 
 /// The ground that an analysis compares with, at the posts of the land; `None` for one that states none.
@@ -354,22 +347,9 @@ fn other_ground(
             (find(file).ok_or_else(unknown)?, Surface::Ground)
         }
     };
-    let interpolation = interpolation_between(surface, &land.ground);
-    let (columns, rows) = (land.ground.columns(), land.ground.rows());
-    let mut heights = Vec::with_capacity(columns as usize * rows as usize);
-    for row in 0..rows {
-        let at: Vec<DVec2> =
-            (0..columns).map(|column| land.ground.map_position(Post { column, row })).collect();
-        let answers = other.heights(surface, interpolation, &land.crs, &at)?;
-        heights
-            .extend(answers.iter().map(|answer| answer.height_m().map_or(f32::NAN, |height| height as f32)));
-    }
-    let none = |_| AnalyzeError::argument(name, format!("{file} has no ground at the posts of the land"));
-    if heights.iter().all(|height| height.is_nan()) {
-        return Err(none(LatticeError::Empty));
-    }
-    let frame = (land.ground.origin(), land.ground.cell());
-    Lattice::part(frame, land.ground.first(), columns, heights).map(Arc::new).map_err(none)
+    let heights = |interpolation, at: &[DVec2]| other.heights(surface, interpolation, &land.crs, at);
+    ground_at_posts(&land.ground, surface, heights)?
+        .ok_or_else(|| AnalyzeError::argument(name, format!("{file} has no ground at the posts of the land")))
 }
 
 /// The arguments of a kind from what users wrote, without the extent, positions brought from `crs` to `land_crs`.
@@ -468,37 +448,6 @@ fn points(text: &str, least: usize, crs: &Crs, land_crs: &Crs) -> Result<Argumen
             points.len()
         )),
     }
-}
-
-/// The raster of an outcome, north up, its samples at the posts of `ground`.
-pub fn raster(outcome: &OutcomeRaster, ground: &Lattice, crs: &Crs) -> Raster {
-    posts_raster(&outcome.values, outcome.name, (ground, PostRect::all(ground)), crs)
-}
-
-/// The raster of values at posts of a ground, north up; `name` is its driver.
-fn posts_raster(
-    values: &PostValues,
-    name: &'static str,
-    (ground, posts): (&Lattice, PostRect),
-    crs: &Crs,
-) -> Raster {
-    let columns = posts.width();
-    let samples = (0..posts.height())
-        .rev()
-        .flat_map(|row| (row * columns..(row + 1) * columns).map(|index| values.value(index)));
-    let header = posts_header(values, name, (ground, posts), crs);
-    Raster { samples: Samples::F32(samples.collect()), ..header }
-}
-
-/// The raster of values of the type of `values` at posts of a ground, north up, without its samples.
-pub fn posts_header(
-    values: &PostValues,
-    name: &'static str,
-    place: (&Lattice, PostRect),
-    crs: &Crs,
-) -> Raster {
-    let (data_type, nodata) = described(values);
-    part_header(place, crs, (name, data_type), nodata)
 }
 
 /// The raster of the heights of a ground, north up.

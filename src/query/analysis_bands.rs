@@ -1,5 +1,5 @@
-//! Rasters of analyses that are made band by band while a file is written, so that elevation larger than the memory can be
-//! analyzed.
+//! Rasters of analyses: in memory, or made band by band while a file is written, so that elevation larger than the memory can
+//! be analyzed.
 //!
 //! ```text
 //!  elevation file                       a band of rows and, on both sides, as many more as the kind reaches
@@ -21,7 +21,7 @@ use rayon::prelude::*;
 use crate::analysis::{AnalyzeError, WrittenArgument, read};
 use crate::dataset::Dataset;
 use crate::ground::GroundError;
-use crate::post_raster::{node_header, post_header};
+use crate::post_raster::{node_header, part_header};
 use crate::windowed_elevation::WindowedElevation;
 use sandtable_analysis::arguments::AnalysisArguments;
 use sandtable_analysis::error::AnalysisError;
@@ -111,8 +111,19 @@ pub fn analysis_bands<'a>(
     }))
 }
 
-/// The name, the type and the value for no data of an outcome's raster.
-pub(crate) fn described(values: &PostValues) -> (&'static str, f64) {
+/// The raster of values of the type of `values` at posts of a ground, north up, without its samples; `name` is its driver.
+pub fn posts_header(
+    values: &PostValues,
+    name: &'static str,
+    place: (&Lattice, PostRect),
+    crs: &Crs,
+) -> Raster {
+    let (data_type, nodata) = described(values);
+    part_header(place, crs, (name, data_type), nodata)
+}
+
+/// The type of an outcome's raster and its value for no data.
+fn described(values: &PostValues) -> (&'static str, f64) {
     match values {
         PostValues::Numbers(_) => ("Float32", -9999.0),
         PostValues::Codes(_) => ("Byte", f64::from(PostValues::NO_CODE)),
@@ -210,9 +221,21 @@ pub struct OutcomeWindows<'a> {
 impl<'a> OutcomeWindows<'a> {
     /// Of an analysis of `ground`.
     pub fn new(outcome: &'a OutcomeRaster, ground: &Lattice, crs: &Crs) -> Self {
-        let (name, (data_type, nodata)) = (outcome.name, described(&outcome.values));
-        let header = post_header(ground, crs, (name, data_type), nodata);
+        let header = posts_header(&outcome.values, outcome.name, (ground, PostRect::all(ground)), crs);
         Self { header, values: &outcome.values }
+    }
+
+    /// All of it, with its samples.
+    pub fn raster(self) -> Raster {
+        let samples = self.window_values(RasterWindow::all(self.size()));
+        Raster { samples: Samples::F32(samples), ..self.header }
+    }
+
+    fn window_values(&self, window: RasterWindow) -> Vec<f32> {
+        let Raster { width, height, .. } = self.header;
+        let columns = window.column as usize..(window.column + window.width) as usize;
+        let rows = (height - window.row - window.height..height - window.row).rev();
+        from_north(self.values, width as usize, columns, rows)
     }
 }
 
@@ -223,10 +246,7 @@ impl Windows for OutcomeWindows<'_> {
 
     fn samples(&mut self, window: RasterWindow) -> Result<Samples, DemErrorKind> {
         window.assert_within(self.size());
-        let height = self.header.height;
-        let columns = window.column as usize..(window.column + window.width) as usize;
-        let rows = (height - window.row - window.height..height - window.row).rev();
-        Ok(Samples::F32(from_north(self.values, self.header.width as usize, columns, rows)))
+        Ok(Samples::F32(self.window_values(window)))
     }
 
     fn computed_rows(&self) -> Option<u32> {

@@ -38,6 +38,7 @@ use sandtable_description::stated::Stated;
 use sandtable_description::words::AnalysisDraw;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::FeatureId;
+use sandtable_geom::crs::CrsError;
 use sandtable_geom::position::Position;
 use sandtable_raster::answer::Answer;
 use sandtable_terrain::lattice::{Lattice, Post};
@@ -330,9 +331,35 @@ fn heights_of(file: &str, document: &Document, assets: &Assets) -> Result<Height
     Ok(build_ground(&other, assets)?.heights)
 }
 
+/// Another ground at the posts of `ground`, from a function that gives heights of its `surface` at map positions; `None` where
+/// it has none there.
+///
+/// # Errors
+/// Those of the function.
+pub fn ground_at_posts<E>(
+    ground: &Lattice,
+    surface: Surface,
+    mut heights: impl FnMut(Interpolation, &[DVec2]) -> Result<Vec<Answer>, E>,
+) -> Result<Option<Arc<Lattice>>, E> {
+    let (columns, rows) = (ground.columns(), ground.rows());
+    let interpolation = interpolation_between(surface, ground);
+    let mut samples = Vec::with_capacity(columns as usize * rows as usize);
+    for row in 0..rows {
+        let at: Vec<DVec2> = (0..columns).map(|column| ground.map_position(Post { column, row })).collect();
+        let answers = heights(interpolation, &at)?;
+        samples
+            .extend(answers.iter().map(|answer| answer.height_m().map_or(f32::NAN, |height| height as f32)));
+    }
+    if samples.iter().all(|sample| sample.is_nan()) {
+        return Ok(None);
+    }
+    let frame = (ground.origin(), ground.cell());
+    Ok(Lattice::part(frame, ground.first(), columns, samples).map(Arc::new).ok())
+}
+
 /// How heights of a surface are interpolated at the posts of `ground`, so that what earthworks leave as it was is the same. Posts
 /// that a scene inserts between measured ones for its features lie on the triangles of these.
-pub fn interpolation_between(surface: Surface, ground: &Lattice) -> Interpolation {
+fn interpolation_between(surface: Surface, ground: &Lattice) -> Interpolation {
     match surface {
         Surface::Source if ground.doublings() > 0 => Interpolation::Planar,
         _ => Interpolation::default(),
@@ -341,22 +368,13 @@ pub fn interpolation_between(surface: Surface, ground: &Lattice) -> Interpolatio
 
 /// Heights at the posts of the land; `None` where there are none.
 fn sampled(heights: &HeightService, surface: Surface, land: &Land) -> Option<Arc<Lattice>> {
-    let ground = &land.ground;
-    let (columns, rows) = (ground.columns(), ground.rows());
-    let interpolation = interpolation_between(surface, ground);
     let snapshot = heights.snapshot();
-    let mut answers = vec![Answer::NoData; columns as usize];
-    let mut samples = Vec::with_capacity(columns as usize * rows as usize);
-    for row in 0..rows {
-        let at = (0..columns)
-            .map(|column| land.crs.transform(snapshot.crs(), ground.map_position(Post { column, row })));
-        let at: Vec<DVec2> = at.collect::<Result<_, _>>().ok()?;
+    let answers = |interpolation, at: &[DVec2]| -> Result<Vec<Answer>, CrsError> {
+        let at = at.iter().map(|&at| land.crs.transform(snapshot.crs(), at));
+        let at: Vec<DVec2> = at.collect::<Result<_, _>>()?;
+        let mut answers = vec![Answer::NoData; at.len()];
         snapshot.heights(surface, interpolation, &at, &mut answers);
-        samples
-            .extend(answers.iter().map(|answer| answer.height_m().map_or(f32::NAN, |height| height as f32)));
-    }
-    if samples.iter().all(|sample| sample.is_nan()) {
-        return None;
-    }
-    Lattice::part((ground.origin(), ground.cell()), ground.first(), columns, samples).map(Arc::new).ok()
+        Ok(answers)
+    };
+    ground_at_posts(&land.ground, surface, answers).ok().flatten()
 }

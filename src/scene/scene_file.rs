@@ -215,7 +215,7 @@ pub fn open_scene_exaggerated(
     Ok(build(&document, &assets, progress)?)
 }
 
-/// [`open_scene`] for the land of an analysis: the scene's own analyses are not made.
+/// [`open_scene_true_to_scale`] for the land of an analysis: the scene's own analyses are not made.
 ///
 /// # Errors
 /// See [`OpenSceneError`].
@@ -226,6 +226,7 @@ pub fn open_scene_land(
 ) -> Result<SceneModel, OpenSceneError> {
     progress("reading the scene file");
     let (mut document, assets) = open_document(path, allowed, None)?;
+    document.terrain.vertical_exaggeration = 1.0;
     document.analyses.clear();
     Ok(build(&document, &assets, progress)?)
 }

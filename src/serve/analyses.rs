@@ -21,7 +21,7 @@ use serde_json::Value;
 use crate::api::ANALYSIS_FORMATS;
 use crate::coordinates::{AxisOrder, Coordinates};
 use crate::parameters::Parameters;
-use crate::query::{Query, QueryWeight};
+use crate::query::{GroundQuery, Query, QueryWeight};
 use crate::reply::{HttpError, OK, quoted};
 use crate::service::Service;
 use sandtable_analysis::error::AnalysisError;
@@ -66,8 +66,7 @@ pub fn page(_: &Service) -> Response {
 pub struct AnalysisQuery {
     kind: &'static AnalysisKind,
     arguments: Vec<WrittenArgument>,
-    dataset: usize,
-    coordinates: Coordinates,
+    ground: GroundQuery,
     format: AnswerFormat,
 }
 
@@ -96,18 +95,16 @@ impl Query for AnalysisQuery {
             HttpError::unknown(format!("there is no analysis {}; {help}", quoted(name)))
         })?;
         let of_kind = kind.all_parameters().map(|parameter| parameter.name);
-        parameters.allow_only(&of_kind.chain(["dataset", "crs", "format"]).collect::<Vec<_>>())?;
-        let dataset = service.datasets.find_one(parameters.get("dataset"))?;
-        let native = service.datasets.at(dataset).dataset.crs();
-        let coordinates = Coordinates::read(parameters, &native, &service.wgs84)?;
+        let known: Vec<&str> = of_kind.chain(["dataset", "crs", "format"]).collect();
+        let ground = GroundQuery::read(service, parameters, &known)?;
         let most = service.limits.max_points as usize;
         let argument = |parameter: &AnalysisParameter| {
             let text = parameters.get(parameter.name)?;
-            let text = written(parameter, text, &coordinates, most);
+            let text = written(parameter, text, &ground.coordinates, most);
             Some(text.map(|text| WrittenArgument { name: parameter.name.to_owned(), text }))
         };
         let arguments = kind.all_parameters().filter_map(argument).collect::<Result<_, _>>()?;
-        Ok(Self { kind, arguments, dataset, format: format(kind, parameters)?, coordinates })
+        Ok(Self { kind, arguments, ground, format: format(kind, parameters)? })
     }
 
     fn weight(&self, _: &Service) -> QueryWeight {
@@ -115,7 +112,7 @@ impl Query for AnalysisQuery {
     }
 
     fn most_bytes(&self, service: &Service) -> usize {
-        let source = service.datasets.at(self.dataset).dataset.header();
+        let source = self.ground.served(service).dataset.header();
         let posts = 2 * source.width as usize * source.height as usize;
         match self.format {
             AnswerFormat::Json => 0,
@@ -124,7 +121,7 @@ impl Query for AnalysisQuery {
     }
 
     fn answer(self, service: &Service, stop: &StopFlag) -> Result<Response, HttpError> {
-        let served = service.datasets.at(self.dataset);
+        let served = self.ground.served(service);
         let analyzed = self.analyzed(service, stop)?;
         let Analyzed { ground, crs, outcome } = &analyzed;
         let bytes = match self.format {
@@ -176,8 +173,8 @@ impl From<AnalyzeError> for HttpError {
 
 impl AnalysisQuery {
     fn analyzed(&self, service: &Service, stop: &StopFlag) -> Result<Analyzed, HttpError> {
-        let served = service.datasets.at(self.dataset);
-        let (analysis, crs) = ((self.kind, &self.arguments[..]), &self.coordinates.crs);
+        let served = self.ground.served(service);
+        let (analysis, crs) = ((self.kind, &self.arguments[..]), &self.ground.coordinates.crs);
         // The size of the land is known before it is read.
         let needed = needed_posts(&served.dataset, analysis, crs)?;
         let (posts, most) = (needed.width() as u64 * needed.height() as u64, service.limits.max_posts);

@@ -20,7 +20,7 @@ use sandtable_query::dataset::{Dataset, OpenError, QueryError};
 use sandtable_query::ground::QueriedGround;
 use sandtable_query::service::{NamedFile, ServiceOptions};
 use sandtable_query::windowed_elevation::GroundReach;
-use sandtable_scene::scene_file::open_scene_true_to_scale;
+use sandtable_scene::scene_file::open_scene_land;
 use sandtable_scene::scene_model::SceneModel;
 
 pub struct ServedDataset {
@@ -44,7 +44,7 @@ impl ServedDataset {
             return Ok(None);
         }
         let DatasetSource { path, allowed } = &self.source;
-        let build = || open_scene_true_to_scale(path, allowed, &|_| ()).map(Box::new);
+        let build = || open_scene_land(path, allowed, &|_| ()).map(Box::new);
         let built = self.scene.get_or_init(|| build().map_err(|error| error_text(&error)));
         match built {
             Ok(scene) => Ok(Some(scene)),

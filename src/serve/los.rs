@@ -48,7 +48,7 @@ struct LosBlocker {
 
 impl Query for LosQuery {
     fn read(service: &Service, _: &str, parameters: &Parameters) -> Result<Self, HttpError> {
-        let ground = GroundQuery::read(service, parameters, &api::LOS)?;
+        let ground = GroundQuery::read(service, parameters, &api::LOS.names())?;
         let end = |name: &str, height: &str, default_m: f64| {
             let text = parameters.required(name, "46.2,-122.19")?;
             let at = ground.coordinates.position(name, text)?;

@@ -54,7 +54,7 @@ struct ProfileResult {
 
 impl Query for ProfileQuery {
     fn read(service: &Service, _: &str, parameters: &Parameters) -> Result<Self, HttpError> {
-        let ground = GroundQuery::read(service, parameters, &api::PROFILE)?;
+        let ground = GroundQuery::read(service, parameters, &api::PROFILE.names())?;
         let text = parameters.required("locations", "46.2,-122.19|46.21,-122.2")?;
         let vertices = ground.coordinates.positions(text, service.limits.max_points as usize)?;
         if vertices.len() < 2 {

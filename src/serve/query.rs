@@ -3,7 +3,6 @@
 use axum::response::Response;
 use glam::DVec2;
 
-use crate::api::ApiAddress;
 use crate::coordinates::{Coordinates, Location};
 use crate::datasets::ServedDataset;
 use crate::parameters::Parameters;
@@ -58,9 +57,9 @@ pub struct GroundQuery {
 }
 
 impl GroundQuery {
-    /// Reads `dataset`, `crs` and `positions`; refuses parameters that the address does not have.
-    pub fn read(service: &Service, parameters: &Parameters, address: &ApiAddress) -> Result<Self, HttpError> {
-        parameters.allow_only(&address.names())?;
+    /// Reads `dataset`, `crs` and `positions`; refuses parameters that are not `known`.
+    pub fn read(service: &Service, parameters: &Parameters, known: &[&str]) -> Result<Self, HttpError> {
+        parameters.allow_only(known)?;
         let dataset = service.datasets.find_one(parameters.get("dataset"))?;
         let native = service.datasets.at(dataset).dataset.crs();
         let coordinates = Coordinates::read(parameters, &native, &service.wgs84)?;

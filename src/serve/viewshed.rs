@@ -69,7 +69,7 @@ struct ViewshedAnswer<'a> {
 
 impl Query for ViewshedQuery {
     fn read(service: &Service, _: &str, parameters: &Parameters) -> Result<Self, HttpError> {
-        let ground = GroundQuery::read(service, parameters, &api::VIEWSHED)?;
+        let ground = GroundQuery::read(service, parameters, &api::VIEWSHED.names())?;
         let text = parameters.required("observer", "46.2,-122.19")?;
         let at = ground.coordinates.position("observer", text)?;
         let above = above_m(parameters, "observer_height", OBSERVER_M)?;

@@ -15,6 +15,7 @@ pub mod plan;
 pub mod plan_path;
 pub mod planned_dataset;
 mod point_stream;
+pub mod raster_result;
 pub mod record;
 pub mod shard;
 pub mod tiles;

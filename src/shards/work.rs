@@ -12,7 +12,7 @@ use crate::planned_dataset::QueriedDataset;
 use crate::record::{self, ShardFile, ShardState};
 use crate::tiles::arguments::TilesArguments;
 use crate::viewsheds::arguments::ViewshedsArguments;
-use crate::{analysis, atlas, heights, tiles, viewsheds};
+use crate::{analysis, atlas, heights, raster_result, tiles, viewsheds};
 
 /// A worker: everything that all shards of a plan share, opened once.
 pub struct ShardWorker {
@@ -79,7 +79,7 @@ impl ShardWorker {
                 only(heights::work::EXTENSION, heights::work::result(plan, arguments, queried, &shard)?)
             }
             OpenedProduct::Viewsheds(arguments, queried) => {
-                only(viewsheds::work::EXTENSION, viewsheds::work::result(plan, arguments, queried, &shard)?)
+                only(raster_result::EXTENSION, viewsheds::work::result(plan, arguments, queried, &shard)?)
             }
             OpenedProduct::Atlas(arguments, scene) => {
                 only(atlas::work::EXTENSION, scene.result(plan, arguments, &shard)?)
@@ -88,7 +88,7 @@ impl ShardWorker {
                 tiles::work::result(plan, arguments, queried, &shard)?
             }
             OpenedProduct::Analysis(opened) => {
-                only(analysis::work::EXTENSION, analysis::work::result(plan, opened, &shard)?)
+                only(raster_result::EXTENSION, analysis::work::result(plan, opened, &shard)?)
             }
         };
         record::publish(plan, id, &files)

@@ -94,6 +94,13 @@ impl PostRect {
         }
     }
 
+    /// These posts of a whole, counted in a part of it that holds them.
+    pub fn counted_in(self, part: Self) -> Self {
+        let from =
+            |post: Post| Post { column: post.column - part.first.column, row: post.row - part.first.row };
+        Self { first: from(self.first), last: from(self.last) }
+    }
+
     /// The part on the lattice; `None` where nothing is left.
     pub fn clipped(self, lattice: &Lattice) -> Option<Self> {
         Self::between(lattice, self.first.grid(), self.last.grid())

@@ -17,6 +17,7 @@ use crate::outcome::{Figure, Outcome, OutcomeRaster, OutcomeTable, PostValues, P
 use crate::place::height_under;
 use crate::ring::is_in_area;
 use sandtable_base::limits::memory::check_memory;
+use sandtable_geom::rect::Rect;
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::sight::line::SightEnd;
@@ -111,9 +112,8 @@ fn region_rect(ground: &Lattice, key: &'static str, ring: &[DVec2]) -> Result<Po
     if ring.is_empty() {
         return Ok(PostRect::all(ground));
     }
-    let low = ring.iter().copied().reduce(DVec2::min).unwrap_or_default();
-    let high = ring.iter().copied().reduce(DVec2::max).unwrap_or_default();
-    let rect = PostRect::between(ground, ground.grid_from_map(low), ground.grid_from_map(high));
+    let Rect { min, max } = Rect::around(ring.iter().copied());
+    let rect = PostRect::between(ground, ground.grid_from_map(min), ground.grid_from_map(max));
     rect.ok_or_else(|| {
         AnalysisError::argument(key, "holds no post of the ground; draw it larger, and on the land")
     })

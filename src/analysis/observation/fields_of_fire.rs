@@ -20,7 +20,7 @@ use crate::outcome::{
     PropertyValue, TableColumn,
 };
 use sandtable_base::limits::memory::check_memory;
-use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::sight::viewshed::{PostVisibility, Sector, ViewshedOptions};
 use sandtable_terrain::stop_flag::StopFlag;
 
@@ -158,8 +158,7 @@ fn hide_nearer(ground: &Lattice, view: &mut LookoutView, at: DVec2, min_m: f64) 
     let rows = view.view.posts.par_chunks_mut(held.width()).enumerate();
     rows.for_each(|(row, posts)| {
         for (column, post) in posts.iter_mut().enumerate() {
-            let position =
-                Post { column: held.first.column, row: held.first.row }.offset(column as u32, row as u32);
+            let position = held.first.offset(column as u32, row as u32);
             let is_near = || ground.map_position(position).distance(at) < min_m;
             if *post == PostVisibility::Visible && is_near() {
                 *post = PostVisibility::Hidden;

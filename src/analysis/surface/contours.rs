@@ -9,8 +9,8 @@ use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::outcome::{
-    ClassLook, FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape,
-    PostValues, PropertyValue, ValueClass,
+    FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, PostValues,
+    PropertyValue, ValueClass,
 };
 use sandtable_base::message::numbers::trimmed;
 use sandtable_geom::isolines::{ValueGrid, isolines};
@@ -151,11 +151,8 @@ fn band_class(band: f64, interval: f64, index: i64, bands: i64) -> ValueClass {
         (RAMP[from][channel] + (RAMP[from + 1][channel] - RAMP[from][channel]) * part).round() as u8
     };
     let (low, high) = (band * interval, (band + 1.0) * interval);
-    ValueClass {
-        from: low as f32,
-        label: format!("{}–{} m", trimmed(low, 2), trimmed(high, 2)),
-        look: ClassLook { tint: [channel(0), channel(1), channel(2), 130], hatching: Hatching::None },
-    }
+    let label = format!("{}–{} m", trimmed(low, 2), trimmed(high, 2));
+    ValueClass::new(low as f32, label, [channel(0), channel(1), channel(2), 130], Hatching::None)
 }
 
 #[cfg(test)]

@@ -20,12 +20,9 @@ use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::outcome::{Hatching, Outcome, OutcomeRaster, PostValues, ValueClass};
 use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::neighbors::STEPS;
 use sandtable_terrain::stop_flag::StopFlag;
 use sandtable_terrain::vectorized::vectorized;
-
-/// The eight directions: columns east, rows north.
-const DIRECTIONS: [(isize, isize); 8] =
-    [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
 
 /// The codes of forms: those of `r.geomorphon`.
 #[rustfmt::skip]
@@ -68,12 +65,7 @@ pub(crate) fn geomorphons(
     arguments: &AnalysisArguments,
     stop: &StopFlag,
 ) -> Result<Outcome, AnalysisError> {
-    let posts = |key: &'static str| {
-        let number = arguments.number(key);
-        let problem = || format!("is {number}; it must be a whole number of posts");
-        if number.fract() == 0.0 { Ok(number as usize) } else { Err(AnalysisError::argument(key, problem())) }
-    };
-    let (radius, skip) = (posts("radius")?, posts("skip")?);
+    let (radius, skip) = (arguments.posts("radius")?, arguments.posts("skip")?);
     if skip + 1 >= radius {
         let problem = format!("is {skip}, which leaves nothing of a `radius` of {radius} posts; state less");
         return Err(AnalysisError::argument("skip", problem));
@@ -152,11 +144,11 @@ impl<'a> FormSights<'a> {
         let search_m = radius as f64 * cell.x.max(cell.y);
         // Steps beyond the lattice see nothing.
         let most = radius.min(ground.columns().max(ground.rows()) as usize);
-        let lines = DIRECTIONS.map(|(east, north)| {
+        let lines = STEPS.map(|(east, north)| {
             let (east_m, north_m) = (east as f64 * cell.x, north as f64 * cell.y);
             let step_m = (east_m * east_m + north_m * north_m).sqrt();
             let steps = (skip + 1..most).take_while(|&step| step as f64 * step_m < search_m).count();
-            FormLineOfSight { east, north, steps, flat: flatness * step_m }
+            FormLineOfSight { east: east as isize, north: north as isize, steps, flat: flatness * step_m }
         });
         Self {
             heights: ground.heights(),
@@ -373,7 +365,7 @@ mod tests {
             return f32::NAN;
         }
         let (mut lower, mut higher) = (0, 0);
-        for (east, north) in DIRECTIONS.map(|(east, north)| (east as i64, north as i64)) {
+        for (east, north) in STEPS {
             let far = ((east * east + north * north) as f64).sqrt();
             let (mut zenith, mut nadir) = (-90f64, 90f64);
             let mut step = skip + 1;

@@ -24,14 +24,7 @@ pub(crate) fn ruggedness(
     arguments: &AnalysisArguments,
     stop: &StopFlag,
 ) -> Result<Outcome, AnalysisError> {
-    let radius = arguments.number("radius");
-    if radius.fract() != 0.0 {
-        return Err(AnalysisError::argument(
-            "radius",
-            format!("is {radius}; it must be a whole number of posts"),
-        ));
-    }
-    let (ground, radius) = (&*land.ground, radius as usize);
+    let (ground, radius) = (&*land.ground, arguments.posts("radius")?);
     let (name, unit, values) = match &*arguments.word("measure") {
         "tpi" => ("topographic position", "m", position(ground, radius, stop)?),
         "vrm" => ("vector ruggedness", "", vector_ruggedness(ground, radius, stop)?),

@@ -9,6 +9,8 @@
 //! A post at the border, or with one of the nine heights missing, has no data, as `gdaldem` leaves it without
 //! `-compute_edges`. The loop over a row is written for the compiler to vectorize.
 
+use std::ops::{Add, Sub};
+
 use glam::DVec2;
 use rayon::prelude::*;
 
@@ -56,28 +58,28 @@ impl WindowGradient {
     /// [`WindowGradient::of`] with sums that are exact.
     #[inline(always)]
     pub(super) fn exact(&self, w: &WindowHeights) -> [f64; 2] {
-        let w = w.map(f64::from);
-        let [east, north] = match self.method {
-            GradientMethod::Horn => [
-                (w[2] - w[0]) + 2.0 * (w[5] - w[3]) + (w[8] - w[6]),
-                (w[6] - w[0]) + 2.0 * (w[7] - w[1]) + (w[8] - w[2]),
-            ],
-            GradientMethod::ZevenbergenThorne => [w[5] - w[3], w[7] - w[1]],
-        };
+        let [east, north] = self.differences(w.map(f64::from));
         [east / self.cell.x, north / self.cell.y]
     }
 
     /// The rise per meter eastward and northward.
     #[inline(always)]
     pub(super) fn of(&self, w: &WindowHeights) -> [f32; 2] {
-        let [east, north] = match self.method {
+        let [east, north] = self.differences(*w);
+        [east * self.per_east, north * self.per_north]
+    }
+
+    /// The weighted sums of differences of heights eastward and northward.
+    #[inline(always)]
+    fn differences<T: Copy + Add<Output = T> + Sub<Output = T>>(&self, w: [T; 9]) -> [T; 2] {
+        let twice = |difference: T| difference + difference;
+        match self.method {
             GradientMethod::Horn => [
-                (w[2] - w[0]) + 2.0 * (w[5] - w[3]) + (w[8] - w[6]),
-                (w[6] - w[0]) + 2.0 * (w[7] - w[1]) + (w[8] - w[2]),
+                (w[2] - w[0]) + twice(w[5] - w[3]) + (w[8] - w[6]),
+                (w[6] - w[0]) + twice(w[7] - w[1]) + (w[8] - w[2]),
             ],
             GradientMethod::ZevenbergenThorne => [w[5] - w[3], w[7] - w[1]],
-        };
-        [east * self.per_east, north * self.per_north]
+        }
     }
 }
 

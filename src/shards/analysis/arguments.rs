@@ -12,7 +12,7 @@ use sandtable_catalog::kind::AnalysisKind;
 use sandtable_query::analysis::{PartedAnalysis, WrittenArgument};
 use sandtable_query::dataset::Dataset;
 use sandtable_scene::land::land_of;
-use sandtable_scene::scene_file::{is_scene_file, open_scene_true_to_scale};
+use sandtable_scene::scene_file::{is_scene_file, open_scene_land};
 
 /// An analysis and its arguments as they are written.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -59,7 +59,7 @@ impl AnalysisPlan {
         let (queried, land) = match kind.layers.is_empty() || !is_scene_file(&path) {
             true => (self.dataset.open(folder)?, None),
             false => {
-                let scene = open_scene_true_to_scale(&path, &self.dataset.allowed(folder), &|_| ())?;
+                let scene = open_scene_land(&path, &self.dataset.allowed(folder), &|_| ())?;
                 let dataset = Dataset::from_scene(&path.display().to_string(), &scene);
                 let crs = self.dataset.stated_crs(folder)?.unwrap_or_else(|| dataset.crs());
                 (QueriedDataset { path, dataset, crs }, Some(land_of(&scene, kind.layers)))

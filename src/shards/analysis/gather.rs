@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use crate::analysis::arguments::AnalysisPlan;
-use crate::analysis::work::{EXTENSION, ground_posts};
+use crate::analysis::work::ground_posts;
 use crate::error::{PlanError, PlanFault, ShardError};
 use crate::plan::ShardPlan;
+use crate::raster_result::EXTENSION;
 use crate::record::result_path;
 use sandtable_analysis::outcome::PostValues;
 use sandtable_base::limits::RASTER_SAMPLES;
@@ -14,7 +15,7 @@ use sandtable_dem::dem_format::DemFormat;
 use sandtable_dem::hints::DemOptions;
 use sandtable_files::error::FileError;
 use sandtable_files::raster_file::{self, WriteRasterError};
-use sandtable_query::analysis::posts_header;
+use sandtable_query::analysis_bands::posts_header;
 use sandtable_query::dem;
 use sandtable_raster::error::DemErrorKind;
 use sandtable_raster::raster::{Raster, Samples};

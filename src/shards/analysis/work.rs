@@ -3,20 +3,13 @@
 use crate::analysis::arguments::OpenedAnalysis;
 use crate::error::ShardError;
 use crate::plan::ShardPlan;
-use crate::record::result_path;
+use crate::raster_result;
 use crate::shard::Shard;
 use crate::viewsheds::work::posts;
-use sandtable_dem::dem_format::DemFormat;
-use sandtable_dem::write;
-use sandtable_dem::written::WriteError;
-use sandtable_files::error::FileError;
-use sandtable_files::raster_file::WriteRasterError;
-use sandtable_query::analysis::{Analyzed, raster};
+use sandtable_query::analysis::Analyzed;
+use sandtable_query::analysis_bands::OutcomeWindows;
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::stop_flag::StopFlag;
-
-/// The extension of a shard's results.
-pub const EXTENSION: &str = "tif";
 
 /// The values of a shard's posts, as the bytes of a GeoTIFF.
 ///
@@ -28,11 +21,7 @@ pub fn result(plan: &ShardPlan, opened: &OpenedAnalysis, shard: &Shard) -> Resul
     let Analyzed { ground, crs, outcome } = &analyzed;
     let values = outcome.raster.as_ref();
     let values = values.unwrap_or_else(|| panic!("{} gives a raster", opened.kind.name));
-    let format = DemFormat::to_write(EXTENSION).expect("GeoTIFF is written");
-    let written = write::write(&raster(values, ground, crs), format, "").map_err(|error| {
-        WriteRasterError::from(FileError::<WriteError>::new(&result_path(plan, shard.id, EXTENSION), error))
-    })?;
-    Ok(written.bytes)
+    raster_result::bytes(plan, shard, &OutcomeWindows::new(values, ground, crs).raster())
 }
 
 /// The posts of a shard, which lie on the ground.

@@ -5,24 +5,16 @@ use glam::DVec2;
 use crate::error::ShardError;
 use crate::plan::ShardPlan;
 use crate::planned_dataset::QueriedDataset;
-use crate::record::result_path;
+use crate::raster_result;
 use crate::shard::{Shard, ShardWindow};
 use crate::viewsheds::arguments::ViewshedsArguments;
 use crate::viewsheds::counts::SightCounts;
 use crate::viewsheds::plan::frame;
 use sandtable_base::limits::{PLAN_OBSERVERS, RASTER_SAMPLES};
-use sandtable_dem::dem_format::DemFormat;
-use sandtable_dem::write;
-use sandtable_dem::written::WriteError;
-use sandtable_files::error::FileError;
-use sandtable_files::raster_file::WriteRasterError;
 use sandtable_query::dataset::QueryError;
 use sandtable_terrain::lattice::Post;
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::sight::viewshed::viewshed;
-
-/// The extension of a shard's results.
-pub const EXTENSION: &str = "tif";
 
 /// The counts of a shard's observers, as the bytes of a GeoTIFF.
 ///
@@ -52,12 +44,7 @@ pub fn result(
         })?;
         counts.add_viewshed(&ground.lattice, &seen);
     }
-    let raster = counts.raster(&frame.lattice, &frame.crs);
-    let format = DemFormat::to_write(EXTENSION).expect("GeoTIFF is written");
-    let written = write::write(&raster, format, "").map_err(|error| {
-        WriteRasterError::from(FileError::<WriteError>::new(&result_path(plan, shard.id, EXTENSION), error))
-    })?;
-    Ok(written.bytes)
+    raster_result::bytes(plan, shard, &counts.raster(&frame.lattice, &frame.crs))
 }
 
 /// The observers of a shard, at least one.
