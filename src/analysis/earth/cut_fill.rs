@@ -9,7 +9,8 @@ use crate::outcome::{
     FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, PostValues,
     ValueClass,
 };
-use crate::ring::{counter_clockwise, is_in_area};
+use crate::ring::is_in_area;
+use sandtable_geom::polygon::counter_clockwise;
 use sandtable_terrain::lattice::Post;
 use sandtable_terrain::stop_flag::StopFlag;
 
