@@ -128,7 +128,7 @@ impl AnalysisArguments {
             AnalysisReach::Posts(posts) => Some(posts),
             AnalysisReach::PostsBy(name) => Some(posts(self.number(name) * cell.max_element())),
             AnalysisReach::MetersBy(name) => Some(posts(self.number(name))),
-            AnalysisReach::Whole => None,
+            AnalysisReach::Between { .. } | AnalysisReach::Around { .. } | AnalysisReach::Whole => None,
         }
     }
 

@@ -16,7 +16,7 @@ use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::outcome::{Outcome, OutcomeRaster, PostValues};
-use crate::run::{raster_figures, run};
+use crate::run::{raster_tally, run, tally_figures};
 use sandtable_catalog::parameter::EXTENT;
 use sandtable_geom::polygon::crossings;
 use sandtable_geom::rect::Rect;
@@ -26,6 +26,9 @@ use sandtable_terrain::stop_flag::StopFlag;
 
 /// The share of a cell by which a post may lie outside an extent and is in it: corners written in decimals name posts.
 const SNAP: f64 = 1e-6;
+
+/// What is said of an extent that reaches beyond the land.
+pub const BEYOND_NOTE: &str = "`extent` reaches beyond the land; nothing is known there";
 
 /// The part of the land that an analysis is limited to.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,7 +68,7 @@ pub fn run_within<E: From<AnalysisError>>(
         run_all(&extent.masked(land).map_err(wrong)?, arguments, compared, stop)?
     };
     if extent.is_beyond(&land.ground) {
-        placed.outcome.notes.push("`extent` reaches beyond the land; nothing is known there".into());
+        placed.outcome.notes.push(BEYOND_NOTE.into());
     }
     Ok(placed)
 }
@@ -93,7 +96,8 @@ pub fn run_part<E: From<AnalysisError>>(
     if let Some(raster) = outcome.raster.take() {
         let mut raster = raster_part(raster, &around, posts);
         extent.into_iter().for_each(|extent| extent.mask(&mut raster, &ground));
-        outcome.figures = raster_figures(arguments.kind(), &raster, &ground);
+        outcome.tally = raster_tally(arguments.kind(), &raster);
+        outcome.figures = tally_figures(arguments.kind(), &outcome.tally, &ground);
         outcome.raster = Some(raster);
     }
     Ok(PlacedOutcome { ground, outcome })
@@ -188,17 +192,25 @@ impl LandExtent {
     /// # Errors
     /// There is no ground inside.
     pub fn masked(&self, land: Land) -> Result<Land, String> {
-        let Some(ring) = &self.ring else { return Ok(land) };
-        let ground = &land.ground;
-        let mut heights = ground.heights().to_vec();
-        outside(ring, ground, |index| heights[index] = f32::NAN);
-        if heights.iter().all(|height| height.is_nan()) {
+        if self.ring.is_none() {
+            return Ok(land);
+        }
+        let ground = self.masked_ground(Arc::clone(&land.ground));
+        if ground.held_heights().iter().all(|height| height.is_nan()) {
             return Err("holds no post with an elevation".into());
         }
-        let frame = (ground.origin(), ground.cell());
-        let masked = Lattice::part(frame, ground.first(), ground.columns(), heights);
-        let masked = masked.map_err(|error| error.to_string())?;
-        Ok(Land { ground: Arc::new(masked), ..land })
+        Ok(Land { ground, ..land })
+    }
+
+    /// Ground without data outside the area, of which as much is held.
+    pub fn masked_ground(&self, ground: Arc<Lattice>) -> Arc<Lattice> {
+        let Some(ring) = &self.ring else { return ground };
+        let mut masked = Lattice::clone(&ground);
+        outside(ring, &ground, |index| {
+            let post = ground.post_at(index);
+            masked.heights_mut(post, post.column)[0] = f32::NAN;
+        });
+        Arc::new(masked)
     }
 
     /// Takes the values outside the area from a raster on the posts of `ground`.
@@ -211,12 +223,13 @@ impl LandExtent {
     }
 }
 
-/// Calls `visit` with the index of each post outside a ring.
+/// Calls `visit` with the index of each held post outside a ring.
 fn outside(ring: &[DVec2], ground: &Lattice, mut visit: impl FnMut(usize)) {
-    for row in 0..ground.rows() {
-        let start = Post { column: 0, row };
+    let held = ground.held();
+    for row in held.first.row..=held.last.row {
+        let start = Post { column: held.first.column, row };
         let inside = crossings([ring], ground.map_position(start).y);
-        for column in 0..ground.columns() {
+        for column in held.first.column..=held.last.column {
             let post = Post { column, ..start };
             let x = ground.map_position(post).x;
             if inside.partition_point(|&crossing| crossing <= x) % 2 == 0 {

@@ -21,7 +21,9 @@ pub mod outcome;
 mod place;
 mod ring;
 pub mod run;
+pub mod sight_parts;
 pub mod surface;
+pub mod tally;
 #[cfg(test)]
 mod test_land;
 #[cfg(test)]

@@ -2,6 +2,8 @@
 
 use glam::DVec2;
 
+use crate::tally::FigureTally;
+
 /// What an analysis gives.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
@@ -13,6 +15,8 @@ pub struct Outcome {
     pub tables: Vec<OutcomeTable>,
     /// Single numbers, such as an area.
     pub figures: Vec<Figure>,
+    /// What figures and tables are made of, where a kind can be parted.
+    pub tally: FigureTally,
     /// What it left out or does not know, a sentence each.
     pub notes: Vec<String>,
 }

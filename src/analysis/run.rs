@@ -4,6 +4,7 @@ use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::outcome::{Figure, Outcome, OutcomeRaster, PostValues};
+use crate::tally::FigureTally;
 use crate::{earth, landing, movement, observation, surface, water};
 use sandtable_catalog::kind::AnalysisKind;
 use sandtable_terrain::lattice::Lattice;
@@ -41,11 +42,21 @@ pub fn run(land: &Land, arguments: &AnalysisArguments, stop: &StopFlag) -> Resul
     Ok(outcome)
 }
 
-/// The figures of a kind that can be parted, from its raster on the posts of `ground`: of a part those of the part.
-pub fn raster_figures(kind: &AnalysisKind, raster: &OutcomeRaster, ground: &Lattice) -> Vec<Figure> {
+/// What the figures of a kind with a [reach](sandtable_catalog::kind::AnalysisReach) in posts are made of, from its raster: of a
+/// part those of the part.
+pub fn raster_tally(kind: &AnalysisKind, raster: &OutcomeRaster) -> FigureTally {
     match (kind.name, &raster.values) {
-        ("obstacles", PostValues::Codes(codes)) => movement::obstacles::code_figures(codes, ground),
-        ("speed", PostValues::Numbers(values)) => movement::obstacles::speed_figures(values),
+        ("obstacles", PostValues::Codes(codes)) => movement::obstacles::code_tally(codes),
+        ("speed", PostValues::Numbers(values)) => movement::obstacles::speed_tally(values),
+        _ => FigureTally::default(),
+    }
+}
+
+/// The figures of a tally of posts that lie as those of `ground`.
+pub fn tally_figures(kind: &AnalysisKind, tally: &FigureTally, ground: &Lattice) -> Vec<Figure> {
+    match kind.name {
+        "obstacles" => movement::obstacles::code_figures(tally, ground),
+        "speed" => movement::obstacles::speed_figures(tally),
         _ => Vec::new(),
     }
 }
@@ -105,7 +116,9 @@ mod tests {
                 let land = Land { ground, ..whole.clone() };
                 let outcome = run(&land, &arguments, &StopFlag::default()).expect(kind.name);
                 let raster = outcome.raster.expect(kind.name);
-                assert_eq!(raster_figures(kind, &raster, &land.ground), outcome.figures, "{}", kind.name);
+                assert_eq!(raster_tally(kind, &raster), outcome.tally, "{}", kind.name);
+                let figures = tally_figures(kind, &outcome.tally, &land.ground);
+                assert_eq!(figures, outcome.figures, "{}", kind.name);
                 raster.values
             };
             let (of_whole, of_part) = (values(whole.ground.clone()), values(Arc::new(part.clone())));

@@ -85,7 +85,7 @@ impl WorkPlan {
     /// [`Error::Plan`].
     pub fn gather(&self, out: Option<&Path>) -> Result<GatheredPlan, Error> {
         let progress = PlanProgress::read(&self.plan);
-        let output = gather(&self.plan, &progress, out)?;
+        let output = gather(&self.plan, &progress, out)?.files;
         let (missing, stale) = (progress.with(ShardState::Missing), progress.with(ShardState::Stale));
         Ok(GatheredPlan { done: progress.with(ShardState::Done).len(), missing, stale, output })
     }

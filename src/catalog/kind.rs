@@ -86,6 +86,21 @@ pub enum AnalysisReach {
     PostsBy(&'static str),
     /// From as many meters as this parameter says, and the posts of one cell more.
     MetersBy(&'static str),
+    /// From between the value and the places of a parameter, as far as another parameter says, or everywhere without it. An
+    /// extent cuts the land.
+    Between {
+        /// The parameter of the places.
+        places: &'static str,
+        /// The parameter of the range, meters.
+        range: &'static str,
+    },
+    /// From everywhere within the range of the places: parted where the range is stated. An extent cuts the land.
+    Around {
+        /// The parameter of the places.
+        places: &'static str,
+        /// The parameter of the range, meters.
+        range: &'static str,
+    },
     /// From everywhere: the land cannot be parted, and an extent cuts it.
     Whole,
 }

@@ -68,10 +68,22 @@ mod tests {
     }
 
     #[test]
-    fn what_can_be_parted_gives_a_raster_alone() {
-        // Features of two parts would meet at their border.
-        for kind in kinds().filter(|kind| kind.reach != AnalysisReach::Whole) {
-            assert_eq!(kind.yields, AnalysisYield::Raster, "{}", kind.name);
+    fn what_can_be_parted_gives_a_raster_and_no_features_but_its_places() {
+        // Other features of two parts would meet at their border.
+        for kind in kinds() {
+            let (places, range) = match kind.reach {
+                AnalysisReach::Whole => continue,
+                AnalysisReach::Between { places, range } | AnalysisReach::Around { places, range } => {
+                    (places, range)
+                }
+                _ => {
+                    assert_eq!(kind.yields, AnalysisYield::Raster, "{}", kind.name);
+                    continue;
+                }
+            };
+            let form = |name: &str| kind.parameter(name).map(|parameter| parameter.form);
+            assert!(matches!(form(places), Some(ParameterForm::Points { .. })), "{}", kind.name);
+            assert!(matches!(form(range), Some(ParameterForm::Number { .. })), "{}", kind.name);
         }
     }
 

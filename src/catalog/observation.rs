@@ -73,7 +73,7 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
             ),
         ],
         yields: AnalysisYield::Both,
-        reach: AnalysisReach::Whole,
+        reach: AnalysisReach::Between { places: "posts", range: "range" },
         layers: &[],
         source: "Line of sight over the triangles of the ground; cumulative viewshed of Wheatley 1995",
         limits: &[BARE_GROUND, "Ground beyond the range of every post has no value."],
@@ -221,7 +221,7 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
             REFRACTION,
         ],
         yields: AnalysisYield::Both,
-        reach: AnalysisReach::Whole,
+        reach: AnalysisReach::Between { places: "weapons", range: "max_range" },
         layers: &[],
         source: "Line of sight over the triangles of the ground; fields of fire as in FM 34-130",
         limits: &[
@@ -265,7 +265,7 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
             ),
         ],
         yields: AnalysisYield::Both,
-        reach: AnalysisReach::Whole,
+        reach: AnalysisReach::Around { places: "radars", range: "range" },
         layers: &[],
         source: "The rise that clears the line of sight over the triangles of the ground; terrain masking as in FM 34-130",
         limits: &[

@@ -343,6 +343,13 @@ fn json(command: &AnalyzeCommand, outcome: &Outcome) -> Value {
 
 fn text(command: &AnalyzeCommand, outcome: &Outcome) -> Vec<String> {
     let mut lines: Vec<String> = command.output.iter().map(|path| path.display().to_string()).collect();
+    lines.extend(outcome_lines(outcome));
+    lines
+}
+
+/// The figures and tables of an outcome.
+pub fn outcome_lines(outcome: &Outcome) -> Vec<String> {
+    let mut lines = Vec::new();
     let width = outcome.figures.iter().map(|figure| figure.name.chars().count()).max().unwrap_or(0).max(8);
     for Figure { name, value, unit } in &outcome.figures {
         lines.push(row(width, name, format!("{} {unit}", trimmed(*value, 3)).trim_end()));

@@ -5,9 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::json;
 
+use crate::analyze::outcome_lines;
 use crate::error::CliError;
-use crate::output::{print, print_lines};
-use sandtable_shards::gather::{PlanProgress, gather};
+use crate::output::{print, print_lines, warn};
+use sandtable_export::features::analysis_json::outcome_json;
+use sandtable_shards::gather::{GatheredOutcome, GatheredProduct, PlanProgress, gather};
 use sandtable_shards::plan::ShardPlan;
 use sandtable_shards::record::ShardState;
 
@@ -33,24 +35,33 @@ pub struct GatherArguments {
 pub fn run(arguments: &GatherArguments) -> Result<(), CliError> {
     let plan = ShardPlan::open(&arguments.plan)?;
     let progress = PlanProgress::read(&plan);
-    let written = gather(&plan, &progress, arguments.output.as_deref())?;
+    let gathered = gather(&plan, &progress, arguments.output.as_deref())?;
+    if let Some(GatheredOutcome { outcome, .. }) = &gathered.outcome {
+        outcome.notes.iter().for_each(|note| warn(&format!("note: {note}")));
+    }
     if arguments.json {
-        print(&format!("{:#}\n", json(&plan, &progress, &written)))?;
+        print(&format!("{:#}\n", json(&plan, &progress, &gathered)))?;
     } else {
-        print_lines(&written.iter().map(|path| path.display().to_string()).collect::<Vec<_>>())?;
+        let mut lines: Vec<String> = gathered.files.iter().map(|path| path.display().to_string()).collect();
+        lines.extend(gathered.outcome.iter().flat_map(|of_kind| outcome_lines(&of_kind.outcome)));
+        print_lines(&lines)?;
     }
     if progress.is_complete() { Ok(()) } else { Err(incomplete(&arguments.plan, &plan, &progress)) }
 }
 
-fn json(plan: &ShardPlan, progress: &PlanProgress, written: &[PathBuf]) -> serde_json::Value {
-    json!({
+fn json(plan: &ShardPlan, progress: &PlanProgress, gathered: &GatheredProduct) -> serde_json::Value {
+    let mut object = json!({
         "product": plan.product.word(),
         "shards": plan.count(),
         "done": progress.with(ShardState::Done).len(),
         "missing": progress.with(ShardState::Missing),
         "stale": progress.with(ShardState::Stale),
-        "output": written.iter().map(|path| path.display().to_string()).collect::<Vec<_>>(),
-    })
+        "output": gathered.files.iter().map(|path| path.display().to_string()).collect::<Vec<_>>(),
+    });
+    if let Some(GatheredOutcome { kind, arguments, outcome }) = &gathered.outcome {
+        object["analysis"] = outcome_json(kind, arguments, outcome);
+    }
+    object
 }
 
 fn incomplete(folder: &Path, plan: &ShardPlan, progress: &PlanProgress) -> CliError {

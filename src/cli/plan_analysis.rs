@@ -13,7 +13,8 @@ use crate::plan::{PlanOptions, planned, report};
 use sandtable_catalog::kind::AnalysisKind;
 use sandtable_catalog::{kind, kinds};
 use sandtable_files::disk;
-use sandtable_query::analysis::{WrittenArgument, check_parts};
+use sandtable_query::analysis::WrittenArgument;
+use sandtable_query::parted_analysis::check_parts;
 use sandtable_shards::analysis::arguments::AnalysisPlan;
 use sandtable_shards::analysis::plan::plan as plan_analysis;
 
@@ -61,7 +62,7 @@ impl FromArgMatches for PlanAnalysisCommand {
 pub fn run(command: &PlanAnalysisCommand) -> Result<(), CliError> {
     let PlanAnalysisCommand { kind, dataset, arguments, plan } = command;
     // What cannot be cut is refused before anything is read.
-    check_parts(kind)?;
+    check_parts(kind, arguments)?;
     let folder = &plan.output;
     disk::make_folder(folder)?;
     let options = arguments.iter().map(|argument| (argument.name.clone(), argument.text.clone()));

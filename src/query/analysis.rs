@@ -13,11 +13,11 @@ use crate::post_raster::post_header;
 use crate::windowed_elevation::GroundReach;
 use sandtable_analysis::arguments::{AnalysisArguments, ArgumentValue};
 use sandtable_analysis::error::AnalysisError;
-use sandtable_analysis::extent::{LandExtent, PlacedOutcome, ground_part, run_part, run_within};
+use sandtable_analysis::extent::{LandExtent, PlacedOutcome, ground_part, run_within};
 use sandtable_analysis::land::Land;
 use sandtable_analysis::outcome::Outcome;
 use sandtable_base::message::suggest::{quoted, remedy};
-use sandtable_catalog::kind::{AnalysisKind, AnalysisReach};
+use sandtable_catalog::kind::AnalysisKind;
 use sandtable_catalog::parameter::{
     AnalysisParameter, EXTENT, PHASE_PREFIX, ParameterDefault, ParameterForm, SOURCE_GROUND,
 };
@@ -60,6 +60,12 @@ pub enum AnalyzeError {
          `--extent` limits the land"
     )]
     Whole { kind: &'static str },
+    /// A kind that can be cut into parts where it states how far it looks.
+    #[error(
+        "`{key}`: {kind} can be cut into parts where it is stated: all ground within it has an effect on a value; state it, or \
+         run `analyze {kind}`"
+    )]
+    Unlimited { kind: &'static str, key: &'static str },
 }
 
 impl From<QueryError> for AnalyzeError {
@@ -80,6 +86,7 @@ impl AnalyzeError {
         match self {
             Self::Argument { name, .. } | Self::Other { name, .. } => Some(name),
             Self::Analysis(error) => error.key(),
+            Self::Unlimited { key, .. } => Some(key),
             Self::Query(_) | Self::Ground(_) | Self::Whole { .. } => None,
         }
     }
@@ -126,7 +133,11 @@ pub fn bare_land(
 }
 
 /// The land of posts of the ground of a dataset, of which `frame` holds a few, without what lies on it.
-fn bare_posts(dataset: &Dataset, frame: &QueriedGround, posts: PostRect) -> Result<Land, AnalyzeError> {
+pub(crate) fn bare_posts(
+    dataset: &Dataset,
+    frame: &QueriedGround,
+    posts: PostRect,
+) -> Result<Land, AnalyzeError> {
     let corners = [posts.first, posts.last].map(|post| frame.lattice.map_position(post));
     let ground = dataset.ground(&GroundReach { crs: &frame.crs, at: &corners, around_m: 0.0 })?;
     let part = ground_part(&ground.lattice, posts).map_err(GroundError::from)?;
@@ -179,7 +190,7 @@ pub fn extent(
         .transpose()
 }
 
-fn of_extent(problem: String) -> AnalyzeError {
+pub(crate) fn of_extent(problem: String) -> AnalyzeError {
     AnalyzeError::argument(EXTENT.name, problem)
 }
 
@@ -216,97 +227,8 @@ pub fn analyze_among(
     Ok(Analyzed { ground, crs: land.crs, outcome })
 }
 
-/// An analysis of a kind that can be cut into parts: what makes the values of any posts of the ground of a dataset.
-pub struct PartedAnalysis {
-    arguments: AnalysisArguments,
-    extent: Option<LandExtent>,
-    /// The ground with a few of its posts, or all.
-    frame: QueriedGround,
-    /// The land, where it is in memory.
-    land: Option<Land>,
-}
-
-impl PartedAnalysis {
-    /// Prepares an analysis of a dataset; `land` is that of a scene, for a kind that uses what lies on its ground.
-    ///
-    /// # Errors
-    /// [`AnalyzeError::Whole`], and as [`bare_land`].
-    pub fn new(
-        dataset: &Dataset,
-        land: Option<Land>,
-        (kind, arguments): (&'static AnalysisKind, &[WrittenArgument]),
-        crs: &Crs,
-    ) -> Result<Self, AnalyzeError> {
-        check_parts(kind)?;
-        let frame = frame(dataset)?;
-        let extent = extent(arguments, crs, &frame.crs)?;
-        let arguments = read(kind, arguments, crs, &frame.crs)?;
-        let bare = || Land::bare(Arc::clone(&frame.lattice), frame.crs.clone());
-        let land = land.or_else(|| frame.lattice.holds_all().then(bare));
-        Ok(Self { arguments, extent, frame, land })
-    }
-
-    /// The frame of the ground: its lattice may hold a few posts alone.
-    pub fn frame(&self) -> &QueriedGround {
-        &self.frame
-    }
-
-    /// From how many posts around a part the land has an effect on its values.
-    pub fn reach(&self) -> u32 {
-        self.arguments.reach_posts(self.frame.lattice.cell()).unwrap_or(0)
-    }
-
-    /// The posts of all parts together, counted in the whole ground.
-    ///
-    /// # Errors
-    /// [`AnalyzeError::Argument`] of an extent.
-    pub fn posts(&self) -> Result<PostRect, AnalyzeError> {
-        match &self.extent {
-            None => Ok(PostRect::all(&self.frame.lattice)),
-            Some(extent) => extent.posts(&self.frame.lattice).map_err(of_extent),
-        }
-    }
-
-    /// The values at `posts`, counted in the whole ground: those of the analysis of all of it, to the last bit.
-    ///
-    /// # Errors
-    /// See [`AnalyzeError`].
-    ///
-    /// # Panics
-    /// Where the posts reach beyond the ground.
-    pub fn part(
-        &self,
-        dataset: &Dataset,
-        posts: PostRect,
-        stop: &StopFlag,
-    ) -> Result<Analyzed, AnalyzeError> {
-        let compared = |land: &Land| compared((dataset, OtherGrounds::Files), &self.arguments, land);
-        let cut = self.extent.as_ref();
-        let part = |land: &Land, posts: PostRect| {
-            let placed = run_part(land, &self.arguments, (posts, cut), compared, stop)?;
-            Ok(Analyzed { ground: placed.ground, crs: land.crs.clone(), outcome: placed.outcome })
-        };
-        if let Some(land) = &self.land {
-            return part(land, posts);
-        }
-        let needed = posts.grown((self.reach(), self.reach()), &self.frame.lattice);
-        part(&bare_posts(dataset, &self.frame, needed)?, posts.counted_in(needed))
-    }
-}
-
-/// Checks that a kind can be cut into parts.
-///
-/// # Errors
-/// [`AnalyzeError::Whole`].
-pub fn check_parts(kind: &'static AnalysisKind) -> Result<(), AnalyzeError> {
-    match kind.reach {
-        AnalysisReach::Whole => Err(AnalyzeError::Whole { kind: kind.name }),
-        _ => Ok(()),
-    }
-}
-
 /// The ground that an analysis compares with, at the posts of the land; `None` for one that states none.
-fn compared(
+pub(crate) fn compared(
     grounds: (&Dataset, OtherGrounds<'_>),
     arguments: &AnalysisArguments,
     land: &Land,

@@ -158,6 +158,8 @@ impl AnalysisBands<'_> {
             _ => DemErrorKind::Changed,
         })?;
         let land = Land::bare(Arc::new(ground), self.crs.clone());
+        let share = |row: u32| f64::from(row) / f64::from(height);
+        self.stop.part(share(window.row)..share(window.row + window.height));
         let outcome = match run(&land, &self.arguments, self.stop) {
             Ok(outcome) => outcome,
             Err(error) => return Ok(Err(error)),
@@ -221,7 +223,12 @@ pub struct OutcomeWindows<'a> {
 impl<'a> OutcomeWindows<'a> {
     /// Of an analysis of `ground`.
     pub fn new(outcome: &'a OutcomeRaster, ground: &Lattice, crs: &Crs) -> Self {
-        let header = posts_header(&outcome.values, outcome.name, (ground, PostRect::all(ground)), crs);
+        Self::at(outcome, (ground, PostRect::all(ground)), crs)
+    }
+
+    /// Of an analysis of these posts of a ground.
+    pub fn at(outcome: &'a OutcomeRaster, place: (&Lattice, PostRect), crs: &Crs) -> Self {
+        let header = posts_header(&outcome.values, outcome.name, place, crs);
         Self { header, values: &outcome.values }
     }
 

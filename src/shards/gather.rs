@@ -8,9 +8,12 @@ use crate::error::{PlanError, PlanFault, ShardError};
 use crate::plan::{PlannedProduct, ShardPlan};
 use crate::record::{self, ShardState};
 use crate::{analysis, atlas, heights, tiles, viewsheds};
+use sandtable_analysis::outcome::Outcome;
+use sandtable_catalog::kind::AnalysisKind;
 use sandtable_dem::dem_format::DemFormat;
 use sandtable_dem::formats::WRITTEN_EXTENSIONS;
 use sandtable_files::disk;
+use sandtable_query::analysis::WrittenArgument;
 
 /// The states of the shards of a plan, by their numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,6 +37,31 @@ impl PlanProgress {
     }
 }
 
+/// What was gathered.
+#[derive(Default)]
+pub struct GatheredProduct {
+    /// The files that were written.
+    pub files: Vec<PathBuf>,
+    /// Of an analysis its figures, tables and notes.
+    pub outcome: Option<GatheredOutcome>,
+}
+
+/// What an analysis gives besides its raster.
+pub struct GatheredOutcome {
+    /// The kind.
+    pub kind: &'static AnalysisKind,
+    /// The arguments of the plan.
+    pub arguments: Vec<WrittenArgument>,
+    /// The outcome, without its raster.
+    pub outcome: Outcome,
+}
+
+impl From<Vec<PathBuf>> for GatheredProduct {
+    fn from(files: Vec<PathBuf>) -> Self {
+        Self { files, outcome: None }
+    }
+}
+
 /// Writes the product of a plan, to `out` or into the plan's folder, and returns its files: where all shards are done, or an
 /// index of those that are.
 ///
@@ -43,7 +71,7 @@ pub fn gather(
     plan: &ShardPlan,
     progress: &PlanProgress,
     out: Option<&Path>,
-) -> Result<Vec<PathBuf>, ShardError> {
+) -> Result<GatheredProduct, ShardError> {
     let own = |name: &str| out.map_or_else(|| plan.folder.join(name), Path::to_owned);
     match &plan.product {
         PlannedProduct::Atlas(arguments) => {
@@ -51,29 +79,33 @@ pub fn gather(
             let items = checked(plan, page.with_file_name("items.json"))?;
             plan.verify_inputs()?;
             atlas::gather::gather(plan, arguments, &progress.0, (&page, &items))?;
-            Ok(vec![page, items])
+            Ok(vec![page, items].into())
         }
-        _ if !progress.is_complete() => Ok(Vec::new()),
+        _ if !progress.is_complete() => Ok(GatheredProduct::default()),
         PlannedProduct::Heights(arguments) => {
             let out = checked(plan, own("heights.csv"))?;
             plan.verify_inputs()?;
             heights::gather::gather(plan, arguments, &out)?;
-            Ok(vec![out])
+            Ok(vec![out].into())
         }
-        PlannedProduct::Tiles(arguments) => Ok(vec![tiles::gather::gather(plan, arguments, out)?]),
+        PlannedProduct::Tiles(arguments) => Ok(vec![tiles::gather::gather(plan, arguments, out)?].into()),
         PlannedProduct::Viewsheds(arguments) => {
             let out = checked(plan, own("viewsheds.tif"))?;
             let format = raster_format(&out)?;
             plan.verify_inputs()?;
             viewsheds::gather::gather(plan, arguments, &out, format)?;
-            Ok(vec![out])
+            Ok(vec![out].into())
         }
         PlannedProduct::Analysis(arguments) => {
             let out = checked(plan, own("analysis.tif"))?;
             let format = raster_format(&out)?;
             plan.verify_inputs()?;
-            analysis::gather::gather(plan, arguments, &out, format)?;
-            Ok(vec![out])
+            let outcome = analysis::gather::gather(plan, arguments, &out, format)?;
+            let (kind, arguments) = (arguments.kind(&plan.folder)?, arguments.written());
+            Ok(GatheredProduct {
+                files: vec![out],
+                outcome: Some(GatheredOutcome { kind, arguments, outcome }),
+            })
         }
     }
 }

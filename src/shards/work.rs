@@ -87,9 +87,7 @@ impl ShardWorker {
             OpenedProduct::Tiles(arguments, queried) => {
                 tiles::work::result(plan, arguments, queried, &shard)?
             }
-            OpenedProduct::Analysis(opened) => {
-                only(raster_result::EXTENSION, analysis::work::result(plan, opened, &shard)?)
-            }
+            OpenedProduct::Analysis(opened) => analysis::work::result(plan, opened, &shard)?,
         };
         record::publish(plan, id, &files)
     }

@@ -209,7 +209,7 @@ impl Lattice {
         Self::holding(frame, Post { column: 0, row: 0 }, (columns, rows), held, heights)
     }
 
-    fn holding(
+    pub(crate) fn holding(
         (origin, cell): (DVec2, DVec2),
         first: Post,
         (columns, rows): (u32, u32),
@@ -345,16 +345,6 @@ impl Lattice {
     #[inline]
     pub fn holds_all(&self) -> bool {
         self.heights.len() == self.columns as usize * self.rows as usize
-    }
-
-    /// The held posts as a lattice of their own, a [part](Lattice::part) of this one. All heights are held then; diagonals
-    /// may differ.
-    ///
-    /// # Errors
-    /// [`LatticeError::TooSmall`] where fewer than two columns or rows are held.
-    pub fn cut_to_held(&self) -> Result<Self, LatticeError> {
-        let first = self.held.first.offset(self.first.column, self.first.row);
-        Self::part((self.origin, self.cell), first, self.held.width() as u32, self.heights.clone())
     }
 
     /// The rectangle of all posts in world space, the origin's post at (0, 0).
@@ -577,9 +567,6 @@ pub(crate) mod tests {
         }
         let cell = Post { column: 3, row: 3 };
         assert_eq!(part.corner_heights(cell), whole.corner_heights(cell));
-        let cut = part.cut_to_held().expect("four by three posts");
-        assert_eq!(cut.heights(), part.held_heights());
-        assert_eq!(cut.map_position(Post { column: 0, row: 0 }), whole.map_position(held.first));
         for beyond in [Post { column: 0, row: 2 }, Post { column: 5, row: 2 }, Post { column: 2, row: 1 }] {
             assert!(std::panic::catch_unwind(|| part.height(beyond)).is_err(), "{beyond:?}");
         }

@@ -6,6 +6,7 @@ pub mod full_resolution;
 mod height_scan;
 pub mod hillshade;
 pub mod lattice;
+mod lattice_cut;
 pub mod light;
 pub mod neighbors;
 pub mod post_rect;

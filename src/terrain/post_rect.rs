@@ -94,6 +94,17 @@ impl PostRect {
         }
     }
 
+    /// The posts of both; `None` where there are none.
+    pub fn intersection(self, other: Self) -> Option<Self> {
+        let first = Post {
+            column: self.first.column.max(other.first.column),
+            row: self.first.row.max(other.first.row),
+        };
+        let last =
+            Post { column: self.last.column.min(other.last.column), row: self.last.row.min(other.last.row) };
+        (first.column <= last.column && first.row <= last.row).then_some(Self { first, last })
+    }
+
     /// These posts of a whole, counted in a part of it that holds them.
     pub fn counted_in(self, part: Self) -> Self {
         let from =

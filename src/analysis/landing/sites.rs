@@ -24,6 +24,7 @@ use crate::outcome::{
 use crate::ring::is_in_area;
 use sandtable_base::limits::memory::check_memory;
 use sandtable_geom::distance_field::distances_m;
+use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::sight::viewshed::{PostVisibility, ViewshedOptions};
 use sandtable_terrain::stop_flag::StopFlag;
 
@@ -232,7 +233,7 @@ fn rule_out_seen(
             ..ViewshedOptions::new(lookout.end)
         };
         let view = look(ground, KEY, &options, stop)?;
-        view.merge_into(values, ground.columns() as usize, |value, post| {
+        view.merge_into(values, PostRect::all(ground), |value, post| {
             if post == PostVisibility::Visible {
                 *value = f32::INFINITY;
             }

@@ -42,6 +42,7 @@ pub(crate) fn time(
         .map(|&at| ground.post_near("from", at))
         .collect::<Result<Vec<usize>, AnalysisError>>()?;
     let most_s = arguments.number("max_min") as f32 * 60.0;
+    stop.stretch(0.2..0.95, land.ground.heights().len());
     let mut values = ground.times(&starts, TravelGoal::within(most_s), stop);
     let mut reached = 0usize;
     let mut latest = 0.0f32;

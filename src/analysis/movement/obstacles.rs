@@ -10,8 +10,12 @@ use crate::movement::going::{Going, RESTRICTED, SEVERELY_RESTRICTED, UNRESTRICTE
 use crate::movement::grade::GradeTable;
 use crate::movement::vehicle::Vehicle;
 use crate::outcome::{Figure, Hatching, Outcome, OutcomeRaster, PostValues, ValueClass};
+use crate::tally::FigureTally;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::stop_flag::StopFlag;
+
+/// Parts of a km/h in which speeds are added up: a millionth, so that a billion posts at a thousand km/h have a sum.
+const SPEED_PARTS: f64 = 1e6;
 
 /// The names and looks of the codes.
 const OVERLAY: [(u8, &str, [u8; 4], Hatching); 3] = [
@@ -31,7 +35,8 @@ pub(crate) fn obstacles(
 ) -> Result<Outcome, AnalysisError> {
     let vehicle = Vehicle::named(land, &arguments.word("vehicle"))?;
     let going = Going::new(land, &vehicle)?;
-    let figures = code_figures(&going.codes, &land.ground);
+    let tally = code_tally(&going.codes);
+    let figures = code_figures(&tally, &land.ground);
     let raster = OutcomeRaster {
         name: "obstacles",
         unit: "",
@@ -40,17 +45,22 @@ pub(crate) fn obstacles(
             OVERLAY.map(|(code, label, tint, hatching)| (f32::from(code), label, tint, hatching)),
         ),
     };
-    Ok(Outcome { raster: Some(raster), figures, notes: going.notes, ..Outcome::default() })
+    Ok(Outcome { raster: Some(raster), figures, tally, notes: going.notes, ..Outcome::default() })
+}
+
+/// The posts of each code.
+pub(crate) fn code_tally(codes: &[u8]) -> FigureTally {
+    let count = |code: u8| codes.par_iter().filter(|&&found| found == code).count() as u64;
+    FigureTally::new(OVERLAY.map(|(code, ..)| count(code)).into())
 }
 
 /// The area of each code, and its share of the posts that have one.
-pub(crate) fn code_figures(codes: &[u8], ground: &Lattice) -> Vec<Figure> {
-    let count = |code: u8| codes.par_iter().filter(|&&found| found == code).count();
-    let known = codes.len() - count(PostValues::NO_CODE);
+pub(crate) fn code_figures(tally: &FigureTally, ground: &Lattice) -> Vec<Figure> {
+    let known = tally.counts().iter().sum::<u64>() as usize;
     let mut figures = Vec::new();
-    for (code, label, ..) in OVERLAY {
-        let posts = count(code);
-        figures.push(Figure::new(label, area_km2(ground, posts), "km²"));
+    for ((_, label, ..), &posts) in OVERLAY.iter().zip(tally.counts()) {
+        let posts = posts as usize;
+        figures.push(Figure::new(*label, area_km2(ground, posts), "km²"));
         figures.push(Figure::new(format!("share of {label}"), percent(posts, known), "%"));
     }
     figures
@@ -80,21 +90,31 @@ pub(crate) fn speed(
             }
         }
     });
-    let figures = speed_figures(&values);
+    let tally = speed_tally(&values);
+    let figures = speed_figures(&tally);
     let raster = OutcomeRaster {
         name: "speed",
         unit: "km/h",
         values: PostValues::Numbers(values),
         classes: speed_classes(),
     };
-    Ok(Outcome { raster: Some(raster), figures, notes, ..Outcome::default() })
+    Ok(Outcome { raster: Some(raster), figures, tally, notes, ..Outcome::default() })
+}
+
+/// The posts with a speed above 0, and the sum of their speeds in [`SPEED_PARTS`].
+pub(crate) fn speed_tally(values: &[f32]) -> FigureTally {
+    let known = values.par_iter().filter(|&&speed| speed > 0.0);
+    let one = |&speed: &f32| [1, (f64::from(speed) * SPEED_PARTS).round() as u64];
+    let both = |sum: [u64; 2], other: [u64; 2]| [0, 1].map(|at: usize| sum[at].saturating_add(other[at]));
+    FigureTally::new(known.map(one).reduce(|| [0; 2], both).into())
 }
 
 /// The mean of the speeds above 0.
-pub(crate) fn speed_figures(values: &[f32]) -> Vec<Figure> {
-    let ground: Vec<f64> =
-        values.iter().filter(|&&speed| speed > 0.0).map(|&speed| f64::from(speed)).collect();
-    let mean = if ground.is_empty() { 0.0 } else { ground.iter().sum::<f64>() / ground.len() as f64 };
+pub(crate) fn speed_figures(tally: &FigureTally) -> Vec<Figure> {
+    let mean = match *tally.counts() {
+        [posts, sum] if posts > 0 => sum as f64 / SPEED_PARTS / posts as f64,
+        _ => 0.0,
+    };
     vec![Figure::new("mean speed where it can go", mean, "km/h")]
 }
 

@@ -155,6 +155,7 @@ impl TravelGround<'_> {
         while let Some(bucket) = queue.take_bucket() {
             looks += bucket.len();
             if looks >= POSTS_PER_LOOK {
+                stop.did(looks);
                 looks = 0;
                 if stop.is_stopped() {
                     break;

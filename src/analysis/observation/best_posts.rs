@@ -80,8 +80,11 @@ pub(crate) fn best_posts(
             curvature: curvature(arguments),
             ..ViewshedOptions::new(place.end)
         };
-        Ok(watched.seen(&look(ground, "area", &options, stop)?))
+        let seen = watched.seen(&look(ground, "area", &options, stop)?);
+        stop.did(1);
+        Ok(seen)
     };
+    stop.stretch(0.0..0.95, places.len());
     let views: Result<Vec<Vec<u64>>, AnalysisError> = if posts_within(ground, reach_m) < SIDE_BY_SIDE {
         places.par_iter().map(view).collect()
     } else {
@@ -194,7 +197,7 @@ impl WatchedGround {
     /// Which of the watched posts a view sees.
     fn seen(&self, look: &LookoutView) -> Vec<u64> {
         let mut seen = vec![0; self.bits.len()];
-        let held = look.held;
+        let held = look.window.held;
         let from = self.rect.first.column.max(held.first.column);
         let to = self.rect.last.column.min(held.last.column);
         let rows = (self.rect.first.row..)

@@ -13,14 +13,18 @@ use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::measures::{area_km2, percent};
 use crate::observation::lookout::{
-    Lookout, LookoutView, check_looks, count_classes, curvature, look, posts_within,
+    Lookout, LookoutView, check_windows, count_classes, curvature, look_at, shares,
 };
 use crate::outcome::{
     FeatureRole, Figure, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, OutcomeTable, PostValues,
     PropertyValue, TableColumn,
 };
+use crate::sight_parts::{SightKind, SightValues, run_sight, windows};
+use crate::tally::FigureTally;
 use sandtable_base::limits::memory::check_memory;
 use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::post_rect::PostRect;
+use sandtable_terrain::sight::line::SightEnd;
 use sandtable_terrain::sight::viewshed::{PostVisibility, Sector, ViewshedOptions};
 use sandtable_terrain::stop_flag::StopFlag;
 
@@ -38,6 +42,9 @@ struct FireFan {
     sector: Sector,
 }
 
+/// The kind in parts.
+pub(crate) const SIGHT: SightKind = SightKind { values, summary };
+
 /// How many weapons hit each place, and the fan of each; no data beyond the ranges and sectors of all.
 ///
 /// # Errors
@@ -48,34 +55,70 @@ pub(crate) fn fields_of_fire(
     arguments: &AnalysisArguments,
     stop: &StopFlag,
 ) -> Result<Outcome, AnalysisError> {
-    let ground = &*land.ground;
+    run_sight(&SIGHT, land, arguments, stop)
+}
+
+/// The values of `posts`. The tally has the posts that each weapon hits, and of how many; then those that any hits, and of how
+/// many.
+fn values(
+    ground: &Lattice,
+    arguments: &AnalysisArguments,
+    posts: PostRect,
+    stop: &StopFlag,
+) -> Result<SightValues, AnalysisError> {
     let fan = fan(arguments)?;
     let [muzzle_m, target_m] = heights_less_clearance(arguments)?;
-    check_looks("weapons", arguments.points("weapons").len() as f64, posts_within(ground, fan.max_m))?;
-    let weapons = Lookout::all(land, arguments, "weapons", muzzle_m)?;
-    let posts = ground.heights().len();
-    check_memory(posts as u64 * BYTES_PER_POST, "the fields of fire", "state a smaller `extent`")?;
-    let mut values = vec![f32::NAN; posts];
-    let mut shares = Vec::with_capacity(weapons.len());
-    for weapon in &weapons {
+    let places = arguments.points("weapons");
+    let windows = windows(ground, arguments, posts);
+    check_windows("weapons", windows.iter().map(|(_, window)| window))?;
+    let count = posts.width() * posts.height();
+    check_memory(count as u64 * BYTES_PER_POST, "the fields of fire", "state a smaller `extent`")?;
+    let mut values = vec![f32::NAN; count];
+    let mut tally = vec![0; 2 * places.len()];
+    stop.stretch(0.0..1.0, windows.len());
+    for (index, window) in windows {
+        let end = SightEnd { at: places[index], above_m: muzzle_m };
         let options = ViewshedOptions {
             target_above_m: target_m,
             range_m: fan.max_m,
             sector: fan.sector,
             curvature: curvature(arguments),
-            ..ViewshedOptions::new(weapon.end)
+            ..ViewshedOptions::new(end)
         };
-        let mut view = look(ground, "weapons", &options, stop)?;
-        hide_nearer(ground, &mut view, weapon.end.at, fan.min_m);
-        view.merge_into(&mut values, ground.columns() as usize, |value, post| match post {
+        let mut view = look_at(ground, "weapons", (&options, window), stop)?;
+        hide_nearer(ground, &mut view, end.at, fan.min_m);
+        view.merge_into(&mut values, posts, |value, post| match post {
             PostVisibility::Beyond | PostVisibility::NoData => {}
             PostVisibility::Hidden => *value = value.max(0.0),
             PostVisibility::Visible => *value = value.max(0.0) + 1.0,
         });
-        shares.push(view.seen_of());
+        let (hit, of) = view.seen_of();
+        (tally[2 * index], tally[2 * index + 1]) = (hit as u64, of as u64);
+        stop.did(1);
     }
     let hit = values.par_iter().filter(|&&value| value > 0.0).count();
     let all = values.par_iter().filter(|value| !value.is_nan()).count();
+    tally.extend([hit as u64, all as u64]);
+    let raster = OutcomeRaster {
+        name: "weapons that hit",
+        unit: "",
+        values: PostValues::Numbers(values),
+        classes: count_classes(places.len(), ["not hit", "hit by"]),
+    };
+    Ok(SightValues { raster, tally: FigureTally::new(tally) })
+}
+
+/// The weapons with their fans and what they hit, as features, a table and figures.
+fn summary(
+    ground: &Lattice,
+    arguments: &AnalysisArguments,
+    heights_m: &[f64],
+    tally: &FigureTally,
+) -> Result<Outcome, AnalysisError> {
+    let fan = fan(arguments)?;
+    let [muzzle_m, _] = heights_less_clearance(arguments)?;
+    let weapons = Lookout::with_heights(arguments, "weapons", muzzle_m, heights_m);
+    let (shares, (hit, all)) = shares(tally);
     let post = |(weapon, &(hit, of)): (&Lookout, &(usize, usize))| {
         weapon.feature(vec![
             ("hit_km2", PropertyValue::Number(area_km2(ground, hit))),
@@ -109,12 +152,6 @@ pub(crate) fn fields_of_fire(
     ];
     let outlines = weapons.iter().map(|weapon| outline(weapon, fan));
     Ok(Outcome {
-        raster: Some(OutcomeRaster {
-            name: "weapons that hit",
-            unit: "",
-            values: PostValues::Numbers(values),
-            classes: count_classes(weapons.len(), ["not hit", "hit by"]),
-        }),
         features: outlines.chain(weapons.iter().zip(&shares).map(post)).collect(),
         tables: vec![table],
         figures: weapons.iter().zip(&shares).map(share).chain(of_all).collect(),
@@ -154,7 +191,7 @@ fn hide_nearer(ground: &Lattice, view: &mut LookoutView, at: DVec2, min_m: f64) 
     if min_m <= 0.0 {
         return;
     }
-    let held = view.held;
+    let held = view.window.held;
     let rows = view.view.posts.par_chunks_mut(held.width()).enumerate();
     rows.for_each(|(row, posts)| {
         for (column, post) in posts.iter_mut().enumerate() {

@@ -11,7 +11,8 @@ use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::outcome::{FeatureRole, Hatching, OutcomeFeature, OutcomeShape, PropertyValue, ValueClass};
 use crate::place::{height_under, missing_ground};
-use sandtable_terrain::lattice::Lattice;
+use crate::tally::FigureTally;
+use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::sight::Curvature;
 use sandtable_terrain::sight::line::SightEnd;
@@ -36,12 +37,59 @@ pub(crate) struct Lookout {
     pub ground_m: f64,
 }
 
+/// The posts that a lookout looks at, and those between them and it.
+///
+/// ```text
+///  ┌───────────┬─────┐
+///  │ o lookout │     │  held: the ground of all lines of sight
+///  ├───────────┼─────┤
+///  │           │look-│  looked at: of some posts, those within range
+///  └───────────┴─────┘
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LookWindow {
+    /// The posts whose heights decide.
+    pub held: PostRect,
+    /// Those that are looked at.
+    pub looked: PostRect,
+}
+
 /// What a lookout sees of the posts within its range.
 pub(crate) struct LookoutView {
-    /// The posts that were looked at, among those of the land.
-    pub held: PostRect,
-    /// Their visibility.
+    /// The posts, among those of the land.
+    pub window: LookWindow,
+    /// The visibility of those that were held.
     pub view: Viewshed,
+}
+
+impl LookWindow {
+    /// All posts within a range, and those of a cell around them.
+    pub fn whole(ground: &Lattice, at: DVec2, range_m: f64) -> Self {
+        let around = posts_around(ground, at, range_m);
+        Self { held: around, looked: around }
+    }
+
+    /// Of `posts` those within a range, with the ground between them and the lookout; `None` where there are none.
+    pub fn toward(ground: &Lattice, at: DVec2, range_m: f64, posts: PostRect) -> Option<Self> {
+        let around = posts_around(ground, at, range_m);
+        let looked = around.intersection(posts)?;
+        let grid = ground.grid_from_map(at).clamp(DVec2::ZERO, ground.last_grid());
+        let hull = looked.with(Post::at_grid(grid.floor())).with(Post::at_grid(grid.ceil()));
+        // Lines along its border look at the cells on both sides.
+        let held = hull.grown((1, 1), ground).intersection(around).unwrap_or(hull);
+        Some(Self { held, looked })
+    }
+
+    /// Of `posts` those within a range, with all the ground within it; `None` where there are none.
+    pub fn within(ground: &Lattice, at: DVec2, range_m: f64, posts: PostRect) -> Option<Self> {
+        let held = posts_around(ground, at, range_m);
+        Some(Self { held, looked: held.intersection(posts)? })
+    }
+
+    /// The number of posts that it holds.
+    pub fn posts(&self) -> f64 {
+        self.held.width() as f64 * self.held.height() as f64
+    }
 }
 
 impl Lookout {
@@ -55,11 +103,25 @@ impl Lookout {
         key: &'static str,
         above_m: f64,
     ) -> Result<Vec<Self>, AnalysisError> {
-        let lookout = |(index, &at): (usize, &DVec2)| {
-            let ground_m = height_under(&land.ground, key, at)?;
-            Ok(Self { number: index + 1, end: SightEnd { at, above_m }, ground_m })
+        let heights: Result<Vec<f64>, AnalysisError> =
+            arguments.points(key).iter().map(|&at| height_under(&land.ground, key, at)).collect();
+        Ok(Self::with_heights(arguments, key, above_m, &heights?))
+    }
+
+    /// The lookouts at the points of a parameter, whose ground has these heights, all `above_m` above it.
+    pub fn with_heights(
+        arguments: &AnalysisArguments,
+        key: &str,
+        above_m: f64,
+        heights_m: &[f64],
+    ) -> Vec<Self> {
+        let places = arguments.points(key).iter().zip(heights_m).enumerate();
+        let lookout = |(index, (&at, &ground_m)): (usize, (&DVec2, &f64))| Self {
+            number: index + 1,
+            end: SightEnd { at, above_m },
+            ground_m,
         };
-        arguments.points(key).iter().enumerate().map(lookout).collect()
+        places.map(lookout).collect()
     }
 
     /// Its feature, with its number as its name and these properties after the height of its ground.
@@ -119,6 +181,19 @@ pub(crate) fn check_work(
     Err(AnalysisError::argument(key, problem))
 }
 
+/// Checks that looks over these windows end in bounded time.
+///
+/// # Errors
+/// As [`check_looks`].
+pub(crate) fn check_windows<'a>(
+    key: &'static str,
+    windows: impl Iterator<Item = &'a LookWindow>,
+) -> Result<(), AnalysisError> {
+    let (looks, largest) =
+        windows.fold((0.0, 0.0_f64), |(looks, largest), window| (looks + 1.0, largest.max(window.posts())));
+    check_looks(key, looks, largest)
+}
+
 /// What is seen of the land; see [`viewshed_until`].
 ///
 /// # Errors
@@ -129,40 +204,52 @@ pub(crate) fn look(
     options: &ViewshedOptions,
     stop: &StopFlag,
 ) -> Result<LookoutView, AnalysisError> {
-    let (held, view) = on_posts_around(ground, key, options, |ground| viewshed_until(ground, options, stop))?;
-    Ok(LookoutView { held, view })
+    let window = LookWindow::whole(ground, options.observer.at, options.range_m);
+    look_at(ground, key, (options, window), stop)
 }
 
-/// How far targets on the ground must rise to be seen; see [`required_rises`]. With the posts that were looked at.
+/// What is seen of the posts of a window; see [`viewshed_until`].
+///
+/// # Errors
+/// As for [`look`].
+pub(crate) fn look_at(
+    ground: &Lattice,
+    key: &'static str,
+    (options, window): (&ViewshedOptions, LookWindow),
+    stop: &StopFlag,
+) -> Result<LookoutView, AnalysisError> {
+    let view = on_posts(ground, key, (options, window), |ground| viewshed_until(ground, options, stop))?;
+    Ok(LookoutView { window, view })
+}
+
+/// How far targets on the held posts of a window must rise to be seen; see [`required_rises`].
 ///
 /// # Errors
 /// As for [`look`].
 pub(crate) fn rises(
     ground: &Lattice,
     key: &'static str,
-    options: &ViewshedOptions,
+    (options, window): (&ViewshedOptions, LookWindow),
     stop: &StopFlag,
-) -> Result<(PostRect, Vec<f32>), AnalysisError> {
-    let (held, rises) =
-        on_posts_around(ground, key, options, |ground| required_rises(ground, options, stop))?;
-    Ok((held, rises.rises_m))
+) -> Result<Vec<f32>, AnalysisError> {
+    let rises = on_posts(ground, key, (options, window), |ground| required_rises(ground, options, stop))?;
+    Ok(rises.rises_m)
 }
 
-/// What `task` gives on the ground that holds only posts within range, and which these are.
-fn on_posts_around<T, E>(
+/// What `task` gives on the ground that holds the posts of a window alone.
+fn on_posts<T, E>(
     ground: &Lattice,
     key: &'static str,
-    options: &ViewshedOptions,
+    (options, window): (&ViewshedOptions, LookWindow),
     task: impl FnOnce(&Lattice) -> Result<Option<T>, E>,
-) -> Result<(PostRect, T), AnalysisError> {
+) -> Result<T, AnalysisError> {
     let at = options.observer.at;
     let place = |_| AnalysisError::Place { key, at, problem: missing_ground(ground, at) };
-    let held = posts_around(ground, at, options.range_m);
-    let found = match held == PostRect::all(ground) {
+    let found = match window.held == ground.held() {
         true => task(ground),
-        false => task(&ground.holding_only(held)),
+        false => task(&ground.holding_only(window.held)),
     };
-    Ok((held, found.map_err(place)?.ok_or(AnalysisError::Stopped)?))
+    found.map_err(place)?.ok_or(AnalysisError::Stopped)
 }
 
 /// The posts within a range and those of a cell around them.
@@ -174,26 +261,50 @@ fn posts_around(ground: &Lattice, at: DVec2, range_m: f64) -> PostRect {
 }
 
 impl LookoutView {
-    /// Merges the view into values of all posts of the land, `columns` a row: `merge` changes a value by what is seen there.
+    /// Merges the view into values of `posts`: `merge` changes a value by what is seen there.
     pub fn merge_into<T: Send>(
         &self,
         values: &mut [T],
-        columns: usize,
+        posts: PostRect,
         merge: impl Fn(&mut T, PostVisibility) + Sync,
     ) {
-        let (first, width) = (self.held.first, self.held.width());
-        let rows = values.par_chunks_mut(columns).skip(first.row as usize).take(self.held.height());
-        rows.zip(self.view.posts.par_chunks(width)).for_each(|(values, posts)| {
-            let values = &mut values[first.column as usize..][..width];
-            values.iter_mut().zip(posts).for_each(|(value, &post)| merge(value, post));
-        });
+        let LookWindow { held, looked } = self.window;
+        let (from, to) = (looked.counted_in(held).first, looked.counted_in(posts).first);
+        let rows = values.par_chunks_mut(posts.width()).skip(to.row as usize).take(looked.height());
+        rows.zip(self.view.posts.par_chunks(held.width()).skip(from.row as usize)).for_each(
+            |(values, seen)| {
+                let values = &mut values[to.column as usize..][..looked.width()];
+                let seen = &seen[from.column as usize..][..looked.width()];
+                values.iter_mut().zip(seen).for_each(|(value, &post)| merge(value, post));
+            },
+        );
     }
 
     /// The number of posts in sight, and of those that could be: within range and sector, with data.
     pub fn seen_of(&self) -> (usize, usize) {
-        let counts = self.view.counts();
-        (counts.visible, counts.visible + counts.hidden)
+        let LookWindow { held, looked } = self.window;
+        if looked == held {
+            let counts = self.view.counts();
+            return (counts.visible, counts.visible + counts.hidden);
+        }
+        let from = looked.counted_in(held).first;
+        let rows = self.view.posts.par_chunks(held.width()).skip(from.row as usize).take(looked.height());
+        let counts = rows.map(|seen| {
+            let seen = &seen[from.column as usize..][..looked.width()];
+            let count = |kind: PostVisibility| seen.iter().filter(|&&post| post == kind).count();
+            let visible = count(PostVisibility::Visible);
+            (visible, visible + count(PostVisibility::Hidden))
+        });
+        counts.reduce(|| (0, 0), |one, other| (one.0 + other.0, one.1 + other.1))
     }
+}
+
+/// What a tally says of each lookout, and last of all together: the posts that it sees, and those that it could.
+pub(crate) fn shares(tally: &FigureTally) -> (Vec<(usize, usize)>, (usize, usize)) {
+    let pair = |pair: &[u64]| (pair[0] as usize, pair[1] as usize);
+    let mut shares: Vec<(usize, usize)> = tally.counts().chunks_exact(2).map(pair).collect();
+    let all = shares.pop().unwrap_or_default();
+    (shares, all)
 }
 
 /// Classes for the number of lookouts that see or hit a place: none, one, two, three, and more; as many as can occur.

@@ -10,14 +10,18 @@ use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::measures::percent;
-use crate::observation::lookout::{Lookout, check_looks, curvature, posts_within, range_m, rises};
+use crate::observation::lookout::{LookWindow, Lookout, check_windows, curvature, range_m, rises};
 use crate::outcome::{
     Figure, Hatching, Outcome, OutcomeRaster, OutcomeTable, PostValues, PropertyValue, TableColumn,
     ValueClass,
 };
+use crate::sight_parts::{SightKind, SightValues, run_sight, windows};
+use crate::tally::FigureTally;
 use sandtable_base::limits::memory::check_memory;
-use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::sight::Curvature;
+use sandtable_terrain::sight::line::SightEnd;
 use sandtable_terrain::sight::viewshed::ViewshedOptions;
 use sandtable_terrain::stop_flag::StopFlag;
 
@@ -27,14 +31,20 @@ const BYTES_PER_POST: u64 = 12;
 /// Heights above the ground at which the hidden share is a figure, meters.
 const LEVELS_M: [f32; 4] = [0.0, 50.0, 100.0, 300.0];
 
+/// The kind in parts.
+pub(crate) const SIGHT: SightKind = SightKind { values, summary };
+
 /// What looks for targets.
 struct MaskingWatch<'a> {
     ground: &'a Lattice,
-    radars: &'a [Lookout],
+    radars: &'a [DVec2],
+    height_m: f64,
     curvature: Curvature,
     range_m: f64,
     /// Whether the nearest radar's sight alone counts.
     is_nearest_alone: bool,
+    /// The posts whose values are found.
+    posts: PostRect,
 }
 
 /// The height above the ground, meters, from which a target at each post is seen; no data beyond the range of all radars.
@@ -46,33 +56,66 @@ pub(crate) fn masking(
     arguments: &AnalysisArguments,
     stop: &StopFlag,
 ) -> Result<Outcome, AnalysisError> {
-    let ground = &*land.ground;
-    let range_m = range_m(arguments);
-    let count = arguments.points("radars").len();
-    check_looks("radars", count as f64, posts_within(ground, range_m))?;
-    let radars = Lookout::all(land, arguments, "radars", arguments.number("radar_height"))?;
-    let posts = ground.heights().len();
-    check_memory(posts as u64 * BYTES_PER_POST, "the masking heights", "state a smaller `extent`")?;
+    run_sight(&SIGHT, land, arguments, stop)
+}
+
+/// The values of `posts`. The tally has the posts that each radar sees, and of how many; then for each level those that are
+/// hidden up to it, and of how many.
+fn values(
+    ground: &Lattice,
+    arguments: &AnalysisArguments,
+    posts: PostRect,
+    stop: &StopFlag,
+) -> Result<SightValues, AnalysisError> {
+    let radars = arguments.points("radars");
+    let windows = windows(ground, arguments, posts);
+    check_windows("radars", windows.iter().map(|(_, window)| window))?;
+    let count = posts.width() * posts.height();
+    check_memory(count as u64 * BYTES_PER_POST, "the masking heights", "state a smaller `extent`")?;
     let watch = MaskingWatch {
         ground,
-        radars: &radars,
+        radars,
+        height_m: arguments.number("radar_height"),
         curvature: curvature(arguments),
-        range_m,
+        range_m: range_m(arguments),
         is_nearest_alone: arguments.word("seen_by") == "nearest",
+        posts,
     };
-    let mut values = vec![f32::NAN; posts];
-    let mut shares = Vec::with_capacity(count);
-    for index in 0..radars.len() {
-        shares.push(watch.merge(index, &mut values, stop)?);
+    let mut values = vec![f32::NAN; count];
+    let mut tally = vec![0; 2 * radars.len()];
+    stop.stretch(0.0..1.0, windows.len());
+    for (index, window) in windows {
+        let (seen, known) = watch.merge((index, window), &mut values, stop)?;
+        (tally[2 * index], tally[2 * index + 1]) = (seen as u64, known as u64);
+        stop.did(1);
     }
-    let known = values.par_iter().filter(|value| !value.is_nan()).count();
-    let hidden = LEVELS_M.map(|level_m| {
-        Figure::new(
-            format!("hidden at {level_m} m above the ground"),
-            percent(values.par_iter().filter(|&&value| value > level_m).count(), known),
-            "%",
-        )
-    });
+    let known = values.par_iter().filter(|value| !value.is_nan()).count() as u64;
+    let hidden = |level_m: f32| values.par_iter().filter(|&&value| value > level_m).count() as u64;
+    tally.extend(LEVELS_M.into_iter().flat_map(|level_m| [hidden(level_m), known]));
+    let raster = OutcomeRaster {
+        name: "masking height",
+        unit: "m",
+        values: PostValues::Numbers(values),
+        classes: classes(),
+    };
+    Ok(SightValues { raster, tally: FigureTally::new(tally) })
+}
+
+/// The radars with what they see, as features, a table and figures.
+fn summary(
+    _: &Lattice,
+    arguments: &AnalysisArguments,
+    heights_m: &[f64],
+    tally: &FigureTally,
+) -> Result<Outcome, AnalysisError> {
+    let radars = Lookout::with_heights(arguments, "radars", arguments.number("radar_height"), heights_m);
+    let part = |pair: &[u64]| percent(pair[0] as usize, pair[1] as usize);
+    let shares: Vec<f64> = tally.counts().chunks_exact(2).map(part).collect();
+    let (shares, hidden) = shares.split_at(radars.len().min(shares.len()));
+    let hidden = LEVELS_M
+        .iter()
+        .zip(hidden)
+        .map(|(level_m, &share)| Figure::new(format!("hidden at {level_m} m above the ground"), share, "%"));
     let share = |share: f64| PropertyValue::Number(share);
     let row = |(radar, &seen): (&Lookout, &f64)| {
         vec![
@@ -90,43 +133,43 @@ pub(crate) fn masking(
             TableColumn::new("antenna", "m", 0),
             TableColumn::new("ground in sight", "%", 1),
         ],
-        rows: radars.iter().zip(&shares).map(row).collect(),
+        rows: radars.iter().zip(shares).map(row).collect(),
     };
     let feature =
         |(radar, &seen): (&Lookout, &f64)| radar.feature(vec![("ground_in_sight_percent", share(seen))]);
     Ok(Outcome {
-        features: radars.iter().zip(&shares).map(feature).collect(),
+        features: radars.iter().zip(shares).map(feature).collect(),
         tables: vec![table],
-        figures: hidden.into(),
-        raster: Some(OutcomeRaster {
-            name: "masking height",
-            unit: "m",
-            values: PostValues::Numbers(values),
-            classes: classes(),
-        }),
+        figures: hidden.collect(),
         ..Outcome::default()
     })
 }
 
 impl MaskingWatch<'_> {
-    /// Merges a radar's masking heights into the values of all posts; the share of the ground that it sees, percent.
-    fn merge(&self, index: usize, values: &mut [f32], stop: &StopFlag) -> Result<f64, AnalysisError> {
-        let options = ViewshedOptions {
-            range_m: self.range_m,
-            curvature: self.curvature,
-            ..ViewshedOptions::new(self.radars[index].end)
-        };
-        let (held, rises_m) = rises(self.ground, "radars", &options, stop)?;
-        let rows = values.par_chunks_mut(self.ground.columns() as usize).enumerate();
-        let rows = rows.skip(held.first.row as usize).take(held.height());
-        let seen_of = rows.zip(rises_m.par_chunks(held.width())).map(|((row, values), rises_m)| {
-            let values = &mut values[held.first.column as usize..][..held.width()];
+    /// Merges a radar's masking heights into the values; the number of posts that it sees, and of those that it could.
+    fn merge(
+        &self,
+        (index, window): (usize, LookWindow),
+        values: &mut [f32],
+        stop: &StopFlag,
+    ) -> Result<(usize, usize), AnalysisError> {
+        let end = SightEnd { at: self.radars[index], above_m: self.height_m };
+        let options =
+            ViewshedOptions { range_m: self.range_m, curvature: self.curvature, ..ViewshedOptions::new(end) };
+        let rises_m = rises(self.ground, "radars", (&options, window), stop)?;
+        let LookWindow { held, looked } = window;
+        let (from, to) = (looked.counted_in(held).first, looked.counted_in(self.posts).first);
+        let rows = values.par_chunks_mut(self.posts.width()).skip(to.row as usize).take(looked.height());
+        let rows = rows.zip(rises_m.par_chunks(held.width()).skip(from.row as usize)).enumerate();
+        let seen_of = rows.map(|(row, (values, rises_m))| {
+            let values = &mut values[to.column as usize..][..looked.width()];
+            let rises_m = &rises_m[from.column as usize..][..looked.width()];
             let (mut seen, mut known) = (0, 0);
-            for ((column, value), &rise_m) in (held.first.column..).zip(values).zip(rises_m) {
+            for ((column, value), &rise_m) in (0..).zip(values).zip(rises_m) {
                 seen += usize::from(rise_m == 0.0);
                 known += usize::from(!rise_m.is_nan());
                 let counts = || {
-                    let at = self.ground.map_position(Post { column, row: row as u32 });
+                    let at = self.ground.map_position(looked.first.offset(column, row as u32));
                     !self.is_nearest_alone || self.nearest(at) == index
                 };
                 // No data gives way.
@@ -136,13 +179,12 @@ impl MaskingWatch<'_> {
             }
             (seen, known)
         });
-        let (seen, known) = seen_of.reduce(|| (0, 0), |one, other| (one.0 + other.0, one.1 + other.1));
-        Ok(percent(seen, known))
+        Ok(seen_of.reduce(|| (0, 0), |one, other| (one.0 + other.0, one.1 + other.1)))
     }
 
     /// The radar nearest to a place, of equal ones the first.
     fn nearest(&self, at: DVec2) -> usize {
-        let distance = |&index: &usize| self.radars[index].end.at.distance_squared(at);
+        let distance = |&index: &usize| self.radars[index].distance_squared(at);
         (0..self.radars.len()).min_by(|one, other| distance(one).total_cmp(&distance(other))).unwrap_or(0)
     }
 }
@@ -164,7 +206,8 @@ mod tests {
     use crate::arguments::ArgumentValue;
     use crate::observation::test_hills::{at, land, ripples};
     use crate::test_land::{on_pool, run_kind};
-    use sandtable_terrain::sight::line::{Sight, SightEnd, line_of_sight};
+    use sandtable_terrain::lattice::Post;
+    use sandtable_terrain::sight::line::{Sight, line_of_sight};
 
     const CURVATURE: Curvature = Curvature { radius_m: 6_371_008.8, refraction: 0.25 };
 

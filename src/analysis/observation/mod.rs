@@ -5,13 +5,13 @@
 
 mod best_posts;
 mod exposure;
-mod fields_of_fire;
+pub(crate) mod fields_of_fire;
 mod intervisibility;
 pub(crate) mod lookout;
-mod masking;
+pub(crate) mod masking;
 #[cfg(test)]
-mod test_hills;
-mod viewsheds;
+pub(crate) mod test_hills;
+pub(crate) mod viewsheds;
 
 use crate::run::KindFunction;
 

@@ -5,14 +5,19 @@ use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::measures::{area_km2, percent};
 use crate::observation::lookout::{
-    DEAD_TINT, Lookout, check_looks, count_classes, curvature, look, posts_within, range_m,
+    DEAD_TINT, Lookout, check_windows, count_classes, curvature, look_at, range_m, shares,
 };
 use crate::outcome::{
     Figure, Hatching, Outcome, OutcomeRaster, OutcomeTable, PostValues, PropertyValue, TableColumn,
     ValueClass,
 };
+use crate::sight_parts::{SightKind, SightValues, run_sight, windows};
+use crate::tally::FigureTally;
 use rayon::prelude::*;
 use sandtable_base::limits::memory::check_memory;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::post_rect::PostRect;
+use sandtable_terrain::sight::line::SightEnd;
 use sandtable_terrain::sight::viewshed::{PostVisibility, ViewshedOptions};
 use sandtable_terrain::stop_flag::StopFlag;
 
@@ -27,6 +32,9 @@ enum ViewshedShow {
     Dead,
 }
 
+/// The kind in parts.
+pub(crate) const SIGHT: SightKind = SightKind { values, summary };
+
 /// What posts see together, a value a post; no data where there is no ground and beyond the range of all.
 ///
 /// # Errors
@@ -36,66 +44,86 @@ pub(crate) fn viewsheds(
     arguments: &AnalysisArguments,
     stop: &StopFlag,
 ) -> Result<Outcome, AnalysisError> {
-    let ground = &*land.ground;
+    run_sight(&SIGHT, land, arguments, stop)
+}
+
+/// The values of `posts`. The tally has the posts that each lookout sees, and of how many; then those that any sees, and of how
+/// many.
+fn values(
+    ground: &Lattice,
+    arguments: &AnalysisArguments,
+    posts: PostRect,
+    stop: &StopFlag,
+) -> Result<SightValues, AnalysisError> {
     let show = match arguments.word("show").as_str() {
         "first" => ViewshedShow::First,
         "dead" => ViewshedShow::Dead,
         _ => ViewshedShow::Count,
     };
-    let range_m = range_m(arguments);
-    check_looks("posts", arguments.points("posts").len() as f64, posts_within(ground, range_m))?;
-    let lookouts = Lookout::all(land, arguments, "posts", arguments.number("observer_height"))?;
-    let posts = ground.heights().len();
-    check_memory(posts as u64 * BYTES_PER_POST, "the viewsheds", "state a smaller `extent`")?;
-    let mut values = vec![f32::NAN; posts];
-    let mut shares = Vec::with_capacity(lookouts.len());
-    for lookout in &lookouts {
+    let places = arguments.points("posts");
+    let windows = windows(ground, arguments, posts);
+    check_windows("posts", windows.iter().map(|(_, window)| window))?;
+    let count = posts.width() * posts.height();
+    check_memory(count as u64 * BYTES_PER_POST, "the viewsheds", "state a smaller `extent`")?;
+    let mut values = vec![f32::NAN; count];
+    let mut tally = vec![0; 2 * places.len()];
+    stop.stretch(0.0..1.0, windows.len());
+    for (index, window) in windows {
+        let end = SightEnd { at: places[index], above_m: arguments.number("observer_height") };
         let options = ViewshedOptions {
             target_above_m: arguments.number("target_height"),
-            range_m,
+            range_m: range_m(arguments),
             curvature: curvature(arguments),
-            ..ViewshedOptions::new(lookout.end)
+            ..ViewshedOptions::new(end)
         };
-        let view = look(ground, "posts", &options, stop)?;
-        let number = lookout.number as f32;
-        view.merge_into(&mut values, ground.columns() as usize, |value, post| {
+        let view = look_at(ground, "posts", (&options, window), stop)?;
+        let number = (index + 1) as f32;
+        view.merge_into(&mut values, posts, |value, post| {
             *value = merged(show, number, *value, post);
         });
-        shares.push(view.seen_of());
+        let (seen, of) = view.seen_of();
+        (tally[2 * index], tally[2 * index + 1]) = (seen as u64, of as u64);
+        stop.did(1);
     }
     let seen = values
         .par_iter()
         .filter(|&&value| if show == ViewshedShow::Dead { value == 0.0 } else { value > 0.0 });
-    let (seen, all) = (seen.count(), values.par_iter().filter(|value| !value.is_nan()).count());
-    let mut outcome = Outcome {
-        features: lookouts
-            .iter()
-            .zip(&shares)
-            .map(|(lookout, &share)| {
-                let (seen, of) = share;
-                lookout.feature(vec![
-                    ("seen_km2", PropertyValue::Number(area_km2(ground, seen))),
-                    ("share_percent", PropertyValue::Number(percent(seen, of))),
-                ])
-            })
-            .collect(),
-        tables: vec![table(land, &lookouts, &shares)],
-        figures: shares
-            .iter()
-            .zip(&lookouts)
-            .map(|(&(seen, of), lookout)| {
-                Figure::new(format!("seen from post {}", lookout.number), percent(seen, of), "%")
-            })
-            .collect(),
-        ..Outcome::default()
+    tally.extend(
+        [seen.count(), values.par_iter().filter(|value| !value.is_nan()).count()].map(|posts| posts as u64),
+    );
+    Ok(SightValues { raster: raster(show, values, places.len()), tally: FigureTally::new(tally) })
+}
+
+/// The lookouts with what they see, as features, a table and figures.
+fn summary(
+    ground: &Lattice,
+    arguments: &AnalysisArguments,
+    heights_m: &[f64],
+    tally: &FigureTally,
+) -> Result<Outcome, AnalysisError> {
+    let lookouts = Lookout::with_heights(arguments, "posts", arguments.number("observer_height"), heights_m);
+    let (shares, (seen, all)) = shares(tally);
+    let feature = |(lookout, &(seen, of)): (&Lookout, &(usize, usize))| {
+        lookout.feature(vec![
+            ("seen_km2", PropertyValue::Number(area_km2(ground, seen))),
+            ("share_percent", PropertyValue::Number(percent(seen, of))),
+        ])
     };
-    outcome.figures.extend([
+    let figure = |(lookout, &(seen, of)): (&Lookout, &(usize, usize))| {
+        Figure::new(format!("seen from post {}", lookout.number), percent(seen, of), "%")
+    };
+    let hidden = all.saturating_sub(seen);
+    let of_all = [
         Figure::new("seen from any post", percent(seen, all), "%"),
-        Figure::new("dead ground", percent(all - seen, all), "%"),
-        Figure::new("dead ground, area", area_km2(ground, all - seen), "km²"),
-    ]);
-    outcome.raster = Some(raster(show, values, lookouts.len()));
-    Ok(outcome)
+        Figure::new("dead ground", percent(hidden, all), "%"),
+        Figure::new("dead ground, area", area_km2(ground, hidden), "km²"),
+    ];
+    Ok(Outcome {
+        features: lookouts.iter().zip(&shares).map(feature).collect(),
+        tables: vec![table(ground, &lookouts, &shares)],
+        figures: lookouts.iter().zip(&shares).map(figure).chain(of_all).collect(),
+        ..Outcome::default()
+    })
 }
 
 /// A value after one more post looked at its place.
@@ -167,12 +195,12 @@ fn first_classes(lookouts: usize) -> Vec<ValueClass> {
     std::iter::once(none).chain(first).collect()
 }
 
-fn table(land: &Land, lookouts: &[Lookout], shares: &[(usize, usize)]) -> OutcomeTable {
+fn table(ground: &Lattice, lookouts: &[Lookout], shares: &[(usize, usize)]) -> OutcomeTable {
     let row = |(lookout, &(seen, of)): (&Lookout, &(usize, usize))| {
         vec![
             PropertyValue::Whole(lookout.number as i64),
             PropertyValue::Number(lookout.ground_m),
-            PropertyValue::Number(area_km2(&land.ground, seen)),
+            PropertyValue::Number(area_km2(ground, seen)),
             PropertyValue::Number(percent(seen, of)),
         ]
     };
@@ -194,10 +222,11 @@ mod tests {
 
     use super::*;
     use crate::arguments::ArgumentValue;
+    use crate::observation::lookout::{check_looks, posts_within};
     use crate::observation::test_hills::{at, land, ripples};
     use crate::test_land::{on_pool, run_kind};
     use sandtable_terrain::sight::Curvature;
-    use sandtable_terrain::sight::line::{Sight, SightEnd, line_of_sight};
+    use sandtable_terrain::sight::line::{Sight, line_of_sight};
 
     fn values(outcome: &Outcome) -> Vec<f32> {
         let values = &outcome.raster.as_ref().expect("a raster").values;

@@ -56,10 +56,12 @@ pub(super) fn divide_summits(
     order.par_sort_unstable_by(|&a, &b| heights[b as usize].total_cmp(&heights[a as usize]).then(a.cmp(&b)));
     let mut floods = vec![DRY; heights.len()];
     let mut summits = Vec::new();
+    stop.stretch(0.3..0.8, order.len());
     for posts in order.chunks(POSTS_PER_LOOK) {
         if stop.is_stopped() {
             return Err(AnalysisError::Stopped);
         }
+        stop.did(posts.len());
         for &post in posts {
             floods[post as usize] = post;
             for neighbor in posts_around(ground, post as usize) {

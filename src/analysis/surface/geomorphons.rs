@@ -76,9 +76,11 @@ pub(crate) fn geomorphons(
     let sights = FormSights::new(&land.ground, radius, skip, flatness, comparison);
     let columns = sights.columns as usize;
     let mut codes = vec![PostValues::NO_CODE; land.ground.heights().len()];
+    stop.stretch(0.0..1.0, land.ground.rows() as usize);
     codes.par_chunks_mut(columns).enumerate().for_each(|(row, codes)| {
         if !stop.is_stopped() {
             sights.classify(row as isize, codes);
+            stop.did(1);
         }
     });
     if stop.is_stopped() {

@@ -25,8 +25,13 @@ pub(crate) fn peaks(
     let summits = divide_summits(ground, arguments.number("prominence") as f32, stop)?;
     let (inner, outer): (Vec<DivideSummit>, Vec<DivideSummit>) =
         summits.into_iter().partition(|summit| is_inside(ground, summit.post));
-    let isolations: Vec<Option<f64>> =
-        inner.par_iter().map(|summit| isolation_m(ground, summit.post, stop)).collect();
+    stop.stretch(0.8..1.0, inner.len());
+    let isolation = |summit: &DivideSummit| {
+        let isolation_m = isolation_m(ground, summit.post, stop);
+        stop.did(1);
+        isolation_m
+    };
+    let isolations: Vec<Option<f64>> = inner.par_iter().map(isolation).collect();
     if stop.is_stopped() {
         return Err(AnalysisError::Stopped);
     }

@@ -145,6 +145,7 @@ pub(crate) fn basins(
             Figure::new("area of basins", area_km2(ground, covered), "km²"),
         ],
         notes: water.notes,
+        ..Outcome::default()
     })
 }
 

@@ -164,6 +164,7 @@ pub(crate) fn dam_break(
         tables: vec![OutcomeTable { title: "Reaches below the dam".into(), columns: COLUMNS.into(), rows }],
         figures,
         notes,
+        ..Outcome::default()
     })
 }
 

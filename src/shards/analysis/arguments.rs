@@ -9,8 +9,9 @@ use crate::error::{PlanError, PlanFault, ShardError};
 use crate::planned_dataset::{PlannedDataset, QueriedDataset};
 use sandtable_catalog::kind;
 use sandtable_catalog::kind::AnalysisKind;
-use sandtable_query::analysis::{PartedAnalysis, WrittenArgument};
+use sandtable_query::analysis::WrittenArgument;
 use sandtable_query::dataset::Dataset;
+use sandtable_query::parted_analysis::PartedAnalysis;
 use sandtable_scene::land::land_of;
 use sandtable_scene::scene_file::{is_scene_file, open_scene_land};
 
@@ -49,6 +50,13 @@ impl AnalysisPlan {
         })
     }
 
+    /// The arguments as users write them.
+    pub fn written(&self) -> Vec<WrittenArgument> {
+        let written =
+            |(name, text): (&String, &String)| WrittenArgument { name: name.clone(), text: text.clone() };
+        self.options.iter().map(written).collect()
+    }
+
     /// Opens the dataset of a plan in `folder`: of a scene what lies on its ground, too, where the kind uses that.
     ///
     /// # Errors
@@ -65,9 +73,7 @@ impl AnalysisPlan {
                 (QueriedDataset { path, dataset, crs }, Some(land_of(&scene, kind.layers)))
             }
         };
-        let written =
-            |(name, text): (&String, &String)| WrittenArgument { name: name.clone(), text: text.clone() };
-        let arguments: Vec<WrittenArgument> = self.options.iter().map(written).collect();
+        let arguments = self.written();
         let parts = PartedAnalysis::new(&queried.dataset, land, (kind, &arguments), &queried.crs)?;
         Ok(OpenedAnalysis { queried, parts, kind })
     }

@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use crate::analysis::arguments::AnalysisPlan;
+use crate::analysis::said::PartSaid;
 use crate::analysis::work::ground_posts;
 use crate::error::{PlanError, PlanFault, ShardError};
 use crate::plan::ShardPlan;
 use crate::raster_result::EXTENSION;
 use crate::record::result_path;
-use sandtable_analysis::outcome::PostValues;
+use sandtable_analysis::outcome::{Outcome, PostValues};
 use sandtable_base::limits::RASTER_SAMPLES;
 use sandtable_base::limits::memory::check_memory;
 use sandtable_dem::dem_format::DemFormat;
@@ -45,7 +46,7 @@ struct HeldTile {
     samples: Vec<f32>,
 }
 
-/// Writes the values of a plan whose shards are all done: the raster that `analyze` writes.
+/// Writes the values of a plan whose shards are all done: the raster that `analyze` writes. Returns the rest of what it gives.
 ///
 /// # Errors
 /// A file cannot be read or written, or is not the one of the plan.
@@ -54,8 +55,11 @@ pub fn gather(
     arguments: &AnalysisPlan,
     out: &Path,
     format: &DemFormat,
-) -> Result<(), ShardError> {
+) -> Result<Outcome, ShardError> {
     let opened = arguments.open(&plan.folder)?;
+    let (tally, notes) = PartSaid::of_all(plan)?;
+    let mut outcome = opened.parts.summary(&opened.queried.dataset, &tally)?;
+    outcome.notes.splice(0..0, notes);
     let tile = |id: usize| ground_posts(plan, &opened, &plan.shard(id)?);
     let tiles: Vec<PostRect> = (0..plan.count()).map(tile).collect::<Result<_, ShardError>>()?;
     let all = tiles.iter().fold(tiles[0], |all, tile| all.with(tile.first).with(tile.last));
@@ -65,16 +69,20 @@ pub fn gather(
         return Err(PlanError::new(&plan.folder, PlanFault::AnalysisPosts { columns, rows }).into());
     }
     let frame = opened.parts.frame();
-    let first = dem::open(&result_path(plan, 0, EXTENSION), &DemOptions::default())?.raster;
+    // The first tile to be written says of what type all are.
+    let id = tiles.iter().position(|tile| tile.last.row == all.last.row).unwrap_or(0);
+    let path = result_path(plan, id, EXTENSION);
+    let first = dem::open(&path, &DemOptions::default())?.raster;
     let header = posts_header(&like(&first), opened.kind.name, (&frame.lattice, all), &frame.crs);
     let place = |(id, tile): (usize, &PostRect)| ResultTile {
         window: window_in(*tile, all),
         path: result_path(plan, id, EXTENSION),
     };
-    let tiles = tiles.iter().enumerate().map(place).collect();
-    let mut source = TileWindows { header, tiles, held: Vec::new() };
+    let tiles: Vec<ResultTile> = tiles.iter().enumerate().map(place).collect();
+    let samples = tiles[id].samples(first).map_err(FileError::at(&path)).map_err(WriteRasterError::from)?;
+    let mut source = TileWindows { header, tiles, held: vec![HeldTile { id, samples }] };
     if raster_file::write_windows(&mut source, format, out, &plan.folder)?.is_some() {
-        return Ok(());
+        return Ok(outcome);
     }
     let checked = check_memory(posts * size_of::<f32>() as u64, "the raster", "gather it as a .tif");
     checked.map_err(|error| PlanError::new(out, PlanFault::Output(error.to_string())))?;
@@ -82,7 +90,7 @@ pub fn gather(
     let samples = samples.map_err(|error| WriteRasterError::from(FileError::at(&plan.folder)(error)))?;
     let raster = Raster { samples, ..source.header };
     raster_file::write(&raster, format, out, &[opened.queried.path])?;
-    Ok(())
+    Ok(outcome)
 }
 
 /// No values, of the type of those of a tile.
@@ -121,7 +129,7 @@ impl Windows for TileWindows {
             let at = match known {
                 Some(at) => at,
                 None => {
-                    self.held.push(HeldTile { id, samples: tile.samples()? });
+                    self.held.push(HeldTile { id, samples: tile.read()? });
                     self.held.len() - 1
                 }
             };
@@ -139,9 +147,13 @@ impl Windows for TileWindows {
 
 impl ResultTile {
     /// The samples of the file, which was compared with its record.
-    fn samples(&self) -> Result<Vec<f32>, DemErrorKind> {
+    fn read(&self) -> Result<Vec<f32>, DemErrorKind> {
         let opened = dem::open(&self.path, &DemOptions::default());
-        let raster = opened.map_err(|_| DemErrorKind::Changed)?.raster;
+        self.samples(opened.map_err(|_| DemErrorKind::Changed)?.raster)
+    }
+
+    /// The samples of the raster of the file.
+    fn samples(&self, raster: Raster) -> Result<Vec<f32>, DemErrorKind> {
         if (raster.width, raster.height) != (self.window.width, self.window.height) {
             return Err(DemErrorKind::Changed);
         }

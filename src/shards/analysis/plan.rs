@@ -24,23 +24,21 @@ pub fn plan(
     shards: Option<u64>,
     folder: &Path,
 ) -> Result<usize, ShardError> {
-    let posts = opened.parts.posts()?;
+    let posts = opened.parts.posts();
+    // A place without ground is refused before anything is written.
+    opened.parts.heights(&opened.queried.dataset)?;
     let count = posts.width() as u64 * posts.height() as u64;
     if count > RASTER_SAMPLES.get() {
         let (columns, rows) = (posts.width() as u64, posts.height() as u64);
         return Err(PlanError::new(&opened.queried.path, PlanFault::AnalysisPosts { columns, rows }).into());
     }
-    let reach = opened.parts.reach();
     let tiles = tiles(posts, shards.unwrap_or_else(|| count.div_ceil(USUAL_POSTS)));
-    let ground = &opened.parts.frame().lattice;
     let shard = |(id, &tile): (usize, &PostRect)| {
         let Post { column, row } = tile.first;
         let (width, height) = (tile.width() as u32, tile.height() as u32);
         let name = format!("{width} x {height} posts from column {column} and row {row}");
-        let around = tile.grown((reach, reach), ground);
-        let cost = (around.width() * around.height()) as f64;
         let window = ShardWindow::Grid([column, row, width, height]);
-        Shard { halo: Some(reach), ..Shard::new(id, name, cost, window) }
+        Shard { halo: opened.parts.reach(), ..Shard::new(id, name, opened.parts.work(tile), window) }
     };
     let lines: Vec<Shard> = tiles.iter().enumerate().map(shard).collect();
     let inputs = arguments.dataset.inputs(&opened.queried.dataset, folder)?;

@@ -1,4 +1,4 @@
-//! `plan analysis`: the shards of an analysis make the bytes that `analyze` writes.
+//! `plan analysis`: the shards of an analysis make the bytes that `analyze` writes, and the figures that it prints.
 
 use std::fs;
 
@@ -25,12 +25,88 @@ fn check(scratch: &Scratch, analysis: &[&str], shards: &str) -> Vec<Value> {
         let done = run_in(folder, &["work", "plan", "--shard", &id.to_string()]).ok();
         assert_eq!(done, format!("{id} done\n"));
     }
-    assert_eq!(run_in(folder, &["gather", "plan"]).ok(), "plan/analysis.tif\n");
+    let said = run_in(folder, &["gather", "plan"]);
     let whole = run_in(folder, &[&["analyze"], analysis, &["-o", "whole.tif"]].concat());
-    assert_eq!(whole.code, 0, "{}", whole.err);
+    assert_eq!((said.code, whole.code), (0, 0), "{} {}", said.err, whole.err);
+    assert_eq!(said.out, whole.out.replacen("whole.tif", "plan/analysis.tif", 1), "{analysis:?}");
+    assert_eq!(notes(&said.err), notes(&whole.err), "{analysis:?}");
+    let json = |arguments: &[&str]| -> Value {
+        let ran = run_in(folder, &[arguments, &["--json"]].concat());
+        serde_json::from_str(&ran.out).unwrap_or_else(|error| panic!("{error}: {} {}", ran.out, ran.err))
+    };
+    let (mut said, mut whole) =
+        (json(&["gather", "plan"])["analysis"].take(), json(&[&["analyze"], analysis].concat()));
+    [&mut said, &mut whole].into_iter().for_each(|said| drop(said["output"].take()));
+    assert_eq!(said, whole, "{analysis:?}");
     let (gathered, whole) = (fs::read(scratch.at("plan/analysis.tif")), fs::read(scratch.at("whole.tif")));
     assert!(gathered.expect("written") == whole.expect("written"), "{analysis:?}");
     lines
+}
+
+/// The notes among what was warned of.
+fn notes(err: &str) -> Vec<&str> {
+    err.lines().filter(|line| line.starts_with("note: ") && !line.contains("kept in memory")).collect()
+}
+
+/// Positions on the demo's elevation, in degrees.
+const POSTS: &str = "-84.2,36.3;-84.13,36.34;-84.29,36.21";
+
+#[test]
+fn viewsheds_with_a_range_are_cut_and_shards_beyond_it_cost_nothing() {
+    let scratch = surveyed();
+    let lines = check(&scratch, &["viewsheds", "dem.tif", "--posts", POSTS, "--range", "2500"], "24");
+    let idle = lines.iter().filter(|line| line["cost"] == 1.0).count();
+    assert!(idle > 3 && lines.len() - idle > 3, "{idle} of {}", lines.len());
+    let dead = ["viewsheds", "dem.tif", "--posts", POSTS, "--show", "dead", "--target-height", "2"];
+    check(&scratch, &dead, "5");
+    let fire = ["fields-of-fire", "dem.tif", "--weapons", POSTS, "--max-range", "3000", "--arc", "200"];
+    check(&scratch, &[&fire[..], &["--min-range", "300", "--direction", "45"]].concat(), "9");
+    check(&scratch, &["masking", "dem.tif", "--radars", POSTS, "--range", "4000"], "6");
+    check(
+        &scratch,
+        &["masking", "dem.tif", "--radars", POSTS, "--range", "9000", "--seen-by", "nearest"],
+        "4",
+    );
+}
+
+#[test]
+fn viewsheds_of_an_extent_and_of_ground_on_disk_are_cut_alike() {
+    let scratch = surveyed();
+    let crs = ["--crs", "EPSG:32616", "--posts", "745031.3,4014022.7;748500,4012100", "--range", "3000"];
+    for extent in ["740013,4010000,750000,4016000", "740000,4010000;752000,4011000;746000,4018000"] {
+        check(&scratch, &[&["viewsheds", "dem.tif", "--extent", extent], &crs[..]].concat(), "7");
+    }
+    let convert = ["dem", "convert", "dem.tif", "large.tif", "--crs", "EPSG:32616", "--cell", "25"];
+    assert_eq!(run_in(scratch.folder(), &convert).code, 0);
+    let seen = ["--posts", "745031.3,4014022.7;748500,4012100", "--range", "3000"];
+    check(&scratch, &[&["viewsheds", "large.tif"], &seen[..]].concat(), "12");
+}
+
+#[test]
+fn places_without_ground_and_a_missing_range_are_refused_by_their_names() {
+    let scratch = surveyed();
+    let plan = |analysis: &[&str]| {
+        let ran = run_in(scratch.folder(), &[&["plan", "analysis"], analysis, &["-o", "plan"]].concat());
+        ran.failed(1)
+    };
+    let off = plan(&["viewsheds", "dem.tif", "--posts", "-84.2,36.3;-80,36.3", "--range", "900"]);
+    assert!(off.contains("`posts` ") && off.contains("lies off the land"), "{off}");
+    let everywhere = plan(&["masking", "dem.tif", "--radars", POSTS]);
+    assert!(everywhere.contains("`range`") && everywhere.contains("analyze masking"), "{everywhere}");
+    assert!(!scratch.at("plan/plan.json").exists());
+}
+
+#[test]
+fn a_tally_that_is_not_the_shards_own_is_stale() {
+    let scratch = surveyed();
+    let plan = ["plan", "analysis", "obstacles", "dem.tif", "--shards", "2", "-o", "plan"];
+    run_in(scratch.folder(), &plan).ok();
+    run_in(scratch.folder(), &["work", "plan", "--shards", "0..2"]).ok();
+    let tally = scratch.at("plan/shards/000001.tally.json");
+    let text = fs::read_to_string(&tally).expect("written");
+    fs::write(&tally, text.replace("\"tally\":[", "\"tally\":[9")).expect("written");
+    let refused = run_in(scratch.folder(), &["gather", "plan"]).failed(1);
+    assert!(refused.contains("1 stale (1)"), "{refused}");
 }
 
 #[test]

@@ -313,6 +313,14 @@ fn known(kind: &AnalysisKind) -> String {
             "Values depend on the ground as far away as `{name}` says: within an `extent` they are those of the whole land to the \
              last bit."
         ),
+        AnalysisReach::Between { places, range } => format!(
+            "Values depend on the ground between `{places}` and the place, as far away as `{range}` says; the land ends at an \
+             `extent`. `plan analysis` cuts it into shards."
+        ),
+        AnalysisReach::Around { places, range } => format!(
+            "Values depend on the ground within the `{range}` of `{places}`; the land ends at an `extent`. `plan analysis` cuts it \
+             into shards where `{range}` is stated."
+        ),
         AnalysisReach::Whole => "All of the land has an effect: it ends at an `extent`.".to_owned(),
     };
     format!("{layers} {part}")
