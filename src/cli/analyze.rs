@@ -14,7 +14,6 @@ use crate::options::DatasetArguments;
 use crate::output::{print, print_lines, row, warn};
 use crate::output_format::output_format;
 use crate::progress::StepTimer;
-use crate::render::find_camera;
 use sandtable_analysis::outcome::{Figure, Outcome, OutcomeTable, with_unit};
 use sandtable_base::message::numbers::trimmed;
 use sandtable_catalog::kind::{AnalysisKind, AnalysisYield};
@@ -28,12 +27,11 @@ use sandtable_export::features::outcome::{OutcomeFrame, export_outcome};
 use sandtable_files::{disk, raster_file};
 use sandtable_query::analysis::{AnalyzeError, Analyzed, WrittenArgument, analyze, bare_land, ground_raster};
 use sandtable_query::analysis_bands::{AnalysisBands, OutcomeWindows, analysis_bands};
-use sandtable_render::RenderBackend;
 use sandtable_scene::analysis_map::{MapTexts, ground_map, scene_map};
-use sandtable_scene::land::land_of;
+use sandtable_scene::land::land_of_drawn;
 use sandtable_scene::scene_file::open_scene_land;
 use sandtable_scene::scene_model::SceneModel;
-use sandtable_sheet::picture::{PictureSize, render_view};
+use sandtable_sheet::analysis_map::analysis_map;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// An analysis and its options.
@@ -216,7 +214,7 @@ fn analyzed(
         return write_bands(command, bands, path, format).map(AnalysisMade::Written);
     }
     let land = match &scene {
-        Some(scene) => land_of(scene, kind.layers),
+        Some(scene) => land_of_drawn(scene, kind.layers, || open_scene_land(file, allowed, &progress))?,
         None => bare_land(&dataset, (kind, arguments), &crs)?,
     };
     let analyzed = analyze(&dataset, land, (*kind, arguments), &crs, &stop)?;
@@ -225,16 +223,8 @@ fn analyzed(
 
 /// The texts of a map: what it is, of what, by whom, and what it does not know.
 fn map_texts(command: &AnalyzeCommand) -> MapTexts {
-    let stated = command.arguments.iter().map(|argument| format!("{} {}", argument.name, argument.text));
-    let file = disk::file_name(&command.dataset.file);
-    let subtitle: Vec<String> = std::iter::once(file).chain(stated).collect();
-    let source = format!("Method: {}", command.kind.source);
-    let limits = command.kind.limits.iter().map(|limit| (*limit).to_owned());
-    MapTexts {
-        title: command.kind.title.to_owned(),
-        subtitle: subtitle.join(" · "),
-        notes: std::iter::once(source).chain(limits).collect(),
-    }
+    let stated = command.arguments.iter().map(|argument| (&*argument.name, &*argument.text));
+    MapTexts::of_analysis(command.kind, &command.dataset.file, stated)
 }
 
 /// Writes the map of an analysis: the land from above, what the analysis gives over it, a legend and tables.
@@ -247,19 +237,15 @@ fn write_map(
 ) -> Result<(), CliError> {
     let progress = |step| steps.begin(step);
     let Analyzed { ground, crs, outcome } = analyzed;
-    let mut scene = match scene {
+    let map = match scene {
         Some(scene) => *scene,
         None => {
             let raster = ground_raster(ground, crs);
             ground_map(&command.dataset.file, raster, map_texts(command), &progress)?
         }
     };
-    disk::check_output(path, &scene.files)?;
-    let kind = command.kind;
-    scene.add_analysis((kind, kind.title.to_owned()), ground.clone(), outcome.clone());
-    let view = find_camera(&scene, None)?;
-    let size = PictureSize::of(&scene, view);
-    let picture = render_view(&scene, view, size, RenderBackend::Cpu, &progress)?;
+    disk::check_output(path, &map.files)?;
+    let picture = analysis_map(map, command.kind, (ground, outcome), &progress)?;
     progress("writing");
     Ok(disk::write_picture(path, &picture.pixels)?)
 }

@@ -9,13 +9,13 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use crate::assets::Assets;
-use crate::build::build_ground;
+use crate::build::{build, build_ground};
 use crate::build_errors::{BuildErrorSink, BuildErrors};
 use crate::builder::SceneBuilder;
 use crate::exact_ground::ExactGround;
 use crate::feature::{FeatureKind, SceneFeature};
 use crate::feature_origin::FeatureOrigin;
-use crate::land::land_of;
+use crate::land::land_of_drawn;
 use crate::scene_file::{OpenSceneError, is_scene_file, open_phase_ground, open_scene_ground};
 use crate::scene_findings::SceneFindings;
 use crate::scene_model::SceneModel;
@@ -216,6 +216,18 @@ fn vehicle(name: &str, table: &VehicleTable) -> Vehicle {
     }
 }
 
+/// The scene with heights true to scale, without its analyses.
+fn true_to_scale(
+    document: &Document,
+    assets: &Assets,
+    progress: &dyn Fn(&'static str),
+) -> Result<SceneModel, BuildErrors> {
+    let mut document = document.clone();
+    document.terrain.vertical_exaggeration = 1.0;
+    document.analyses.clear();
+    build(&document, assets, progress)
+}
+
 /// Runs analyses on the land of a scene and notes what they do not know among its findings.
 ///
 /// # Errors
@@ -236,7 +248,7 @@ pub(super) fn analyze(
         progress(kind.title);
         let of_kind = match land.take().filter(|_| layers == kind.layers) {
             Some(land) => land,
-            None => land_of(scene, kind.layers),
+            None => land_of_drawn(scene, kind.layers, || true_to_scale(document, assets, progress))?,
         };
         let compared =
             |land: &Land| other_ground(table, land, scene, assets, document).map_err(AnalysisFault::Ground);

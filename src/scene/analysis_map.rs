@@ -7,9 +7,11 @@ use crate::assets::Assets;
 use crate::build::build;
 use crate::scene_file::{OpenSceneError, open_document};
 use crate::scene_model::SceneModel;
+use sandtable_catalog::kind::AnalysisKind;
 use sandtable_description::document::Document;
 use sandtable_description::parse::parse;
 use sandtable_description::words::{GridName, SheetLayout};
+use sandtable_files::disk;
 use sandtable_raster::raster::Raster;
 
 /// How ground alone is drawn: pale, so that every tint is told.
@@ -37,6 +39,25 @@ pub struct MapTexts {
     pub subtitle: String,
     /// What it does not know, a line each.
     pub notes: Vec<String>,
+}
+
+impl MapTexts {
+    /// The texts of an analysis of a kind of a file, with its arguments as they are stated, names and values.
+    pub fn of_analysis<'a>(
+        kind: &AnalysisKind,
+        file: &Path,
+        stated: impl Iterator<Item = (&'a str, &'a str)>,
+    ) -> Self {
+        let file = std::iter::once(disk::file_name(file));
+        let stated = stated.map(|(name, value)| format!("{name} {value}"));
+        let source = format!("Method: {}", kind.source);
+        let limits = kind.limits.iter().map(|limit| (*limit).to_owned());
+        Self {
+            title: kind.title.to_owned(),
+            subtitle: file.chain(stated).collect::<Vec<_>>().join(" · "),
+            notes: std::iter::once(source).chain(limits).collect(),
+        }
+    }
 }
 
 /// The scene of a file of elevation of which `ground` is read, in meters.

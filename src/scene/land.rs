@@ -10,6 +10,7 @@ use crate::fences::{Barrier, BarrierKind};
 use crate::scene_model::SceneModel;
 use crate::symbols::LineSymbol;
 use crate::undergrowth::{CrownGround, crown_reach};
+use crate::vertical_scale::VerticalScale;
 use sandtable_analysis::land::{
     self, Crossing, CrossingKind, Gap, Land, RoadLine, Stand, Step, WaterKind, WaterPost,
 };
@@ -65,6 +66,23 @@ pub fn land_of(scene: &SceneModel, layers: &[LandPart]) -> Land {
         }
     }
     land
+}
+
+/// [`land_of`] a scene whose heights may be drawn exaggerated: what stands on the ground then has its height from the same scene
+/// `true_to_scale`, to the last bit, which is opened only for that.
+///
+/// # Errors
+/// Those of `true_to_scale`.
+pub fn land_of_drawn<E>(
+    scene: &SceneModel,
+    layers: &[LandPart],
+    true_to_scale: impl FnOnce() -> Result<SceneModel, E>,
+) -> Result<Land, E> {
+    let mut land = land_of(scene, layers);
+    if scene.scale != VerticalScale(1.0) && layers.contains(&LandPart::Obstacles) {
+        land.obstacles_m = land_of(&true_to_scale()?, &[LandPart::Obstacles]).obstacles_m;
+    }
+    Ok(land)
 }
 
 /// Calls `visit` with the index of each post in a triangle of world positions, and its barycentric weights.

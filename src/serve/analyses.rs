@@ -1,7 +1,7 @@
 //! `/analyses`: the kinds of terrain analysis. `/v1/analyze/KIND`: what one gives, with the bytes of the command `analyze`.
 //!
 //! Parameters are those of the kind. Positions are written as in other queries, latitude first or x,y by `crs`, with `|` or
-//! `;` between. `format` says whether the raster, the features or the figures are answered:
+//! `;` between. `format` says whether the raster, the features, the figures or a map are answered:
 //!
 //! ```text
 //! {"arguments":{…},"figures":[{"name":"unrestricted","unit":"km²","value":81.2}, …],"kind":"obstacles",…,
@@ -35,12 +35,15 @@ use sandtable_dem::dem_format::DemFormat;
 use sandtable_export::features::FeatureFormat;
 use sandtable_export::features::analysis_json::{catalog_json, outcome_json};
 use sandtable_export::features::outcome::{OutcomeFrame, outcome_bytes, outcome_geojson};
+use sandtable_files::png::encode_png;
 use sandtable_query::analysis::{
-    AnalyzeError, Analyzed, OtherGrounds, WrittenArgument, analyze_among, bare_land, needed_posts,
+    AnalyzeError, Analyzed, OtherGrounds, WrittenArgument, analyze_among, bare_land, ground_raster,
+    needed_posts,
 };
 use sandtable_query::analysis_bands::OutcomeWindows;
 use sandtable_query::dataset::Dataset;
 use sandtable_scene::land::land_of;
+use sandtable_sheet::analysis_map::analysis_map;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// The page of the kinds.
@@ -76,6 +79,8 @@ enum AnswerFormat {
     GeoTiff,
     Features(FeatureFormat),
     Json,
+    /// A map, as a picture.
+    Map,
 }
 
 /// Figures, tables and notes.
@@ -108,7 +113,10 @@ impl Query for AnalysisQuery {
     }
 
     fn weight(&self, _: &Service) -> QueryWeight {
-        QueryWeight::Expensive
+        match self.format {
+            AnswerFormat::Map => QueryWeight::Picture,
+            _ => QueryWeight::Expensive,
+        }
     }
 
     fn most_bytes(&self, service: &Service) -> usize {
@@ -116,6 +124,8 @@ impl Query for AnalysisQuery {
         let posts = 2 * source.width as usize * source.height as usize;
         match self.format {
             AnswerFormat::Json => 0,
+            // The sheet of a scene may be large: all that a client may have.
+            AnswerFormat::Map => usize::MAX,
             _ => posts.min(service.limits.max_posts as usize) * POST_BYTES,
         }
     }
@@ -143,6 +153,7 @@ impl Query for AnalysisQuery {
                 written.map_err(|error| HttpError::wrong(error_text(&error)))?;
                 out.into_inner()
             }
+            AnswerFormat::Map => self.map(service, &analyzed, stop)?,
             // Nothing found is an answer, too.
             AnswerFormat::Features(FeatureFormat::GeoJson) if is_empty(outcome) => {
                 outcome_geojson(outcome, self.kind.title).into_bytes()
@@ -195,13 +206,30 @@ impl AnalysisQuery {
     }
 }
 
+impl AnalysisQuery {
+    /// The bytes of the map that the command writes.
+    fn map(&self, service: &Service, analyzed: &Analyzed, stop: &StopFlag) -> Result<Vec<u8>, HttpError> {
+        let go_on = || if stop.is_stopped() { Err(HttpError::stopped()) } else { Ok(()) };
+        go_on()?;
+        let (served, Analyzed { ground, crs, outcome }) = (self.ground.served(service), analyzed);
+        let stated = self.arguments.iter().map(|argument| (&*argument.name, &*argument.text));
+        let map = served.map(served.map_texts(self.kind, stated), || ground_raster(ground, crs))?;
+        go_on()?;
+        let picture = analysis_map(map, self.kind, (ground, outcome), &|_| ());
+        let picture = picture.map_err(|error| HttpError::wrong(error_text(&error)))?;
+        go_on()?;
+        Ok(encode_png(&picture.pixels))
+    }
+}
+
 /// The format of a request; by default the raster of a kind that gives one alone, else its features or its table.
 fn format(kind: &AnalysisKind, parameters: &Parameters) -> Result<AnswerFormat, HttpError> {
-    const FORMATS: [AnswerFormat; 4] = [
+    const FORMATS: [AnswerFormat; 5] = [
         AnswerFormat::GeoTiff,
         AnswerFormat::Features(FeatureFormat::GeoJson),
         AnswerFormat::Features(FeatureFormat::GeoPackage),
         AnswerFormat::Json,
+        AnswerFormat::Map,
     ];
     let stated = parameters.word("format", ANALYSIS_FORMATS.into_iter().zip(FORMATS))?;
     let gives_raster = matches!(kind.yields, AnalysisYield::Raster | AnalysisYield::Both);
@@ -229,6 +257,7 @@ impl AnswerFormat {
             Self::Features(FeatureFormat::GeoPackage) => "application/geopackage+sqlite3",
             Self::Features(_) => "application/geo+json",
             Self::Json => "application/json",
+            Self::Map => "image/png",
         }
     }
 }

@@ -293,13 +293,17 @@ pub fn addresses() -> impl Iterator<Item = &'static ApiAddress> {
 }
 
 /// The words of the parameter `format` of an analysis.
-pub const ANALYSIS_FORMATS: [&str; 4] = ["tif", "geojson", "gpkg", "json"];
+pub const ANALYSIS_FORMATS: [&str; 5] = ["tif", "geojson", "gpkg", "json", "png"];
+
+/// Their media types.
+pub const ANALYSIS_TYPES: [&str; 5] =
+    ["image/tiff", "application/geo+json", "application/geopackage+sqlite3", "application/json", "image/png"];
 
 const FORMAT: ApiParameter = parameter(
     "format",
     Words(|| ANALYSIS_FORMATS.to_vec()),
     Optional("tif of a raster, geojson of features, json of a table"),
-    "the raster, the features or the areas of its classes; json holds figures, tables and notes",
+    "the raster, the features or the areas of its classes; json holds figures, tables and notes; png is a map with a legend",
 );
 
 /// The address of a kind of analysis.
@@ -348,6 +352,15 @@ const fn page(path: &'static str, summary: &'static str, answer: &'static str) -
         summary,
         answer,
         parameters: Cow::Borrowed(&[]),
+    }
+}
+
+impl ApiAddress {
+    /// The media types of its answers, that of the default one first.
+    pub fn answers(&self) -> Vec<&'static str> {
+        let formats = if self.path.starts_with(analyses::QUERY_PATH) { &ANALYSIS_TYPES[..] } else { &[] };
+        let others = formats.iter().copied().filter(|&answer| answer != self.answer);
+        std::iter::once(self.answer).chain(others).collect()
     }
 }
 

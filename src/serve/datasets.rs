@@ -3,7 +3,7 @@
 //! They are opened when the service starts, so that no request reads from disk, but for elevation larger than a raster in
 //! memory may be: of that, a request reads what it needs. Their ground in meters, for which an
 //! elevation file in degrees must be warped, is made in the background; queries for it wait. What lies on the ground of a
-//! scene is built when the first analysis needs it.
+//! scene is built when the first analysis needs it; for the map of an analysis the scene is read again.
 
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -16,10 +16,13 @@ use serde::Serialize;
 use crate::reply::{HttpError, OK, quoted};
 use crate::service::Service;
 use sandtable_base::message::chain::error_text;
+use sandtable_catalog::kind::AnalysisKind;
 use sandtable_query::dataset::{Dataset, OpenError, QueryError};
 use sandtable_query::ground::QueriedGround;
 use sandtable_query::service::{NamedFile, ServiceOptions};
 use sandtable_query::windowed_elevation::GroundReach;
+use sandtable_raster::raster::Raster;
+use sandtable_scene::analysis_map::{MapTexts, ground_map, scene_map};
 use sandtable_scene::scene_file::open_scene_land;
 use sandtable_scene::scene_model::SceneModel;
 
@@ -53,6 +56,29 @@ impl ServedDataset {
                 Err(HttpError::new(StatusCode::INTERNAL_SERVER_ERROR, reason))
             }
         }
+    }
+
+    /// The scene under the map of an analysis: of a scene file, which is read again, or of the ground alone.
+    pub fn map(&self, texts: MapTexts, ground: impl FnOnce() -> Raster) -> Result<SceneModel, HttpError> {
+        let DatasetSource { path, allowed } = &self.source;
+        let map = match self.dataset.scene_files() {
+            Some(_) => scene_map(path, allowed, texts, &|_| ()),
+            None => ground_map(path, ground(), texts, &|_| ()),
+        };
+        map.map_err(|error| {
+            let reason =
+                format!("the map of dataset {} cannot be built: {}", quoted(&self.name), error_text(&error));
+            HttpError::new(StatusCode::INTERNAL_SERVER_ERROR, reason)
+        })
+    }
+
+    /// The texts of the map of an analysis, with its arguments as they are stated.
+    pub fn map_texts<'a>(
+        &self,
+        kind: &AnalysisKind,
+        stated: impl Iterator<Item = (&'a str, &'a str)>,
+    ) -> MapTexts {
+        MapTexts::of_analysis(kind, &self.source.path, stated)
     }
 
     /// The facts about the dataset.

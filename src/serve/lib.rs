@@ -96,6 +96,7 @@ pub fn run(options: &ServiceOptions) -> Result<(), ServeError> {
         long_bodies: Arc::new(Semaphore::new(LONG_BODIES)),
         heavy: Arc::new(Semaphore::new(cores())),
         expensive: Arc::new(Semaphore::new(expensive_at_once())),
+        pictures: Arc::new(Semaphore::new(1)),
         log: options.log,
         write_line: options.write_line,
     });

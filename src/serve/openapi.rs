@@ -124,8 +124,9 @@ fn responses(address: &ApiAddress) -> Value {
         let schema = json!({"$ref": "#/components/schemas/Refusal"});
         json!({"description": what, "content": {"application/json": {"schema": schema}}})
     };
-    let answer = address.answer;
-    let mut responses = json!({"200": {"description": address.summary, "content": {answer: {}}}});
+    let content: Map<String, Value> =
+        address.answers().into_iter().map(|answer| (answer.to_owned(), json!({}))).collect();
+    let mut responses = json!({"200": {"description": address.summary, "content": content}});
     if address.methods == ApiMethods::GetOrPost {
         responses["400"] = refusal("the request is wrong");
         responses["404"] = refusal("there is no such dataset");

@@ -28,6 +28,8 @@ pub enum QueryWeight {
     Heavy,
     /// A blocking thread and perhaps all others, in its turn among its like; seconds.
     Expensive,
+    /// As an expensive one, while no other picture is drawn.
+    Picture,
 }
 
 /// A query with an address of its own.

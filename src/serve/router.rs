@@ -186,14 +186,19 @@ async fn work<Q: Query>(
         true => on_another_thread(service, move |service| Q::read(service, &name, &parameters)).await?,
         false => Q::read(service, &name, &parameters)?,
     };
-    let (own, all) = match query.weight(service) {
+    let weight = query.weight(service);
+    let (own, all) = match weight {
         QueryWeight::Light => return query.answer(service, stop),
         QueryWeight::Heavy => (&connection.client.heavy, &service.heavy),
-        QueryWeight::Expensive => (&connection.client.expensive, &service.expensive),
+        QueryWeight::Expensive | QueryWeight::Picture => (&connection.client.expensive, &service.expensive),
     };
     let own = acquire(own).await;
     let memory = service.answers.reserve(&service.clients, connection, query.most_bytes(service)).await;
-    let turn = (own, acquire(all).await);
+    let picture = match weight {
+        QueryWeight::Picture => Some(acquire(&service.pictures).await),
+        _ => None,
+    };
+    let turn = (own, picture, acquire(all).await);
     let stop = Arc::clone(stop);
     let answer = on_another_thread(service, move |service| {
         let answer = query.answer(service, &stop);

@@ -33,6 +33,8 @@ pub struct Service {
     pub heavy: Arc<Semaphore>,
     /// Permits for expensive queries that are worked on: each may take all cores and a byte a post.
     pub expensive: Arc<Semaphore>,
+    /// The permit for a picture that is drawn: each takes a scene and its pixels.
+    pub pictures: Arc<Semaphore>,
     pub log: RequestLog,
     /// Writes a line for the user.
     pub write_line: fn(&str),

@@ -5,6 +5,7 @@
 //!                   └─────► picture_buffers, picture_statistics, sidecar       what the pixels show
 //! ```
 
+pub mod analysis_map;
 mod contour_marks;
 pub mod graphic_texts;
 pub mod grid;

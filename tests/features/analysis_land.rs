@@ -1,10 +1,10 @@
-//! The land of a scene for terrain analysis: what lets water through its roads.
+//! The land of a scene for terrain analysis: what lets water through its roads, and how high its buildings are.
 
 use glam::DVec2;
-use sandtable_analysis::land::{Crossing, CrossingKind};
+use sandtable_analysis::land::{Crossing, CrossingKind, Land};
 use sandtable_catalog::kind::LandPart;
-use sandtable_scene::land::land_of;
-use sandtable_scene::scene_file::open_scene;
+use sandtable_scene::land::{land_of, land_of_drawn};
+use sandtable_scene::scene_file::{open_scene, open_scene_land};
 
 use crate::common::scratch::Scratch;
 
@@ -33,4 +33,36 @@ fn a_road_over_a_narrow_brook_has_a_culvert_there() {
     let [from, to] = [culvert.line[0], culvert.line[culvert.line.len() - 1]];
     assert!(from.distance(DVec2::new(140.0, 150.0)) < 0.1 && to.distance(DVec2::new(160.0, 150.0)) < 0.1);
     assert!(crossings(5.0).is_empty(), "a wider river needs a bridge");
+}
+
+#[test]
+fn on_an_exaggerated_scene_buildings_have_their_heights_true_to_scale() {
+    let folder = Scratch::new();
+    let heights: Vec<String> =
+        (0..31 * 31).map(|index| format!("{:.1}", 100.3 + 0.7 * f64::from(index / 31))).collect();
+    let grid = "ncols 31\nnrows 31\nxllcorner -5\nyllcorner -5\ncellsize 10\n";
+    folder.write("plane.asc", format!("{grid}{}", heights.join(" ")));
+    let house = |south: u32| {
+        let north = south + 25;
+        format!(
+            "[[building]]\npoints = [[100, {south}], [131, {south}], [131, {north}], [100, {north}]]\nheight = 7.3\n"
+        )
+    };
+    let houses: String = (0..5).map(|row| house(20 + row * 50)).collect();
+    let scene = format!(
+        "[terrain]\ndem = \"plane.asc\"\ncrs = \"EPSG:32633\"\nvertical_exaggeration = 1.7\n{houses}"
+    );
+    let path = folder.write("scene.toml", scene);
+    let drawn = open_scene(&path, &[], &|_| {}).unwrap_or_else(|failure| panic!("{failure:?}"));
+    let reopen = || open_scene_land(&path, &[], &|_| {});
+    let true_to_scale = reopen().unwrap_or_else(|failure| panic!("{failure:?}"));
+    let bits =
+        |land: Land| -> Vec<u32> { land.obstacles_m.expect("known").into_iter().map(f32::to_bits).collect() };
+    let layers = [LandPart::Obstacles];
+    let wanted = bits(land_of(&true_to_scale, &layers));
+    let found = land_of_drawn(&drawn, &layers, reopen).unwrap_or_else(|failure| panic!("{failure:?}"));
+    assert!(bits(found) == wanted && wanted.iter().any(|&bits| f32::from_bits(bits) > 5.0));
+    assert!(bits(land_of(&drawn, &layers)) != wanted, "the drawn scene has them in other bits");
+    let same = land_of_drawn(&true_to_scale, &layers, || -> Result<_, ()> { Err(()) });
+    assert!(bits(same.expect("nothing is opened again")) == wanted);
 }

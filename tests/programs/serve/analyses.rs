@@ -59,6 +59,50 @@ fn features_of_a_scene_have_the_bytes_of_the_command() {
 }
 
 #[test]
+fn a_map_has_the_bytes_of_the_command_and_a_tag() {
+    let server = server();
+    let map = |path: &str| {
+        let answer = server.get(&format!("/v1/analyze/{path}&format=png"));
+        assert_eq!((answer.status, answer.header("content-type")), (200, "image/png"), "{path}");
+        assert!(!answer.header("etag").is_empty(), "{path}");
+        answer.bytes
+    };
+    let found = map(&format!("slope?dataset=dem&crs=EPSG:32616&extent={EXTENT}&unit=degrees"));
+    let slope = ["slope", DEM, "--crs", "EPSG:32616", "--extent", EXTENT, "--unit", "degrees"];
+    assert!(found == written(&slope, "png"), "{} bytes", found.len());
+    let found = map("obstacles?dataset=road&vehicle=truck");
+    assert!(found == written(&["obstacles", "scenes/road.toml", "--vehicle", "truck"], "png"));
+}
+
+#[test]
+fn maps_of_a_stated_size_or_of_too_much_land_are_refused_and_many_at_once_take_turns() {
+    let server = Server::start(Path::new(ROOT), &[DEM, "--max-posts", "30000"]);
+    let at = format!("crs=EPSG:32616&extent={EXTENT}&format=png");
+    for size in ["size=1000000x1000000", "width=-1", "dpi=1e9", "size="] {
+        let refused = server.get(&format!("/v1/analyze/slope?{at}&{size}")).refused(400);
+        assert!(refused.contains("extent"), "{refused}");
+    }
+    let much = server.get("/v1/analyze/slope?format=png").refused(400);
+    assert!(much.contains("30000 are the most"), "{much}");
+    let picture = server.get("/v1/analyze/slope?format=jpeg").refused(400);
+    assert!(picture.contains("png"), "{picture}");
+    std::thread::scope(|scope| {
+        let asked: Vec<_> =
+            (0..4).map(|_| scope.spawn(|| server.get(&format!("/v1/analyze/slope?{at}")))).collect();
+        let answers: Vec<_> = asked.into_iter().map(|thread| thread.join().expect("asked")).collect();
+        assert!(answers.iter().all(|answer| answer.status == 200 && answer.bytes == answers[0].bytes));
+    });
+    assert_eq!(server.get("/health").status, 200);
+}
+
+#[test]
+fn the_document_of_the_queries_lists_the_map_among_the_answers() {
+    let document = server().get("/openapi.json").ok();
+    let answers = &document["paths"]["/v1/analyze/slope"]["get"]["responses"]["200"]["content"];
+    assert!(answers["image/png"].is_object() && answers["image/tiff"].is_object(), "{answers}");
+}
+
+#[test]
 fn positions_are_latitude_first_or_texts_with_bars_between() {
     let server = server();
     let posts = ["36.3,-84.2|36.35,-84.15", "16SGE0000099999|36.35,-84.15"];
