@@ -4,6 +4,7 @@
 
 use std::path::{Path, PathBuf};
 use std::slice::from_ref;
+use std::sync::Arc;
 
 use clap::error::ErrorKind;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, Subcommand};
@@ -206,7 +207,8 @@ fn analyzed(
     let crs = of_dataset.crs(&dataset);
     of_dataset.note_ground(&dataset)?;
     steps.begin("analyzing");
-    let stop = StopFlag::default();
+    let stop = Arc::new(StopFlag::default());
+    steps.watch(Arc::clone(&stop));
     if let Some((path, AnalysisFormat::Raster(format))) = output
         && format.windows_writer.is_some()
         && let Some(bands) = analysis_bands(&dataset, (*kind, arguments), &crs, &stop)?
@@ -217,6 +219,8 @@ fn analyzed(
         Some(scene) => land_of_drawn(scene, kind.layers, || open_scene_land(file, allowed, &progress))?,
         None => bare_land(&dataset, (kind, arguments), &crs)?,
     };
+    steps.begin("analyzing");
+    steps.watch(Arc::clone(&stop));
     let analyzed = analyze(&dataset, land, (*kind, arguments), &crs, &stop)?;
     Ok(AnalysisMade::InMemory(analyzed, scene.map(Box::new)))
 }

@@ -1,9 +1,20 @@
 //! The steps of a command: a spinner with the current one on a terminal, nothing elsewhere, and the time of each.
+//!
+//! ```text
+//! ⠹ analyzing 37 %, 24 s left [14s]
+//! ```
 
-use std::sync::{Mutex, PoisonError};
+use std::fmt::Write;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressState, ProgressStyle};
+
+use sandtable_terrain::stop_flag::StopFlag;
+
+/// What is left is estimated after this time, and this share: before, it is a guess.
+const LEAST_TIME: Duration = Duration::from_secs(2);
+const LEAST_SHARE: f64 = 0.02;
 
 /// Times the steps of a command and shows the current one.
 pub struct StepTimer {
@@ -15,14 +26,32 @@ impl Default for StepTimer {
     fn default() -> Self {
         let bar = ProgressBar::new_spinner();
         bar.enable_steady_tick(Duration::from_millis(100));
-        let style = ProgressStyle::with_template("{spinner} {msg} [{elapsed}]");
-        let style = style.unwrap_or_else(|_| ProgressStyle::default_spinner());
-        Self { bar: bar.with_style(style), starts: Mutex::default() }
+        Self { bar: bar.with_style(step_style()), starts: Mutex::default() }
     }
 }
 
+/// The step and the time of all.
+fn step_style() -> ProgressStyle {
+    let style = ProgressStyle::with_template("{spinner} {msg} [{elapsed}]");
+    style.unwrap_or_else(|_| ProgressStyle::default_spinner())
+}
+
 impl StepTimer {
+    /// Shows beside the current step the share that `flag` states, and the time that is left.
+    pub fn watch(&self, flag: Arc<StopFlag>) {
+        let since = Instant::now();
+        let share = move |_: &ProgressState, out: &mut dyn Write| {
+            let text = flag.share().map(|share| share_text(since.elapsed(), share)).unwrap_or_default();
+            // A terminal that cannot be written to has nobody who reads.
+            let _ = out.write_str(&text);
+        };
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}{share} [{elapsed}]") {
+            self.bar.set_style(style.with_key("share", share));
+        }
+    }
+
     pub fn begin(&self, step: &'static str) {
+        self.bar.set_style(step_style());
         self.bar.set_message(step);
         self.starts.lock().unwrap_or_else(PoisonError::into_inner).push((step, Instant::now()));
     }
@@ -45,8 +74,34 @@ impl StepTimer {
     }
 }
 
+/// The share that is done, 0..=1, after some time, and the time that is left if all goes on alike.
+fn share_text(elapsed: Duration, share: f64) -> String {
+    let percent = (share * 100.0).floor();
+    if elapsed < LEAST_TIME || share < LEAST_SHARE {
+        return format!(" {percent} %");
+    }
+    let left_s = (elapsed.as_secs_f64() * (1.0 - share) / share).ceil();
+    let left = if left_s < 120.0 { format!("{left_s} s") } else { format!("{} min", (left_s / 60.0).ceil()) };
+    format!(" {percent} %, {left} left")
+}
+
 impl Drop for StepTimer {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_left_follows_from_the_share_once_there_is_some() {
+        let text = |seconds: u64, share: f64| share_text(Duration::from_secs(seconds), share);
+        assert_eq!(text(1, 0.5), " 50 %");
+        assert_eq!(text(60, 0.001), " 0 %");
+        assert_eq!(text(14, 0.37), " 37 %, 24 s left");
+        assert_eq!(text(600, 0.5), " 50 %, 10 min left");
+        assert_eq!(text(9, 1.0), " 100 %, 0 s left");
     }
 }

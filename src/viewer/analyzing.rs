@@ -17,7 +17,7 @@ use crate::analysis_listing::AnalysisListing;
 use crate::app::ViewerApp;
 use crate::loading::opening_error;
 use crate::panels::analyses::{AnalysesEvent, AnalysesPanel, analyses_panel};
-use crate::panels::analysis_form::{AnalysisForm, AnalysisFormEvent, analysis_form};
+use crate::panels::analysis_form::{AnalysisForm, AnalysisFormEvent, RunningAnalysis, analysis_form};
 use crate::place_picking::PlacePicking;
 use crate::worker::WorkerJob;
 use sandtable_analysis::error::AnalysisError;
@@ -294,7 +294,8 @@ impl ViewerApp {
         vehicles.extend(built_in);
         let running = self.analyzing.making.as_ref().map(|making| {
             let step = *making.step.lock().unwrap_or_else(PoisonError::into_inner);
-            (step, making.since.elapsed().as_secs())
+            let share = making.stop.share().filter(|&share| share < 1.0);
+            RunningAnalysis { step, seconds: making.since.elapsed().as_secs(), share }
         });
         let picking = match &self.tool {
             Some(ActiveTool::Pick(picking)) => Some(picking.parameter),

@@ -10,6 +10,17 @@ use sandtable_editing::analysis_draft::{AnalysisDraft, DraftField};
 /// The width of a field, in points.
 const FIELD_WIDTH: f32 = 140.0;
 
+/// An analysis that is being made.
+#[derive(Clone, Copy)]
+pub struct RunningAnalysis<'a> {
+    /// What is being done.
+    pub step: &'a str,
+    /// Since when, seconds.
+    pub seconds: u64,
+    /// Which share of it is done, 0..=1, where it says so.
+    pub share: Option<f64>,
+}
+
 /// The state that the form shows.
 pub struct AnalysisForm<'a> {
     /// What is being prepared.
@@ -18,8 +29,8 @@ pub struct AnalysisForm<'a> {
     pub vehicles: &'a [String],
     /// What is wrong beside the fields; empty for nothing.
     pub problem: &'a str,
-    /// What is being done, and for how many seconds; `None` while nothing is.
-    pub running: Option<(&'a str, u64)>,
+    /// What is being made; `None` while nothing is.
+    pub running: Option<RunningAnalysis<'a>>,
     /// The parameter whose positions are picked on the ground.
     pub picking: Option<&'a str>,
 }
@@ -64,9 +75,10 @@ pub fn analysis_form(ui: &mut Ui, form: &mut AnalysisForm<'_>) -> Option<Analysi
         ui.colored_label(ui.visuals().error_fg_color, form.problem);
     }
     ui.horizontal(|ui| match form.running {
-        Some((step, seconds)) => {
+        Some(RunningAnalysis { step, seconds, share }) => {
             ui.spinner();
-            ui.label(format!("{step}, {seconds} s"));
+            let share = share.map(|share| format!(" {:.0} %", (share * 100.0).floor())).unwrap_or_default();
+            ui.label(format!("{step}{share}, {seconds} s"));
             if ui.button("Stop").clicked() {
                 event = Some(AnalysisFormEvent::Stop);
             }
@@ -197,7 +209,11 @@ mod tests {
                 draft: state.draft.as_mut(),
                 vehicles: &vehicles,
                 problem: "",
-                running: state.running.then_some(("analyzing", 3)),
+                running: state.running.then_some(RunningAnalysis {
+                    step: "analyzing",
+                    seconds: 3,
+                    share: Some(0.379),
+                }),
                 picking: None,
             };
             state.events.extend(analysis_form(ui, &mut form));
@@ -255,7 +271,7 @@ mod tests {
     fn while_an_analysis_is_made_its_step_is_told_and_it_is_stopped() {
         let slope = AnalysisDraft::new(sandtable_catalog::kind("slope").expect("a kind"));
         let mut harness = form(Some(slope), true);
-        harness.get_by_label("analyzing, 3 s");
+        harness.get_by_label("analyzing 37 %, 3 s");
         assert!(harness.query_by_label("Run").is_none());
         harness.get_by_label("Stop").click();
         harness.run_steps(2);
