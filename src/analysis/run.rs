@@ -159,6 +159,38 @@ mod tests {
     }
 
     #[test]
+    fn kinds_that_take_long_say_which_share_is_done() {
+        let land = shaped(30, 30, 10.0, |column, row| ((column * 31 + row * 17) % 23) as f32 * 0.2);
+        let places = ArgumentValue::Points(vec![DVec2::new(52.0, 61.0), DVec2::new(121.0, 133.0)]);
+        for (name, key) in [
+            ("time", "from"),
+            ("viewsheds", "posts"),
+            ("fields-of-fire", "weapons"),
+            ("masking", "radars"),
+            ("best-posts", ""),
+            ("flow", ""),
+            ("geomorphons", ""),
+            ("peaks", ""),
+        ] {
+            let kind = sandtable_catalog::kind(name).expect(name);
+            let mut arguments = AnalysisArguments::new(kind);
+            if !key.is_empty() {
+                arguments = arguments.with(key, places.clone());
+            }
+            if kind.parameter("max_range").is_some() {
+                arguments = arguments.with("max_range", ArgumentValue::Number(100.0));
+            }
+            let stop = StopFlag::default();
+            run(&land, &arguments, &stop).expect(name);
+            assert!(
+                stop.share().is_some_and(|share| (0.79..=1.0).contains(&share)),
+                "{name}: {:?}",
+                stop.share()
+            );
+        }
+    }
+
+    #[test]
     fn kinds_give_rasters_and_features_as_the_catalog_says() {
         let ground = shaped(30, 30, 10.0, |column, row| ((column * 31 + row * 17) % 23) as f32 * 0.2);
         let land = Land { other_ground: Some(ground.ground.clone()), ..ground };

@@ -44,6 +44,7 @@ pub(crate) fn time(
     let most_s = arguments.number("max_min") as f32 * 60.0;
     stop.stretch(0.2..0.95, land.ground.heights().len());
     let mut values = ground.times(&starts, TravelGoal::within(most_s), stop);
+    stop.stretch(0.95..1.0, 1);
     let mut reached = 0usize;
     let mut latest = 0.0f32;
     for value in &mut values {

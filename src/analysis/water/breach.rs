@@ -9,6 +9,7 @@ use std::collections::BinaryHeap;
 
 use super::directions::runs_m;
 use super::fill::sortable;
+use super::prepared::BREACHED;
 use crate::error::AnalysisError;
 use sandtable_base::limits::memory::check_memory;
 use sandtable_terrain::lattice::Lattice;
@@ -78,10 +79,12 @@ pub(crate) fn breach(
         .collect();
     pits.sort_unstable();
     let mut tally = BreachTally::default();
+    stop.stretch(0.0..BREACHED, pits.len());
     for (_, pit) in pits {
         if stop.is_stopped() {
             return Err(AnalysisError::Stopped);
         }
+        stop.did(1);
         // An earlier way may have drained it.
         if !is_pit(heights, pit as usize, columns, rows) {
             continue;

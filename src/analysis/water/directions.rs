@@ -45,9 +45,11 @@ pub(crate) fn directions(
     stop: &StopFlag,
 ) -> Result<Vec<u8>, AnalysisError> {
     check_posts(filled_m.len(), 9)?;
+    stop.did(1);
     let columns = ground.columns() as usize;
     let mut codes = vec![NO_DIRECTION; filled_m.len()];
     let flats = fall_lines(ground.cell(), filled_m, columns, &mut codes);
+    stop.did(1);
     if stop.is_stopped() {
         return Err(AnalysisError::Stopped);
     }

@@ -65,7 +65,6 @@ pub(crate) fn flow(
 ) -> Result<Outcome, AnalysisError> {
     let water = WaterGround::of(land, arguments, stop)?;
     let drainage = water.drained(stop)?;
-    stop.stretch(0.6..1.0, 1);
     let cell_m2 = land.ground.cell_m2();
     let area = |(index, posts): (usize, f64)| match drainage.has_data(index) {
         true => (posts * cell_m2) as f32,

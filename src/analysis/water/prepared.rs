@@ -12,6 +12,9 @@ use crate::land::Land;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::stop_flag::StopFlag;
 
+/// The share of the work that breaching takes, where it is done.
+pub(super) const BREACHED: f64 = 0.5;
+
 /// The ground as water meets it.
 pub(crate) struct WaterGround<'a> {
     /// The posts.
@@ -20,6 +23,8 @@ pub(crate) struct WaterGround<'a> {
     pub heights: Cow<'a, [f32]>,
     /// What was done to the ground, a sentence each.
     pub notes: Vec<String>,
+    /// Whether its depressions were breached.
+    is_breached: bool,
 }
 
 impl<'a> WaterGround<'a> {
@@ -30,7 +35,8 @@ impl<'a> WaterGround<'a> {
     pub fn of(land: &'a Land, arguments: &AnalysisArguments, stop: &StopFlag) -> Result<Self, AnalysisError> {
         let (mut heights, cuts) = carved(land);
         let mut notes = cut_note(cuts);
-        if arguments.word("depressions") == "breach" {
+        let is_breached = arguments.word("depressions") == "breach";
+        if is_breached {
             let limits = BreachLimits {
                 depth_m: arguments.number("breach_depth_m"),
                 length_m: arguments.number("breach_length_m"),
@@ -41,7 +47,7 @@ impl<'a> WaterGround<'a> {
                 tally.breached, tally.left
             ));
         }
-        Ok(Self { ground: &land.ground, heights, notes })
+        Ok(Self { ground: &land.ground, heights, notes, is_breached })
     }
 
     /// The heights with the depressions filled that are left.
@@ -57,6 +63,10 @@ impl<'a> WaterGround<'a> {
     /// # Errors
     /// [`AnalysisError::Memory`] and [`AnalysisError::Stopped`].
     pub fn drained(&self, stop: &StopFlag) -> Result<Drainage, AnalysisError> {
-        drain(self.ground, &self.heights, stop)
+        // Filled, down slopes, across flats; what follows takes as long as each.
+        stop.stretch(if self.is_breached { BREACHED } else { 0.0 }..0.8, 3);
+        let drainage = drain(self.ground, &self.heights, stop)?;
+        stop.stretch(0.8..1.0, 1);
+        Ok(drainage)
     }
 }

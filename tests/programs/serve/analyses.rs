@@ -75,7 +75,7 @@ fn a_map_has_the_bytes_of_the_command_and_a_tag() {
 }
 
 #[test]
-fn maps_of_a_stated_size_or_of_too_much_land_are_refused_and_many_at_once_take_turns() {
+fn maps_of_a_stated_size_or_too_much_land_are_refused_and_many_take_turns() {
     let server = Server::start(Path::new(ROOT), &[DEM, "--max-posts", "30000"]);
     let at = format!("crs=EPSG:32616&extent={EXTENT}&format=png");
     for size in ["size=1000000x1000000", "width=-1", "dpi=1e9", "size="] {
