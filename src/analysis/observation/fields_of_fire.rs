@@ -13,8 +13,9 @@ use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::measures::{area_km2, percent};
 use crate::observation::lookout::{
-    Lookout, LookoutView, check_looks, count_classes, curvature, look, posts_within,
+    Lookout, LookoutView, check_looks, count_classes, curvature, posts_within,
 };
+use crate::observation::sight_land::SightLand;
 use crate::outcome::{
     FeatureRole, Figure, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, OutcomeTable, PostValues,
     PropertyValue, TableColumn,
@@ -24,8 +25,8 @@ use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::sight::viewshed::{PostVisibility, Sector, ViewshedOptions};
 use sandtable_terrain::stop_flag::StopFlag;
 
-/// A value and the visibility of each post, with what a viewshed needs while it is computed.
-const BYTES_PER_POST: u64 = 8;
+/// A value, the visibility, and what stands at each post, with what a viewshed needs while it is computed.
+const BYTES_PER_POST: u64 = 16;
 
 /// Corners of a full circle of a fan: its chords lie at most 0.04 % of the radius within it.
 const CIRCLE_CORNERS: f64 = 120.0;
@@ -57,6 +58,7 @@ pub(crate) fn fields_of_fire(
     check_memory(posts as u64 * BYTES_PER_POST, "the fields of fire", "state a smaller `extent`")?;
     let mut values = vec![f32::NAN; posts];
     let mut shares = Vec::with_capacity(weapons.len());
+    let sight = SightLand::new(land).cleared_around(weapons.iter().map(|weapon| weapon.end.at));
     for weapon in &weapons {
         let options = ViewshedOptions {
             target_above_m: target_m,
@@ -65,7 +67,7 @@ pub(crate) fn fields_of_fire(
             curvature: curvature(arguments),
             ..ViewshedOptions::new(weapon.end)
         };
-        let mut view = look(ground, "weapons", &options, stop)?;
+        let mut view = sight.look("weapons", &options, stop)?;
         hide_nearer(ground, &mut view, weapon.end.at, fan.min_m);
         view.merge_into(&mut values, ground.columns() as usize, |value, post| match post {
             PostVisibility::Beyond | PostVisibility::NoData => {}

@@ -10,14 +10,12 @@ use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::outcome::{FeatureRole, Hatching, OutcomeFeature, OutcomeShape, PropertyValue, ValueClass};
-use crate::place::{height_under, missing_ground};
+use crate::place::height_under;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::sight::Curvature;
 use sandtable_terrain::sight::line::SightEnd;
-use sandtable_terrain::sight::viewshed::rises::required_rises;
-use sandtable_terrain::sight::viewshed::{PostVisibility, Viewshed, ViewshedOptions, viewshed_until};
-use sandtable_terrain::stop_flag::StopFlag;
+use sandtable_terrain::sight::viewshed::{PostVisibility, Viewshed};
 
 /// The tint of ground that nothing sees.
 pub(crate) const DEAD_TINT: [u8; 4] = [90, 90, 90, 110];
@@ -119,54 +117,8 @@ pub(crate) fn check_work(
     Err(AnalysisError::argument(key, problem))
 }
 
-/// What is seen of the land; see [`viewshed_until`].
-///
-/// # Errors
-/// The observer has no ground, or the analysis was stopped.
-pub(crate) fn look(
-    ground: &Lattice,
-    key: &'static str,
-    options: &ViewshedOptions,
-    stop: &StopFlag,
-) -> Result<LookoutView, AnalysisError> {
-    let (held, view) = on_posts_around(ground, key, options, |ground| viewshed_until(ground, options, stop))?;
-    Ok(LookoutView { held, view })
-}
-
-/// How far targets on the ground must rise to be seen; see [`required_rises`]. With the posts that were looked at.
-///
-/// # Errors
-/// As for [`look`].
-pub(crate) fn rises(
-    ground: &Lattice,
-    key: &'static str,
-    options: &ViewshedOptions,
-    stop: &StopFlag,
-) -> Result<(PostRect, Vec<f32>), AnalysisError> {
-    let (held, rises) =
-        on_posts_around(ground, key, options, |ground| required_rises(ground, options, stop))?;
-    Ok((held, rises.rises_m))
-}
-
-/// What `task` gives on the ground that holds only posts within range, and which these are.
-fn on_posts_around<T, E>(
-    ground: &Lattice,
-    key: &'static str,
-    options: &ViewshedOptions,
-    task: impl FnOnce(&Lattice) -> Result<Option<T>, E>,
-) -> Result<(PostRect, T), AnalysisError> {
-    let at = options.observer.at;
-    let place = |_| AnalysisError::Place { key, at, problem: missing_ground(ground, at) };
-    let held = posts_around(ground, at, options.range_m);
-    let found = match held == PostRect::all(ground) {
-        true => task(ground),
-        false => task(&ground.holding_only(held)),
-    };
-    Ok((held, found.map_err(place)?.ok_or(AnalysisError::Stopped)?))
-}
-
 /// The posts within a range and those of a cell around them.
-fn posts_around(ground: &Lattice, at: DVec2, range_m: f64) -> PostRect {
+pub(crate) fn posts_around(ground: &Lattice, at: DVec2, range_m: f64) -> PostRect {
     let reach = DVec2::splat(range_m) / ground.cell() + 2.0;
     let at = ground.grid_from_map(at);
     let around = PostRect::between(ground, (at - reach).floor(), (at + reach).ceil());

@@ -10,7 +10,8 @@ use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::measures::percent;
-use crate::observation::lookout::{Lookout, check_looks, curvature, posts_within, range_m, rises};
+use crate::observation::lookout::{Lookout, check_looks, curvature, posts_within, range_m};
+use crate::observation::sight_land::SightLand;
 use crate::outcome::{
     Figure, Hatching, Outcome, OutcomeRaster, OutcomeTable, PostValues, PropertyValue, TableColumn,
     ValueClass,
@@ -21,14 +22,15 @@ use sandtable_terrain::sight::Curvature;
 use sandtable_terrain::sight::viewshed::ViewshedOptions;
 use sandtable_terrain::stop_flag::StopFlag;
 
-/// A value and the rise of each post, and the rise as the sweep stores it.
-const BYTES_PER_POST: u64 = 12;
+/// A value, the rise of each post and what stands there, and the rise as the sweep stores it.
+const BYTES_PER_POST: u64 = 20;
 
 /// Heights above the ground at which the hidden share is a figure, meters.
 const LEVELS_M: [f32; 4] = [0.0, 50.0, 100.0, 300.0];
 
 /// What looks for targets.
 struct MaskingWatch<'a> {
+    sight: SightLand,
     ground: &'a Lattice,
     radars: &'a [Lookout],
     curvature: Curvature,
@@ -54,6 +56,7 @@ pub(crate) fn masking(
     let posts = ground.heights().len();
     check_memory(posts as u64 * BYTES_PER_POST, "the masking heights", "state a smaller `extent`")?;
     let watch = MaskingWatch {
+        sight: SightLand::new(land).cleared_around(radars.iter().map(|radar| radar.end.at)),
         ground,
         radars: &radars,
         curvature: curvature(arguments),
@@ -116,7 +119,7 @@ impl MaskingWatch<'_> {
             curvature: self.curvature,
             ..ViewshedOptions::new(self.radars[index].end)
         };
-        let (held, rises_m) = rises(self.ground, "radars", &options, stop)?;
+        let (held, rises_m) = self.sight.rises("radars", &options, stop)?;
         let rows = values.par_chunks_mut(self.ground.columns() as usize).enumerate();
         let rows = rows.skip(held.first.row as usize).take(held.height());
         let seen_of = rows.zip(rises_m.par_chunks(held.width())).map(|((row, values), rises_m)| {

@@ -5,8 +5,9 @@ use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::measures::{area_km2, percent};
 use crate::observation::lookout::{
-    DEAD_TINT, Lookout, check_looks, count_classes, curvature, look, posts_within, range_m,
+    DEAD_TINT, Lookout, check_looks, count_classes, curvature, posts_within, range_m,
 };
+use crate::observation::sight_land::SightLand;
 use crate::outcome::{
     Figure, Hatching, Outcome, OutcomeRaster, OutcomeTable, PostValues, PropertyValue, TableColumn,
     ValueClass,
@@ -16,8 +17,8 @@ use sandtable_base::limits::memory::check_memory;
 use sandtable_terrain::sight::viewshed::{PostVisibility, ViewshedOptions};
 use sandtable_terrain::stop_flag::StopFlag;
 
-/// A value and the visibility of each post, with what a viewshed needs while it is computed.
-const BYTES_PER_POST: u64 = 8;
+/// A value, the visibility, and what stands at each post, with what a viewshed needs while it is computed.
+const BYTES_PER_POST: u64 = 16;
 
 /// What the values of viewsheds are.
 #[derive(Clone, Copy, PartialEq)]
@@ -49,6 +50,7 @@ pub(crate) fn viewsheds(
     check_memory(posts as u64 * BYTES_PER_POST, "the viewsheds", "state a smaller `extent`")?;
     let mut values = vec![f32::NAN; posts];
     let mut shares = Vec::with_capacity(lookouts.len());
+    let sight = SightLand::new(land).cleared_around(lookouts.iter().map(|lookout| lookout.end.at));
     for lookout in &lookouts {
         let options = ViewshedOptions {
             target_above_m: arguments.number("target_height"),
@@ -56,7 +58,7 @@ pub(crate) fn viewsheds(
             curvature: curvature(arguments),
             ..ViewshedOptions::new(lookout.end)
         };
-        let view = look(ground, "posts", &options, stop)?;
+        let view = sight.look("posts", &options, stop)?;
         let number = lookout.number as f32;
         view.merge_into(&mut values, ground.columns() as usize, |value, post| {
             *value = merged(show, number, *value, post);
