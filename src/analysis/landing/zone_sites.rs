@@ -202,7 +202,7 @@ fn size_of(ground: &Lattice) -> [usize; 2] {
 fn points_value(points: usize) -> PropertyValue {
     match points < MOST_POINTS {
         true => PropertyValue::Whole(points as i64),
-        false => PropertyValue::Text(format!("{MOST_POINTS} or more")),
+        false => PropertyValue::Text(format!("{MOST_POINTS}+")),
     }
 }
 

@@ -96,5 +96,5 @@ fn points_are_those_of_the_ground_that_hangs_together_up_to_twenty() {
     assert_eq!(counts, [&PropertyValue::Whole(16), &PropertyValue::Whole(20)]);
     let points =
         outcome.tables[0].columns.iter().position(|column| column.name == "points").expect("a column");
-    assert_eq!(outcome.tables[0].rows[1][points], PropertyValue::Text("20 or more".into()));
+    assert_eq!(outcome.tables[0].rows[1][points], PropertyValue::Text("20+".into()));
 }
