@@ -405,3 +405,26 @@ pub fn stroke_run(run: &[LineVertex], width_px: f64, plan: &mut PlanMesh) {
     let alignment = Alignment { line, level: None, width: Width::Varying(widths), support: Support::Ground };
     stroke(&StrokePath::alone(&alignment), &options, plan);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_under_lies_under_all_else_whatever_its_color_and_feature() {
+        let (post, link, later) =
+            (Srgba::opaque(20, 20, 20), Srgba::opaque(30, 130, 60), Srgba::opaque(0, 0, 0));
+        let mut pen = GraphicPen::default();
+        pen.plan(post, FeatureId(3));
+        pen.set_order(LineOrder::Under);
+        pen.plan(link, FeatureId(3));
+        pen.plan(link, FeatureId(9));
+        pen.set_order(LineOrder::default());
+        pen.plan(later, FeatureId(9));
+        let [_, lines] = pen.into_plans();
+        let drawn: Vec<(Srgba, FeatureId)> = lines.iter().map(|plan| (plan.color, plan.feature)).collect();
+        let expected =
+            [(link, FeatureId(3)), (link, FeatureId(9)), (post, FeatureId(3)), (later, FeatureId(9))];
+        assert_eq!(drawn, expected);
+    }
+}
