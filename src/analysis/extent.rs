@@ -254,7 +254,7 @@ pub fn ground_part(ground: &Arc<Lattice>, posts: PostRect) -> Result<Arc<Lattice
 ///
 /// # Errors
 /// As [`Lattice::cut_to_held`].
-fn land_part(land: &Land, posts: PostRect) -> Result<Land, LatticeError> {
+pub fn land_part(land: &Land, posts: PostRect) -> Result<Land, LatticeError> {
     let columns = land.ground.columns() as usize;
     Ok(Land {
         ground: ground_part(&land.ground, posts)?,

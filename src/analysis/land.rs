@@ -72,6 +72,26 @@ pub enum LandCover {
     Paved,
 }
 
+impl LandCover {
+    /// Its name in tables.
+    pub const fn noun(self) -> &'static str {
+        match self {
+            Self::Unknown => "unknown",
+            Self::Open => "open ground",
+            Self::Crops => "crops",
+            Self::Orchard => "orchard",
+            Self::Scrub => "scrub",
+            Self::Wood => "wood",
+            Self::Wetland => "wetland",
+            Self::Sand => "sand",
+            Self::Rock => "rock",
+            Self::BuiltUp => "built-up",
+            Self::Building => "building",
+            Self::Paved => "paved",
+        }
+    }
+}
+
 /// The surface of a road.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]

@@ -7,7 +7,9 @@
 //! A kind is a row of `sandtable-catalog` and a function here. It knows the land as layers on a lattice; no scene, no file
 //! and no pixel. The same land and arguments give the same bits, whatever the number of threads.
 
+mod apart;
 pub mod arguments;
+mod center_columns;
 pub mod earth;
 pub mod error;
 pub mod extent;

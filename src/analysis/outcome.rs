@@ -216,6 +216,9 @@ impl OutcomeTable {
     }
 }
 
+/// The heading of columns of grid references, such as `16S GF 5000 1800`.
+pub const GRID_REFERENCE: &str = "grid reference";
+
 /// A column of a table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TableColumn {

@@ -34,12 +34,15 @@ pub fn run(land: &Land, arguments: &AnalysisArguments, stop: &StopFlag) -> Resul
     if stop.is_stopped() {
         return Err(AnalysisError::Stopped);
     }
+    outcome.notes.splice(0..0, lacking_note(land, kind));
+    Ok(outcome)
+}
+
+/// What is said of the layers that a kind uses and the land lacks; `None` where it lacks none.
+pub fn lacking_note(land: &Land, kind: &AnalysisKind) -> Option<String> {
     let lacking: Vec<&str> =
         kind.layers.iter().filter(|&&layer| !land.knows(layer)).map(|layer| layer.noun()).collect();
-    if !lacking.is_empty() {
-        outcome.notes.insert(0, format!("nothing is known of {}", lacking.join(", ")));
-    }
-    Ok(outcome)
+    (!lacking.is_empty()).then(|| format!("nothing is known of {}", lacking.join(", ")))
 }
 
 /// What the figures of a kind with a [reach](sandtable_catalog::kind::AnalysisReach) in posts are made of, from its raster: of a

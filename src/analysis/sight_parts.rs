@@ -12,13 +12,10 @@
 //! A line of sight is the same on any ground that holds it, so that the values of a part have the bits of the whole; a part
 //! that lies beyond the range of all places needs no ground at all.
 
-use std::sync::Arc;
-
 use glam::DVec2;
 
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
-use crate::extent::ground_part;
 use crate::land::Land;
 use crate::observation::lookout::LookWindow;
 use crate::observation::{fields_of_fire, masking, viewsheds};
@@ -26,14 +23,14 @@ use crate::outcome::{Outcome, OutcomeRaster};
 use crate::place::height_under;
 use crate::tally::FigureTally;
 use sandtable_catalog::kind::AnalysisReach;
-use sandtable_terrain::lattice::{Lattice, LatticeError};
+use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// What a kind of sight computes.
 pub(crate) struct SightKind {
     /// The values of posts of ground that holds what they need.
-    pub values: fn(&Lattice, &AnalysisArguments, PostRect, &StopFlag) -> Result<SightValues, AnalysisError>,
+    pub values: fn(&Land, &AnalysisArguments, PostRect, &StopFlag) -> Result<SightValues, AnalysisError>,
     /// The rest, from the heights of the ground under the places, and the tally of all posts of ground like this one.
     pub summary: fn(&Lattice, &AnalysisArguments, &[f64], &FigureTally) -> Result<Outcome, AnalysisError>,
 }
@@ -96,7 +93,7 @@ pub fn sight_work(ground: &Lattice, arguments: &AnalysisArguments, posts: PostRe
     windows.map(|window| window.posts()).sum()
 }
 
-/// The values of `posts` of ground that holds those of [`needed_for_sight`], to the bits of the whole.
+/// The values of `posts` of land that holds the ground of [`needed_for_sight`], to the bits of the whole.
 ///
 /// # Errors
 /// As of the kind on the whole land.
@@ -104,12 +101,12 @@ pub fn sight_work(ground: &Lattice, arguments: &AnalysisArguments, posts: PostRe
 /// # Panics
 /// Where the kind is none of sight.
 pub fn sight_values(
-    ground: &Lattice,
+    land: &Land,
     arguments: &AnalysisArguments,
     posts: PostRect,
     stop: &StopFlag,
 ) -> Result<SightValues, AnalysisError> {
-    (sight_kind(arguments).values)(ground, arguments, posts, stop)
+    (sight_kind(arguments).values)(land, arguments, posts, stop)
 }
 
 /// What a kind of sight gives besides its raster: from the heights of the ground under its places, and the tally of all posts of
@@ -130,17 +127,6 @@ pub fn sight_summary(
     Ok(Outcome { tally: tally.clone(), ..outcome })
 }
 
-/// These posts of ground as ground of their own, of which those that are held here are held.
-///
-/// # Errors
-/// Fewer than two posts a side.
-pub fn sight_ground(ground: &Arc<Lattice>, posts: PostRect) -> Result<Arc<Lattice>, LatticeError> {
-    match ground.holds_all() {
-        true => ground_part(ground, posts),
-        false => Ok(Arc::new(ground.cut_to(posts)?)),
-    }
-}
-
 /// A kind of sight on all of the land.
 ///
 /// # Errors
@@ -155,7 +141,7 @@ pub(crate) fn run_sight(
     let places = sight_places(arguments).iter();
     let heights: Result<Vec<f64>, _> = places.map(|&at| place_height(ground, arguments, at)).collect();
     let heights = heights?;
-    let SightValues { raster, tally } = (kind.values)(ground, arguments, PostRect::all(ground), stop)?;
+    let SightValues { raster, tally } = (kind.values)(land, arguments, PostRect::all(ground), stop)?;
     let summary = (kind.summary)(ground, arguments, &heights, &tally)?;
     Ok(Outcome { raster: Some(raster), tally, ..summary })
 }
@@ -198,6 +184,8 @@ fn sight_kind(arguments: &AnalysisArguments) -> &'static SightKind {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::arguments::ArgumentValue;
     use crate::observation::test_hills::{at, land, ripples};
@@ -220,10 +208,10 @@ mod tests {
     }
 
     /// Runs a kind in tiles on ground that holds what each needs, and compares everything with the whole.
-    fn check(arguments: &AnalysisArguments, tile: u32) {
-        let (land, stop) = (land(SIZE, ripples), StopFlag::default());
+    fn check(land: &Land, arguments: &AnalysisArguments, tile: u32) {
+        let stop = StopFlag::default();
         let name = arguments.kind().name;
-        let whole = crate::run::run(&land, arguments, &stop).expect(name);
+        let whole = crate::run::run(land, arguments, &stop).expect(name);
         let all = PostRect::all(&land.ground);
         let (mut tallies, mut empty) = (Vec::new(), 0);
         for first in (0..SIZE)
@@ -237,8 +225,15 @@ mod tests {
             };
             let needed = needed_for_sight(&land.ground, arguments, (all, posts));
             empty += usize::from(needed.is_none());
-            let ground = land.ground.holding_only(needed.unwrap_or(posts));
-            let part = sight_values(&ground, arguments, posts, &stop).expect(name);
+            // What stands on the ground is known of all of the land.
+            let part_land = match &land.obstacles_m {
+                Some(_) => land.clone(),
+                None => Land {
+                    ground: Arc::new(land.ground.holding_only(needed.unwrap_or(posts))),
+                    ..land.clone()
+                },
+            };
+            let part = sight_values(&part_land, arguments, posts, &stop).expect(name);
             let raster = whole.raster.as_ref().expect(name);
             for post in posts.posts() {
                 let (found, wanted) = (
@@ -269,7 +264,12 @@ mod tests {
         let mut tried = 0;
         for arguments in of_kinds(Some(130.0)).chain(of_kinds(Some(2000.0))).chain(of_kinds(None)) {
             for tile in [7, 20] {
-                check(&arguments, tile);
+                let bare = land(SIZE, ripples);
+                let stands = |index: u32| if index % 11 < 3 { (index % 7) as f32 } else { 0.0 };
+                let wooded =
+                    Land { obstacles_m: Some((0..SIZE * SIZE).map(stands).collect()), ..bare.clone() };
+                check(&bare, &arguments, tile);
+                check(&wooded, &arguments, tile);
                 tried += 1;
             }
         }

@@ -27,44 +27,73 @@ pub struct MarginTable {
     pub rows: Vec<Vec<String>>,
 }
 
+/// The type of a table in blocks, in design pixels, and the space between them in heights of it.
+const BLOCK_TYPE: f32 = 12.0;
+const BLOCK_GAP_EM: f32 = 0.5;
+
 /// A column that is set: heading, unit, cells.
+#[derive(Clone)]
 struct SetColumn {
     lines: Vec<TypesetLine>,
     width: f32,
 }
 
-/// The table with its upper left corner at the origin, at most `width` pixels wide: in the largest type in which it fits; in
-/// the smallest without its last columns where it does not. `None` without rows or columns.
+/// The table with its upper left corner at the origin, at most `width` pixels wide: in the largest type in which it fits, or
+/// in blocks one below the other, each with the first column and as many others as fit. `None` without rows or columns.
 pub(crate) fn compose(table: &MarginTable, width: f32, composer: &mut Composer) -> Option<Drawing> {
     if table.rows.is_empty() || table.columns.is_empty() {
         return None;
     }
-    let mut set = None;
-    for size in TYPE {
-        let style = composer.style(size, TextStyle::REGULAR);
-        let columns = set_columns(table, style, composer);
-        let is_narrow = total_width(&columns, style) <= width;
-        set = Some((columns, style));
-        if is_narrow {
-            break;
-        }
-    }
-    let (mut columns, style) = set?;
-    while columns.len() > 1 && total_width(&columns, style) > width {
-        columns.pop();
-    }
     let mut drawing = Drawing::default();
     let head_style = composer.style(15.0, TextStyle::MEDIUM);
     let head = composer.fitted(&table.title, head_style, width)?;
-    let mut baseline = head_style.cap_px().ceil();
     drawing.record_text(&table.title, head.missing, head.shortened);
-    drawing.write(&head, Vec2::new(0.0, baseline), INK);
+    drawing.write(&head, Vec2::new(0.0, head_style.cap_px().ceil()), INK);
+    let mut top = head_style.cap_px().ceil();
+    for (columns, style) in blocks(table, width, composer) {
+        top = draw_block(&mut drawing, (table, &columns), (style, top), composer)
+            + style.size_px * BLOCK_GAP_EM;
+    }
+    Some(drawing)
+}
+
+/// The columns of each block with their type.
+fn blocks(table: &MarginTable, width: f32, composer: &mut Composer) -> Vec<(Vec<SetColumn>, TextStyle)> {
+    for size in TYPE {
+        let style = composer.style(size, TextStyle::REGULAR);
+        let columns = set_columns(table, style, composer);
+        if total_width(&columns, style) <= width {
+            return vec![(columns, style)];
+        }
+    }
+    let style = composer.style(BLOCK_TYPE, TextStyle::REGULAR);
+    let mut columns = set_columns(table, style, composer).into_iter();
+    let Some(first) = columns.next() else { return Vec::new() };
+    let mut blocks = vec![vec![first.clone()]];
+    for column in columns {
+        let taken = blocks.last().map_or(0.0, |block| total_width(block, style));
+        let is_begun = blocks.last().is_some_and(|block| block.len() > 1);
+        if is_begun && taken + style.size_px * GAP_EM + column.width > width {
+            blocks.push(vec![first.clone()]);
+        }
+        blocks.last_mut().into_iter().for_each(|block| block.push(column.clone()));
+    }
+    blocks.into_iter().map(|block| (block, style)).collect()
+}
+
+/// Draws columns side by side below `top`; where the next line would lie.
+fn draw_block(
+    drawing: &mut Drawing,
+    (table, columns): (&MarginTable, &[SetColumn]),
+    (style, top): (TextStyle, f32),
+    composer: &Composer,
+) -> f32 {
     let lead = (style.size_px * LEAD_EM).round();
-    baseline += (lead * 1.15).round();
+    let mut baseline = top + (lead * 1.15).round();
     let has_units = table.columns.iter().any(|(_, unit)| !unit.is_empty());
     let count = columns.first().map_or(0, |column| column.lines.len());
     let rule_after = if has_units { 1 } else { 0 };
-    let full = total_width(&columns, style);
+    let full = total_width(columns, style);
     for line in 0..count {
         if line == 1 && !has_units {
             continue;
@@ -84,7 +113,7 @@ pub(crate) fn compose(table: &MarginTable, width: f32, composer: &mut Composer) 
         }
         baseline += lead;
     }
-    Some(drawing)
+    baseline - lead
 }
 
 fn total_width(columns: &[SetColumn], style: TextStyle) -> f32 {
@@ -145,5 +174,19 @@ mod tests {
         let (three, four) = (height(3).expect("rows"), height(4).expect("rows"));
         assert!((four - three - 18.0).abs() < 2.0, "{three} {four}");
         assert_eq!(height(MOST_ROWS + 1), height(MOST_ROWS + 100));
+    }
+
+    #[test]
+    fn a_table_that_is_too_wide_has_its_columns_in_blocks_below_each_other() {
+        let mut composer = Composer::new(1920, 1080);
+        let mut wide = march(6, 3);
+        let cells = (0..6).map(|column| format!("a wide text {column}"));
+        wide.rows = vec![cells.collect(); 3];
+        let blocks = blocks(&wide, 286.0, &mut composer);
+        let counts: Vec<usize> = blocks.iter().map(|(columns, _)| columns.len()).collect();
+        assert!(counts.len() > 1 && counts.iter().all(|&count| count > 1), "{counts:?}");
+        assert_eq!(counts.iter().map(|count| count - 1).sum::<usize>(), 5, "each column once: {counts:?}");
+        let drawing = compose(&wide, 286.0, &mut composer).expect("rows");
+        assert!(drawing.bounds().max.x <= 288.0, "{:?}", drawing.bounds());
     }
 }

@@ -1,6 +1,6 @@
 //! Kinds about observation and fire over the land.
 
-use crate::kind::{AnalysisFamily, AnalysisKind, AnalysisReach, AnalysisYield};
+use crate::kind::{AnalysisFamily, AnalysisKind, AnalysisReach, AnalysisYield, LandPart};
 use crate::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
 
 /// Heights above the ground that ends of lines of sight may have, meters.
@@ -48,8 +48,17 @@ const REFRACTION: AnalysisParameter = AnalysisParameter::number(
     "The share of the Earth's curvature that the air's refraction cancels.",
 );
 
-/// What all kinds of sight leave out.
-const BARE_GROUND: &str = "Sight is over bare ground: woods, buildings and weather hide nothing.";
+/// What stands in the way of sight.
+const LAYERS: &[LandPart] = &[LandPart::Obstacles];
+
+/// How trees and buildings hide, and what all kinds of sight leave out.
+const STANDING: &str = "Trees and buildings of a scene hide like ground of their height; a forest without trees of its own counts as \
+    15 m high, an orchard as 4 m. Around a post nothing is in its way for 30 m, or to the next elevation posts. Of an elevation \
+    file alone nothing of them is known. Weather, leafless trees and gaps between trunks are unknown.";
+
+/// How targets under trees and roofs are seen.
+const EDGES: &str = "A place under trees or a roof is seen where open ground within 30 m to its east, north, west or south is, \
+    or else at the next elevation post; deeper it is hidden. No manual states a number: this is the program's.";
 
 /// The kinds.
 pub(crate) const KINDS: &[AnalysisKind] = &[
@@ -74,9 +83,9 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
         ],
         yields: AnalysisYield::Both,
         reach: AnalysisReach::Between { places: "posts", range: "range" },
-        layers: &[],
+        layers: LAYERS,
         source: "Line of sight over the triangles of the ground; cumulative viewshed of Wheatley 1995",
-        limits: &[BARE_GROUND, "Ground beyond the range of every post has no value."],
+        limits: &[STANDING, EDGES, "Ground beyond the range of every post has no value."],
     },
     AnalysisKind {
         name: "intervisibility",
@@ -102,10 +111,10 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
         ],
         yields: AnalysisYield::Features,
         reach: AnalysisReach::Whole,
-        layers: &[],
+        layers: LAYERS,
         source: "Line of sight over the triangles of the ground; visibility graph of O'Sullivan and Turner 2001",
         limits: &[
-            BARE_GROUND,
+            STANDING,
             "A link of radio may need more clearance than a line of sight, and may do with less.",
         ],
     },
@@ -148,10 +157,11 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
         ],
         yields: AnalysisYield::Both,
         reach: AnalysisReach::Whole,
-        layers: &[],
+        layers: LAYERS,
         source: "Greedy choice: Nemhauser, Wolsey and Fisher 1978",
         limits: &[
-            BARE_GROUND,
+            STANDING,
+            EDGES,
             "One post after the other is chosen, each as the best beside those before it: together they see at least \
              1 − 1/e, 63 %, of what the best choice among the same places would.",
             "Places between those tried may be better.",
@@ -222,10 +232,11 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
         ],
         yields: AnalysisYield::Both,
         reach: AnalysisReach::Between { places: "weapons", range: "max_range" },
-        layers: &[],
+        layers: LAYERS,
         source: "Line of sight over the triangles of the ground; fields of fire as in FM 34-130",
         limits: &[
-            BARE_GROUND,
+            STANDING,
+            EDGES,
             "The trajectory is the line of sight: a bullet that rises above it or falls below it may clear a crest or \
              strike one.",
         ],
@@ -266,10 +277,11 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
         ],
         yields: AnalysisYield::Both,
         reach: AnalysisReach::Around { places: "radars", range: "range" },
-        layers: &[],
+        layers: LAYERS,
         source: "The rise that clears the line of sight over the triangles of the ground; terrain masking as in FM 34-130",
         limits: &[
-            BARE_GROUND,
+            STANDING,
+            "Over woods and roofs a target is seen from their tops on.",
             "A radar's power, clutter and lobes are unknown: a target above the masking height may be missed.",
             "The range is measured in plan.",
             "Heights are exact to a centimeter or a ten-thousandth of them, whichever is more; where they are 0 is exact.",
@@ -316,10 +328,11 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
         ],
         yields: AnalysisYield::Features,
         reach: AnalysisReach::Whole,
-        layers: &[],
+        layers: LAYERS,
         source: "Line of sight over the triangles of the ground, at places along the route",
         limits: &[
-            BARE_GROUND,
+            STANDING,
+            EDGES,
             "A stretch shorter than `step` may be missed.",
             "The speed does not change with slope and surface.",
         ],

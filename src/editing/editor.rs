@@ -17,9 +17,9 @@ use sandtable_files::disk::{self, ReadFileError, SystemError, WriteFileError};
 use sandtable_geom::crs::{Crs, CrsError};
 use sandtable_raster::raster::Raster;
 use sandtable_scene::assets::{AssetError, Assets};
-use sandtable_scene::build::build;
+use sandtable_scene::build::{SceneGround, build, build_ground};
 use sandtable_scene::feature::SceneFeature;
-use sandtable_scene::scene_file::OpenSceneError;
+use sandtable_scene::scene_file::{OpenSceneError, check_phase};
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::lattice::Lattice;
 
@@ -123,6 +123,18 @@ impl SceneSource {
         progress: &dyn Fn(&'static str),
     ) -> Result<SceneModel, OpenSceneError> {
         self.build_of(Assets::new(&self.path, &self.allowed)?.with_elevation(elevation), progress)
+    }
+
+    /// The ground of the text as it is, saved or not, in the phase called `phase`.
+    ///
+    /// # Errors
+    /// See [`OpenSceneError`].
+    pub fn ground_in_phase(&self, phase: &str) -> Result<SceneGround, OpenSceneError> {
+        let assets = Assets::new(&self.path, &self.allowed)?;
+        let source = Self { phase: Some(phase.to_owned()), ..self.clone() };
+        let document = source.decode(&source.text, &assets)?;
+        check_phase(&document, Some(phase))?;
+        Ok(build_ground(&document, &assets)?)
     }
 
     fn build_of(

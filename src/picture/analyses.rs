@@ -6,7 +6,7 @@ use crate::analysis_look::{
     class_of, feature_color, hatch_color, is_print, is_seen, printed, property, shown_classes,
 };
 use crate::class_hatching::HatchedRaster;
-use crate::graphic_lines::{GraphicPen, GraphicView, LineLook};
+use crate::graphic_lines::{GraphicPen, GraphicView, LineLook, LineOrder};
 use crate::placed_text::{PlacedCourse, PlacedText};
 use crate::post_tint::{PostTint, TintPlan};
 use crate::sight::{circle, level_text};
@@ -91,7 +91,11 @@ pub(super) fn draw(
             HatchedRaster { raster, classes: &classes, analysis, scene }.draw(view, pen);
         }
         let drawing = FeatureDrawing { analysis, view, scene, origin: scene.lattice.origin() };
-        analysis.shown_features().iter().for_each(|feature| drawing.draw(feature, pen, texts));
+        for feature in analysis.shown_features() {
+            pen.set_order(order(feature));
+            drawing.draw(feature, pen, texts);
+        }
+        pen.set_order(LineOrder::default());
     }
 }
 
@@ -247,6 +251,11 @@ impl FeatureDrawing<'_> {
         let (at, toward) = (at + down * NAME_EM, self.view.on_ground(at + down * 2.0));
         texts.push(PlacedText { toward, ..self.text(feature, at, color) });
     }
+}
+
+/// Links lie under the posts that they join, and under all else that has a place of its own.
+fn order(feature: &OutcomeFeature) -> LineOrder {
+    if feature.role == FeatureRole::Link { LineOrder::Under } else { LineOrder::default() }
 }
 
 /// The width of a feature's lines, in pixels of a picture 1080 lines high.

@@ -65,17 +65,33 @@ const MARGIN_PX: f64 = 12.0;
 /// How many times as tall as wide an upright figure is drawn at most, where the ground is seen at a low angle.
 const MOST_STRETCH: f64 = 2.5;
 
-/// Lines in plan, by color and feature: their casings, and the lines.
+/// What lies over what, the lower first.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum LineOrder {
+    /// Under other lines and marks, as links lie under the posts that they join.
+    Under,
+    /// By feature.
+    #[default]
+    ByFeature,
+}
+
+/// Lines in plan, by order, color and feature: their casings, and the lines.
 #[derive(Default)]
 pub struct GraphicPen {
-    drawn: BTreeMap<(FeatureId, [u8; 4]), [PlanMesh; 2]>,
+    drawn: BTreeMap<(LineOrder, FeatureId, [u8; 4]), [PlanMesh; 2]>,
+    order: LineOrder,
     grounds: BTreeMap<(FeatureId, [u8; 4]), PlanMesh>,
 }
 
 impl GraphicPen {
+    /// Sets the order of what is drawn from now on.
+    pub fn set_order(&mut self, order: LineOrder) {
+        self.order = order;
+    }
+
     /// The plan of the lines of a color, to add filled figures to.
     pub fn plan(&mut self, color: Srgba, feature: FeatureId) -> &mut PlanMesh {
-        &mut self.drawn.entry((feature, color.0)).or_default()[1]
+        &mut self.drawn.entry((self.order, feature, color.0)).or_default()[1]
     }
 
     /// The plan of ground of a color, which lies under all lines.
@@ -89,7 +105,7 @@ impl GraphicPen {
         let ground = |((feature, color), plan)| LinePlan { plan, color: Srgba(color), feature };
         let (mut casings, mut lines): (Vec<LinePlan>, Vec<LinePlan>) =
             (grounds.map(ground).collect(), Vec::new());
-        for ((feature, color), [casing, line]) in self.drawn {
+        for ((_, feature, color), [casing, line]) in self.drawn {
             casings.push(LinePlan { plan: casing, color: CASING, feature });
             lines.push(LinePlan { plan: line, color: Srgba(color), feature });
         }
@@ -104,10 +120,10 @@ impl GraphicPen {
             DrapedPart { color, mesh, feature }
         };
         let grounds = self.grounds.iter().map(|((feature, color), plan)| part(plan, Srgba(*color), *feature));
-        let casings = self.drawn.iter().map(|((feature, _), plans)| part(&plans[0], CASING, *feature));
+        let casings = self.drawn.iter().map(|((_, feature, _), plans)| part(&plans[0], CASING, *feature));
         let casings = grounds.chain(casings);
         let lines =
-            self.drawn.iter().map(|((feature, color), plans)| part(&plans[1], Srgba(*color), *feature));
+            self.drawn.iter().map(|((_, feature, color), plans)| part(&plans[1], Srgba(*color), *feature));
         [casings.collect(), lines.collect()]
     }
 }
@@ -199,7 +215,7 @@ impl<'a> GraphicView<'a> {
 
     /// Draws a line with its casing.
     pub fn draw(&self, pen: &mut GraphicPen, points: &[DVec2], look: LineLook, feature: FeatureId) {
-        let [casing, line] = pen.drawn.entry((feature, look.color.0)).or_default();
+        let [casing, line] = pen.drawn.entry((pen.order, feature, look.color.0)).or_default();
         for run in self.runs(points, look.is_dashed) {
             stroke_run(&run, look.width_px + 2.0 * CASING_PX, casing);
             stroke_run(&run, look.width_px, line);
@@ -388,4 +404,27 @@ pub fn stroke_run(run: &[LineVertex], width_px: f64, plan: &mut PlanMesh) {
     let Some(widths) = Profile::new(line.stations().to_vec(), widths) else { return };
     let alignment = Alignment { line, level: None, width: Width::Varying(widths), support: Support::Ground };
     stroke(&StrokePath::alone(&alignment), &options, plan);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_under_lies_under_all_else_whatever_its_color_and_feature() {
+        let (post, link, later) =
+            (Srgba::opaque(20, 20, 20), Srgba::opaque(30, 130, 60), Srgba::opaque(0, 0, 0));
+        let mut pen = GraphicPen::default();
+        pen.plan(post, FeatureId(3));
+        pen.set_order(LineOrder::Under);
+        pen.plan(link, FeatureId(3));
+        pen.plan(link, FeatureId(9));
+        pen.set_order(LineOrder::default());
+        pen.plan(later, FeatureId(9));
+        let [_, lines] = pen.into_plans();
+        let drawn: Vec<(Srgba, FeatureId)> = lines.iter().map(|plan| (plan.color, plan.feature)).collect();
+        let expected =
+            [(link, FeatureId(3)), (link, FeatureId(9)), (post, FeatureId(3)), (later, FeatureId(9))];
+        assert_eq!(drawn, expected);
+    }
 }

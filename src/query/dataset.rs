@@ -168,7 +168,12 @@ impl Dataset {
 
     /// The dataset of the ground of a built scene, which messages call `name`.
     pub fn from_scene(name: &str, scene: &SceneModel) -> Self {
-        let content = DatasetContent::Scene(SceneGround::of(scene));
+        Self::from_ground(name, SceneGround::of(scene))
+    }
+
+    /// The dataset of a scene's ground, which messages call `name`.
+    pub fn from_ground(name: &str, ground: SceneGround) -> Self {
+        let content = DatasetContent::Scene(ground);
         Self { name: name.to_owned(), content, warning: None, allowed: Vec::new() }
     }
 

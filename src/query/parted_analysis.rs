@@ -17,13 +17,12 @@ use crate::dataset::Dataset;
 use crate::ground::{GroundError, QueriedGround};
 use crate::windowed_elevation::GroundReach;
 use sandtable_analysis::arguments::AnalysisArguments;
-use sandtable_analysis::extent::{BEYOND_NOTE, LandExtent, run_part};
+use sandtable_analysis::extent::{BEYOND_NOTE, LandExtent, land_part, run_part};
 use sandtable_analysis::land::Land;
 use sandtable_analysis::outcome::{Outcome, OutcomeRaster};
-use sandtable_analysis::run::tally_figures;
+use sandtable_analysis::run::{lacking_note, tally_figures};
 use sandtable_analysis::sight_parts::{
-    is_of_sight, needed_for_sight, place_height, sight_ground, sight_places, sight_summary, sight_values,
-    sight_work,
+    is_of_sight, needed_for_sight, place_height, sight_places, sight_summary, sight_values, sight_work,
 };
 use sandtable_analysis::tally::FigureTally;
 use sandtable_catalog::kind::{AnalysisKind, AnalysisReach};
@@ -42,8 +41,8 @@ pub struct PartedAnalysis {
     posts: PostRect,
     /// The land, where it is in memory.
     land: Option<Land>,
-    /// Of a kind of sight whose land is in memory the ground of `posts`, beyond which it does not look.
-    seen: Option<Arc<Lattice>>,
+    /// Of a kind of sight whose land is in memory that of `posts`, beyond which it does not look.
+    seen: Option<Land>,
 }
 
 /// What a part gives.
@@ -79,8 +78,8 @@ impl PartedAnalysis {
         let land = land.or_else(|| frame.lattice.holds_all().then(bare));
         let mut parted = Self { arguments, extent, frame, posts, land, seen: None };
         if let Some(land) = parted.land.as_ref().filter(|_| is_of_sight(&parted.arguments)) {
-            let seen = sight_ground(&land.ground, posts).map_err(GroundError::from)?;
-            parted.seen = Some(parted.masked(seen));
+            let seen = land_part(land, posts).map_err(GroundError::from)?;
+            parted.seen = Some(Land { ground: parted.masked(Arc::clone(&seen.ground)), ..seen });
         }
         Ok(parted)
     }
@@ -150,13 +149,19 @@ impl PartedAnalysis {
     ) -> Result<AnalyzedPart, AnalyzeError> {
         let own = posts.counted_in(self.posts);
         let needed = needed_for_sight(&self.frame.lattice, &self.arguments, (self.posts, posts));
-        let ground = match &self.seen {
-            Some(seen) => Arc::clone(seen),
-            // Where nobody looks, no height is needed; a lattice has one.
-            None => self.seen_ground(dataset, needed.unwrap_or(PostRect { last: posts.first, ..posts }))?,
+        let bare;
+        let land = match &self.seen {
+            Some(seen) => seen,
+            None => {
+                // Where nobody looks, no height is needed; a lattice has one.
+                let held = needed.unwrap_or(PostRect { last: posts.first, ..posts });
+                bare = Land::bare(self.seen_ground(dataset, held)?, self.frame.crs.clone());
+                &bare
+            }
         };
-        let seen = sight_values(&ground, &self.arguments, own, stop)?;
-        Ok(AnalyzedPart { raster: seen.raster, tally: seen.tally, notes: Vec::new() })
+        let seen = sight_values(land, &self.arguments, own, stop)?;
+        let notes = lacking_note(land, self.arguments.kind()).into_iter().collect();
+        Ok(AnalyzedPart { raster: seen.raster, tally: seen.tally, notes })
     }
 
     /// The ground of all parts of which these posts, counted in the whole ground, are held; read from disk.
@@ -164,8 +169,8 @@ impl PartedAnalysis {
         let frame = &self.frame;
         let corners = [held.first, held.last].map(|post| frame.lattice.map_position(post));
         let ground = dataset.ground(&GroundReach { crs: &frame.crs, at: &corners, around_m: 0.0 })?;
-        let only = Arc::new(ground.lattice.holding_only(held));
-        Ok(self.masked(sight_ground(&only, self.posts).map_err(GroundError::from)?))
+        let only = ground.lattice.holding_only(held).cut_to(self.posts).map_err(GroundError::from)?;
+        Ok(self.masked(Arc::new(only)))
     }
 
     /// Ground of all parts without data outside an area.
@@ -205,7 +210,7 @@ impl PartedAnalysis {
         let arguments = &self.arguments;
         let height = |&at: &DVec2| {
             let ground = match &self.seen {
-                Some(seen) => Arc::clone(seen),
+                Some(seen) => Arc::clone(&seen.ground),
                 None => {
                     let frame = &self.frame.lattice;
                     let grid = frame.grid_from_map(at).clamp(DVec2::ZERO, frame.last_grid());

@@ -7,6 +7,7 @@ use glam::{DVec2, Vec2};
 
 use crate::feature::FeatureKind;
 use crate::fences::{Barrier, BarrierKind};
+use crate::placed_model::Placement;
 use crate::scene_model::SceneModel;
 use crate::symbols::LineSymbol;
 use crate::undergrowth::{CrownGround, crown_reach};
@@ -36,6 +37,11 @@ const CULVERT_M: f64 = 3.0;
 
 /// How far a road over a culvert reaches on either side of its stream, meters.
 const CULVERT_ROAD_M: f64 = 10.0;
+
+/// The height of forests and orchards whose trees the scene does not state, meters: a grown wood of mean yield, and
+/// fruit trees.
+const FOREST_M: f32 = 15.0;
+const ORCHARD_M: f32 = 4.0;
 
 /// Trees are counted in squares of so many posts: fewer would hold one tree or none.
 const STAND_POSTS: u32 = 5;
@@ -280,7 +286,8 @@ fn mesh_triangles(mesh: &DrawMesh, mut visit: impl FnMut([DVec2; 3], [f64; 3])) 
     }
 }
 
-/// The heights above the ground of buildings and of trees.
+/// The heights above the ground of buildings and of trees; of forests and orchards those of the trees that the scene has around
+/// a post, or else [`FOREST_M`] and [`ORCHARD_M`].
 fn obstacles(scene: &SceneModel) -> Vec<f32> {
     let mut heights = vec![0.0_f32; scene.lattice.heights().len()];
     let ground = scene.lattice.heights();
@@ -309,28 +316,88 @@ fn obstacles(scene: &SceneModel) -> Vec<f32> {
             }
         });
     }
+    let squares = StandSquares::new(scene);
+    let mut tallest_m = vec![0.0_f32; squares.count()];
+    for placement in trees(scene) {
+        let tallest_m = &mut tallest_m[squares.at(placement.at)];
+        *tallest_m = tallest_m.max(sizes[placement.model].1 * placement.scale);
+    }
+    for (index, (height_m, usual_m)) in (0..).zip(heights.iter_mut().zip(area_heights(scene))) {
+        if *height_m <= 0.0 && usual_m > 0.0 {
+            let around_m = tallest_m[squares.of(index)];
+            *height_m = if around_m > 0.0 { around_m } else { usual_m };
+        }
+    }
     heights
+}
+
+/// The usual height of what grows on forests and orchards, meters; 0 elsewhere, as on the roads and waters through them.
+fn area_heights(scene: &SceneModel) -> Vec<f32> {
+    let mut heights = vec![0.0; scene.lattice.heights().len()];
+    for ribbon in &scene.ribbons {
+        let height_m = match ribbon.surface {
+            RibbonSurface::Cover(Cover::Forest) => FOREST_M,
+            RibbonSurface::Cover(Cover::Orchard) => ORCHARD_M,
+            RibbonSurface::Cover(cover) if land_cover(cover).is_none() => continue,
+            _ => 0.0,
+        };
+        for triangle in ribbon.plan.corners() {
+            posts_in(&scene.lattice, corners(triangle), |index, _| heights[index] = height_m);
+        }
+    }
+    heights
+}
+
+/// The trees of a scene, among its models.
+fn trees(scene: &SceneModel) -> impl Iterator<Item = &Placement> {
+    scene.placements.iter().filter(|placement| !scene.models[placement.model].tints.is_empty())
+}
+
+/// Squares of [`STAND_POSTS`] posts.
+struct StandSquares {
+    cell: DVec2,
+    last: Post,
+    across: usize,
+}
+
+impl StandSquares {
+    fn new(scene: &SceneModel) -> Self {
+        let (columns, rows) = (scene.lattice.columns(), scene.lattice.rows());
+        let across = columns.div_ceil(STAND_POSTS) as usize;
+        Self { cell: scene.lattice.cell(), last: Post { column: columns - 1, row: rows - 1 }, across }
+    }
+
+    fn count(&self) -> usize {
+        self.across * (self.last.row / STAND_POSTS + 1) as usize
+    }
+
+    /// The square of a post.
+    fn of(&self, index: u32) -> usize {
+        let columns = self.last.column + 1;
+        self.square(index % columns, index / columns)
+    }
+
+    /// The square of a place in the world.
+    fn at(&self, place: Vec2) -> usize {
+        let post = Post::at_grid((place.as_dvec2() / self.cell).round());
+        self.square(post.column.min(self.last.column), post.row.min(self.last.row))
+    }
+
+    fn square(&self, column: u32, row: u32) -> usize {
+        (row / STAND_POSTS) as usize * self.across + (column / STAND_POSTS) as usize
+    }
 }
 
 /// The spacing of the trees that stand in squares of [`STAND_POSTS`] posts; stems are unknown.
 fn stands(scene: &SceneModel) -> Vec<Stand> {
-    let (columns, rows) = (scene.lattice.columns(), scene.lattice.rows());
-    let across = columns.div_ceil(STAND_POSTS) as usize;
-    let mut counts = vec![0_u32; across * rows.div_ceil(STAND_POSTS) as usize];
-    let cell = scene.lattice.cell();
-    let last = Post { column: columns - 1, row: rows - 1 };
-    let square =
-        |column: u32, row: u32| (row / STAND_POSTS) as usize * across + (column / STAND_POSTS) as usize;
-    let trees = scene.placements.iter().filter(|placement| !scene.models[placement.model].tints.is_empty());
-    for tree in trees {
-        let post = Post::at_grid((tree.at.as_dvec2() / cell).round());
-        counts[square(post.column.min(last.column), post.row.min(last.row))] += 1;
-    }
+    let squares = StandSquares::new(scene);
+    let mut counts = vec![0_u32; squares.count()];
+    trees(scene).for_each(|tree| counts[squares.at(tree.at)] += 1);
     let square_m2 = f64::from(STAND_POSTS * STAND_POSTS) * scene.lattice.cell_m2();
     let stand = |index: u32| {
-        let count = counts[square(index % columns, index / columns)];
+        let count = counts[squares.of(index)];
         let spacing_m = if count == 0 { 0.0 } else { (square_m2 / f64::from(count)).sqrt() as f32 };
         Stand { spacing_m, stem_m: if count == 0 { 0.0 } else { f32::NAN } }
     };
-    (0..columns * rows).map(stand).collect()
+    (0..scene.lattice.columns() * scene.lattice.rows()).map(stand).collect()
 }

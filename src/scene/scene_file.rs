@@ -143,7 +143,10 @@ pub fn open_scene_for(
 }
 
 /// Checks that a phase is one of the document's, where one is named.
-fn check_phase(document: &Document, phase: Option<&str>) -> Result<(), OpenSceneError> {
+///
+/// # Errors
+/// [`OpenSceneError::NoPhase`].
+pub fn check_phase(document: &Document, phase: Option<&str>) -> Result<(), OpenSceneError> {
     let is_declared = |name: &str| document.phases.iter().any(|phase| phase.name.as_str() == name);
     match phase.filter(|name| !is_declared(name)) {
         None => Ok(()),

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, UVec2, Vec2, Vec3};
 
-use sandtable_analysis::outcome::OutcomeTable;
+use sandtable_analysis::outcome::{GRID_REFERENCE, OutcomeTable};
 use sandtable_annotate::locator::LocatorMap;
 use sandtable_annotate::margin::MarginNotes;
 use sandtable_annotate::margin_table::MarginTable;
@@ -100,7 +100,26 @@ fn tables(scene: &SceneModel) -> Vec<MarginTable> {
 
 fn margin_table(title: String, table: &OutcomeTable) -> MarginTable {
     let columns = table.columns.iter().map(|column| (column.name.to_owned(), column.unit.to_owned()));
-    MarginTable { title, columns: columns.collect(), rows: table.written_rows().collect() }
+    let mut margin = MarginTable { title, columns: columns.collect(), rows: table.written_rows().collect() };
+    if let Some(column) = table.columns.iter().position(|column| column.name == GRID_REFERENCE) {
+        shorten_references(&mut margin, column);
+    }
+    margin
+}
+
+/// Moves what the grid references of a column have in common, the zone or the zone and the square, into the heading.
+fn shorten_references(table: &mut MarginTable, column: usize) {
+    let words = |row: &Vec<String>| row[column].split(' ').map(str::to_owned).collect::<Vec<_>>();
+    let references: Vec<Vec<String>> = table.rows.iter().map(words).collect();
+    let Some(first) = references.first() else { return };
+    // Easting and northing stay.
+    let most = references.iter().map(|words| words.len().saturating_sub(2)).min().unwrap_or(0);
+    let common =
+        (0..most).take_while(|&word| references.iter().all(|words| words[word] == first[word])).count();
+    table.columns[column] = ("grid".to_owned(), first[..common].join(" "));
+    for (row, words) in table.rows.iter_mut().zip(&references) {
+        row[column] = words[common..].join(" ");
+    }
 }
 
 /// The norths at map coordinates; `None` where they have no place on Earth.
@@ -180,4 +199,34 @@ fn seen(scene: &SceneModel, camera: &Camera) -> Vec<Vec2> {
     [Vec2::new(0.0, height), Vec2::ZERO, Vec2::new(width, 0.0), Vec2::new(width, height)]
         .map(on_ground)
         .to_vec()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_square_that_grid_references_share_stands_in_the_heading() {
+        let shortened = |references: [&str; 2]| {
+            let mut table = MarginTable {
+                title: String::new(),
+                columns: vec![("zone".into(), String::new()), (GRID_REFERENCE.into(), String::new())],
+                rows: references.map(|reference| vec!["LZ".into(), reference.into()]).into(),
+            };
+            shorten_references(&mut table, 1);
+            let cells = table.rows.iter().map(|row| row[1].clone()).collect::<Vec<_>>();
+            (table.columns[1].1.clone(), cells)
+        };
+        let texts = |unit: &str, cells: [&str; 2]| (unit.to_owned(), cells.map(str::to_owned).to_vec());
+        assert_eq!(
+            shortened(["16S GF 5000 1800", "16S GF 5120 1934"]),
+            texts("16S GF", ["5000 1800", "5120 1934"])
+        );
+        assert_eq!(
+            shortened(["16S GF 5000 1800", "16S GE 5120 9934"]),
+            texts("16S", ["GF 5000 1800", "GE 5120 9934"])
+        );
+        let far = ["16S GF 5000 1800", "17S KA 5120 9934"];
+        assert_eq!(shortened(far), texts("", far));
+    }
 }

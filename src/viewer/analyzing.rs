@@ -29,6 +29,7 @@ use sandtable_picture::tried_analysis::TriedAnalysis;
 use sandtable_query::analysis::AnalyzeError;
 use sandtable_scene::assets::Assets;
 use sandtable_terrain::stop_flag::StopFlag;
+use sandtable_walk::analysis_task::AnalysisSources;
 
 /// How often the time that an analysis has taken is shown anew.
 const PROGRESS_EVERY: Duration = Duration::from_millis(250);
@@ -142,7 +143,7 @@ impl ViewerApp {
             return;
         }
         let Some((opened, session)) = self.opened.as_ref().zip(self.session.as_ref()) else { return };
-        let source = session.editor.source();
+        let source = session.editor.source().clone();
         let assets = match Assets::new(&source.path, &source.allowed) {
             Ok(assets) => assets,
             Err(error) => {
@@ -156,7 +157,9 @@ impl ViewerApp {
         let (stopped, said) = (Arc::clone(&stop), Arc::clone(&step));
         let work = move || {
             let progress = |step| *said.lock().unwrap_or_else(PoisonError::into_inner) = step;
-            let tried = task.run(&assets, &stopped, &progress)?;
+            let ground_in_phase = |phase: &str| source.ground_in_phase(phase);
+            let sources = AnalysisSources { assets: &assets, ground_in_phase: &ground_in_phase };
+            let tried = task.run(&sources, &stopped, &progress)?;
             let listing = AnalysisListing::new(tried.analysis());
             Ok((tried, listing))
         };
@@ -301,9 +304,12 @@ impl ViewerApp {
             Some(ActiveTool::Pick(picking)) => Some(picking.parameter),
             _ => None,
         };
+        let phases = self.session.iter().flat_map(|session| &session.editor.document().phases);
+        let phases: Vec<String> = phases.map(|phase| phase.name.to_string()).collect();
         let mut form = AnalysisForm {
             draft: self.analyzing.draft.as_mut(),
             vehicles: &vehicles,
+            phases: &phases,
             problem: &self.analyzing.problem,
             running,
             picking,

@@ -8,10 +8,12 @@ use sandtable_analysis::land::Land;
 use sandtable_catalog::kind::AnalysisKind;
 use sandtable_catalog::parameter::{PHASE_PREFIX, ParameterForm, SOURCE_GROUND};
 use sandtable_picture::tried_analysis::TriedAnalysis;
-use sandtable_query::analysis::{AnalyzeError, Analyzed, WrittenArgument, analyze};
+use sandtable_query::analysis::{AnalyzeError, Analyzed, OtherGrounds, WrittenArgument, analyze_among};
 use sandtable_query::dataset::Dataset;
 use sandtable_scene::assets::Assets;
+use sandtable_scene::build::SceneGround;
 use sandtable_scene::land::land_of;
+use sandtable_scene::scene_file::OpenSceneError;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::stop_flag::StopFlag;
@@ -23,6 +25,14 @@ pub struct AnalysisTask {
     kind: &'static AnalysisKind,
     name: String,
     arguments: Vec<WrittenArgument>,
+}
+
+/// What an analysis of a scene may read besides it.
+pub struct AnalysisSources<'a> {
+    /// The files that the scene may read.
+    pub assets: &'a Assets,
+    /// The ground of the scene as it is edited, in the phase of a name.
+    pub ground_in_phase: &'a dyn Fn(&str) -> Result<SceneGround, OpenSceneError>,
 }
 
 impl Walk {
@@ -38,14 +48,15 @@ impl Walk {
 }
 
 impl AnalysisTask {
-    /// Makes the analysis, with the values of `sandtable analyze` of a scene file. `assets` are the files that the scene may
-    /// read. `progress` is called with the name of each step as it begins.
+    /// Makes the analysis, with the values of `sandtable analyze` of a scene file. `progress` is called with the name of each
+    /// step as it begins.
     ///
     /// # Errors
-    /// See [`AnalyzeError`]; [`AnalyzeError::Argument`] of a file that the scene may not read.
+    /// See [`AnalyzeError`]; [`AnalyzeError::Argument`] of a file that the scene may not read, [`AnalyzeError::Other`] of a phase
+    /// that it does not have.
     pub fn run(
         &self,
-        assets: &Assets,
+        sources: &AnalysisSources<'_>,
         stop: &StopFlag,
         progress: &dyn Fn(&'static str),
     ) -> Result<TriedAnalysis, AnalyzeError> {
@@ -53,31 +64,52 @@ impl AnalysisTask {
         let arguments: Vec<WrittenArgument> = self
             .arguments
             .iter()
-            .map(|argument| self.resolved(argument, assets))
+            .map(|argument| self.resolved(argument, sources.assets))
             .collect::<Result<_, _>>()?;
         progress("gathering the land");
         let land = Land { ground: Arc::clone(&self.elevations), ..land_of(scene, kind.layers) };
+        let phase = self.phase_compared(sources, progress)?;
+        let named = |_: &str| phase.as_ref();
+        let others = if phase.is_some() { OtherGrounds::Named(&named) } else { OtherGrounds::Files };
         progress("analyzing");
         let dataset = Dataset::from_scene("the scene", scene);
         let Analyzed { ground, outcome, .. } =
-            analyze(&dataset, land, (*kind, &arguments), &scene.crs, stop)?;
+            analyze_among((&dataset, others), land, (*kind, &arguments), &scene.crs, stop)?;
         progress("laying it over the ground");
         Ok(TriedAnalysis::new(kind, self.name.clone(), PlacedOutcome { ground, outcome }, scene))
+    }
+
+    /// The ground of the phase that an argument names; `None` where none does.
+    fn phase_compared(
+        &self,
+        sources: &AnalysisSources<'_>,
+        progress: &dyn Fn(&'static str),
+    ) -> Result<Option<Dataset>, AnalyzeError> {
+        let phase = self.arguments.iter().filter(|argument| self.is_ground(argument));
+        let mut phase =
+            phase.filter_map(|argument| Some((argument, argument.text.strip_prefix(PHASE_PREFIX)?)));
+        let Some((argument, phase)) = phase.next() else { return Ok(None) };
+        progress("shaping the ground of the other phase");
+        let ground = (sources.ground_in_phase)(phase).map_err(|error| AnalyzeError::Other {
+            name: argument.name.clone(),
+            source: Box::new(error.into()),
+        })?;
+        Ok(Some(Dataset::from_ground(&argument.text, ground)))
+    }
+
+    /// Whether an argument names another ground.
+    fn is_ground(&self, argument: &WrittenArgument) -> bool {
+        self.kind.parameter(&argument.name).is_some_and(|known| known.form == ParameterForm::Ground)
     }
 
     /// The argument with the path of the file that it names, which scene files name from their own folder.
     fn resolved(&self, argument: &WrittenArgument, assets: &Assets) -> Result<WrittenArgument, AnalyzeError> {
         let WrittenArgument { name, text } = argument;
-        let is_file = self.kind.parameter(name).is_some_and(|known| known.form == ParameterForm::Ground);
-        if !is_file || text == SOURCE_GROUND || text.is_empty() {
+        let is_file = text != SOURCE_GROUND && !text.is_empty() && !text.starts_with(PHASE_PREFIX);
+        if !self.is_ground(argument) || !is_file {
             return Ok(argument.clone());
         }
         let refused = |problem: String| AnalyzeError::Argument { name: name.clone(), problem };
-        if text.starts_with(PHASE_PREFIX) {
-            return Err(refused(
-                "another phase is compared with in scene files and by the command".to_owned(),
-            ));
-        }
         let path = assets.resolve(text).map_err(|error| refused(error.to_string()))?;
         let text = path.to_str().ok_or_else(|| refused("its path is not Unicode".to_owned()))?.to_owned();
         Ok(WrittenArgument { name: name.clone(), text })
@@ -105,6 +137,9 @@ mod tests {
         Walk::new(Arc::new(scene), WalkOptions::default())
     }
 
+    const NO_PHASE: fn(&str) -> Result<SceneGround, OpenSceneError> =
+        |name| Err(OpenSceneError::NoPhase { name: name.to_owned(), names: Vec::new() });
+
     fn written(arguments: &[(&str, &str)]) -> Vec<WrittenArgument> {
         let one = |&(name, text): &(&str, &str)| WrittenArgument { name: name.into(), text: text.into() };
         arguments.iter().map(one).collect()
@@ -114,7 +149,8 @@ mod tests {
         let kind = sandtable_catalog::kind(kind).expect("a kind");
         let task = walk.analysis_task((kind, kind.title.to_owned()), written(arguments));
         let assets = Assets::new(Path::new(SCENE), &[]).expect("a folder");
-        task.run(&assets, &StopFlag::default(), &|_| ())
+        let sources = AnalysisSources { assets: &assets, ground_in_phase: &NO_PHASE };
+        task.run(&sources, &StopFlag::default(), &|_| ())
     }
 
     fn bits(values: &PostValues) -> Vec<u32> {
@@ -163,6 +199,54 @@ mod tests {
             .expect("a kind that compares grounds");
         let refused = tried(&walk(), kind.0, &[(kind.1, "../../../etc/passwd")]).err().expect("refused");
         assert!(refused.to_string().starts_with(&format!("`{}`: ", kind.1)), "{refused}");
+    }
+
+    /// A pit of 3 m in the phase `dug` of level ground, and none in `before`.
+    const PIT: &str = "[terrain]\ndem = \"plane.asc\"\ncrs = \"EPSG:32633\"\n[[phase]]\nname = \"before\"\n\
+        [[phase]]\nname = \"dug\"\n[[earthwork]]\nkind = \"level\"\nphases = [\"dug\"]\nlevel = 97\n\
+        points = [[105, 105], [195, 105], [195, 195], [105, 195]]\n";
+
+    #[test]
+    fn the_phase_shown_is_compared_with_another_of_the_text_as_it_is_edited() {
+        let folder = std::env::temp_dir().join(format!("sandtable-phase-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder");
+        let grid = "ncols 31\nnrows 31\nxllcorner -5\nyllcorner -5\ncellsize 10\n";
+        let plane = format!("{grid}{}", vec!["100"; 31 * 31].join(" "));
+        std::fs::write(folder.join("plane.asc"), plane).expect("written");
+        // The file has no pit: the text that is edited has.
+        let path = folder.join("scene.toml");
+        std::fs::write(&path, "[terrain]\ndem = \"plane.asc\"\n").expect("written");
+        let source = |phase: &str| sandtable_editing::editor::SceneSource {
+            path: path.clone(),
+            allowed: Vec::new(),
+            phase: Some(phase.to_owned()),
+            text: PIT.to_owned(),
+        };
+        let net_m3 = |shown: &str, other: &str| {
+            let source = source(shown);
+            let scene = source.build(&|_| ()).expect("sound");
+            let walk = Walk::new(Arc::new(scene), WalkOptions::default());
+            let kind = sandtable_catalog::kind("cut-fill").expect("a kind");
+            let arguments = written(&[("against", other)]);
+            let task = walk.analysis_task((kind, "pit".to_owned()), arguments);
+            let assets = Assets::new(&path, &[]).expect("a folder");
+            let ground_in_phase = |name: &str| source.ground_in_phase(name);
+            let sources = AnalysisSources { assets: &assets, ground_in_phase: &ground_in_phase };
+            let tried = task.run(&sources, &StopFlag::default(), &|_| ())?;
+            let figures = &tried.analysis().outcome.figures;
+            Ok::<_, AnalyzeError>(figures.iter().find(|figure| figure.name == "cut").map(|cut| cut.value))
+        };
+        let dug = net_m3("dug", "phase:before").expect("an outcome").expect("a figure");
+        assert!((20_000.0..32_000.0).contains(&dug), "8100 m² by 3 m and its batters: {dug}");
+        assert_eq!(
+            net_m3("before", "phase:dug").expect("an outcome"),
+            Some(0.0),
+            "the other way it is filled"
+        );
+        assert_eq!(net_m3("dug", "phase:dug").expect("an outcome"), Some(0.0));
+        let missing = net_m3("dug", "phase:dusk").err().expect("no such phase");
+        assert_eq!(missing.key(), Some("against"), "{missing}");
+        std::fs::remove_dir_all(&folder).expect("removed");
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The land of a scene for terrain analysis: what lets water through its roads, and how high its buildings are.
+//! The land of a scene for terrain analysis: what lets water through its roads, and how high its woods and buildings stand.
 
 use glam::DVec2;
 use sandtable_analysis::land::{Crossing, CrossingKind, Land};
@@ -65,4 +65,33 @@ fn on_an_exaggerated_scene_buildings_have_their_heights_true_to_scale() {
     assert!(bits(land_of(&drawn, &layers)) != wanted, "the drawn scene has them in other bits");
     let same = land_of_drawn(&true_to_scale, &layers, || -> Result<_, ()> { Err(()) });
     assert!(bits(same.expect("nothing is opened again")) == wanted);
+}
+
+/// The heights of what stands at posts of a row of the land of a scene with these tables, 31 posts 10 m apart.
+fn standing(tables: &str) -> Vec<f32> {
+    let folder = Scratch::new();
+    let grid = "ncols 31\nnrows 31\nxllcorner -5\nyllcorner -5\ncellsize 10\n";
+    folder.write("plane.asc", format!("{grid}{}", vec!["100"; 31 * 31].join(" ")));
+    let scene = format!("[terrain]\ndem = \"plane.asc\"\ncrs = \"EPSG:32633\"\n{tables}");
+    let scene = open_scene(&folder.write("scene.toml", scene), &[], &|_| {});
+    let land = land_of(&scene.unwrap_or_else(|failure| panic!("{failure:?}")), &[LandPart::Obstacles]);
+    land.obstacles_m.expect("known")[15 * 31..][..31].to_vec()
+}
+
+#[test]
+fn a_forest_stands_as_high_as_its_trees_and_without_any_as_usual() {
+    let forest = "[[area]]\ncover = \"forest\"\npoints = [[45, 45], [255, 45], [255, 255], [45, 255]]\n";
+    let plain = standing(forest);
+    assert_eq!((plain[4], plain[5], plain[25], plain[26]), (0.0, 15.0, 15.0, 0.0), "{plain:?}");
+    let road = "[[road]]\nwidth = 30\npoints = [[150, 20], [150, 280]]\n";
+    let cut = standing(&format!("{forest}{road}"));
+    assert_eq!((cut[12], cut[15], cut[18]), (15.0, 0.0, 15.0), "nothing grows on a road: {cut:?}");
+    let trees = "[[scatter]]\nof = \"conifer\"\ndensity = 400\nscale = [1, 1]\n\
+                 points = [[45, 45], [255, 45], [255, 255], [45, 255]]\n";
+    let grown = standing(&format!("{forest}{trees}"));
+    let tallest = grown[5..=25].iter().fold(0.0_f32, |tallest, &height| tallest.max(height));
+    assert!(grown[5..=25].iter().all(|&height| height > 0.5 * tallest), "no gaps between crowns: {grown:?}");
+    assert!(tallest > 2.0 && tallest != 15.0, "{tallest}");
+    let orchard = standing(&forest.replace("forest", "orchard"));
+    assert_eq!(orchard[15], 4.0);
 }

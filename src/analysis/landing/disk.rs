@@ -21,6 +21,23 @@ impl DiskRows {
         Self { half_widths: (0..=rows).map(half_width).collect() }
     }
 
+    /// The posts in the disk around a post of land of so many columns and rows, row by row from the south.
+    pub(crate) fn posts(
+        &self,
+        [columns, rows]: [usize; 2],
+        center: usize,
+    ) -> impl Iterator<Item = usize> + use<'_> {
+        let (column, row) = (center % columns, center / columns);
+        let south =
+            (1..self.half_widths.len()).rev().filter_map(move |away| Some((away, row.checked_sub(away)?)));
+        let north = (0..self.half_widths.len()).map(move |away| (away, row + away));
+        south.chain(north.filter(move |&(_, row)| row < rows)).flat_map(move |(away, row)| {
+            let half = self.half_widths[away];
+            let columns_of_row = column.saturating_sub(half)..=(column + half).min(columns - 1);
+            columns_of_row.map(move |column| row * columns + column)
+        })
+    }
+
     /// The greatest of `values` in the disk around each post, where posts outside the land count as `outside`. The values
     /// are without NaN.
     pub(crate) fn maxima(&self, values: &[f32], columns: usize, outside: f32) -> Vec<f32> {

@@ -10,10 +10,12 @@ use rayon::prelude::*;
 
 use super::rectangle::{RectangleRows, RowCounts};
 use super::suitability::{
-    SuitedSlopes, class_name, code_raster, cover_at, first_apart, hindrances, is_low_and_dry, is_suited,
+    SiteSurface, SuitedSlopes, class_name, code_raster, cover_at, hindrances, is_low_and_dry, is_suited,
     suited_ground,
 };
+use crate::apart::first_apart;
 use crate::arguments::AnalysisArguments;
+use crate::center_columns::CenterColumns;
 use crate::error::AnalysisError;
 use crate::land::{Land, LandCover};
 use crate::measures::post_grid;
@@ -109,24 +111,29 @@ pub(crate) fn drop_zones(
     let zones: Vec<DropZone> = best
         .iter()
         .filter_map(|&index| {
-            DropZone::new(ground, &hindrances, &rectangles, index as usize, codes[index as usize])
+            DropZone::new(land, &hindrances, &rectangles, index as usize, codes[index as usize])
         })
         .collect();
+    let centers = CenterColumns::new(land, zones.iter().map(|zone| at(zone.index as u32)).collect());
     let features = zones.iter().enumerate().map(|(rank, zone)| OutcomeFeature {
         shape: OutcomeShape::Area(vec![zone.ring(ground, size)]),
         name: format!("DZ {}", rank + 1),
         role: FeatureRole::Site,
-        properties: vec![
+        properties: [
             ("code", PropertyValue::Whole(i64::from(zone.code))),
             ("heading_deg", PropertyValue::Number(zone.heading_deg)),
             ("length_m", PropertyValue::Number(needs.length_m)),
             ("width_m", PropertyValue::Number(needs.width_m)),
-            ("slope_deg", PropertyValue::Number(zone.slope_deg)),
-        ],
+            ("slope_deg", PropertyValue::Number(zone.surface.slope_deg)),
+            ("surface", zone.surface.cover_noun()),
+        ]
+        .into_iter()
+        .chain(centers.properties(rank))
+        .collect(),
     });
     Ok(Outcome {
         features: features.collect(),
-        tables: vec![table(ground, &zones, &needs)],
+        tables: vec![table(&centers, &zones, &needs)],
         figures: vec![
             Figure::new("length", needs.length_m, "m"),
             Figure::new("jumpers a pass", needs.jumpers() as f64, ""),
@@ -186,27 +193,27 @@ struct DropZone {
     index: usize,
     code: u8,
     heading_deg: f64,
-    slope_deg: f64,
+    surface: SiteSurface,
 }
 
 impl DropZone {
     /// The zone at a post, on the heading whose rectangle has the least greatest hindrance, the first of equal ones.
     fn new(
-        ground: &Lattice,
+        land: &Land,
         hindrances: &[f32],
         rectangles: &[RectangleRows],
         index: usize,
         code: u8,
     ) -> Option<Self> {
-        let columns = ground.columns() as usize;
+        let [columns, rows] = [land.ground.columns(), land.ground.rows()].map(|count| count as usize);
         let center = [index % columns, index / columns];
         let greatest = |rectangle: &RectangleRows| rectangle.greatest(hindrances, columns, center);
-        let (rectangle, slope) = rectangles
+        let (rectangle, _) = rectangles
             .iter()
             .map(|rectangle| (rectangle, greatest(rectangle)))
             .min_by(|one, other| one.1.total_cmp(&other.1))?;
-        let slope_deg = libm::atan(f64::from(slope)).to_degrees();
-        Some(Self { index, code, heading_deg: rectangle.heading_deg(), slope_deg })
+        let surface = SiteSurface::of(land, rectangle.posts([columns, rows], index));
+        Some(Self { index, code, heading_deg: rectangle.heading_deg(), surface })
     }
 
     /// Its corners, counter-clockwise.
@@ -219,29 +226,32 @@ impl DropZone {
     }
 }
 
-fn table(ground: &Lattice, zones: &[DropZone], needs: &DropNeeds) -> OutcomeTable {
+fn table(centers: &CenterColumns, zones: &[DropZone], needs: &DropNeeds) -> OutcomeTable {
     let column = TableColumn::new;
-    let columns = vec![
-        column("zone", "", 0),
+    let mut columns = vec![column("zone", "", 0)];
+    columns.extend(centers.columns());
+    columns.extend([
         column("class", "", 0),
         column("heading", "°", 0),
         column("length", "m", 0),
         column("width", "m", 0),
         column("slope", "°", 1),
-        column("height", "m", 0),
-        column("jumpers a pass", "", 0),
-    ];
+        column("surface", "", 0),
+        column("jumpers", "", 0),
+    ]);
     let row = |(rank, zone): (usize, &DropZone)| {
-        vec![
-            PropertyValue::Whole(rank as i64 + 1),
+        let mut row = vec![PropertyValue::Text(format!("DZ {}", rank + 1))];
+        row.extend(centers.cells(rank));
+        row.extend([
             PropertyValue::Text(class_name(zone.code).to_owned()),
             PropertyValue::Number(zone.heading_deg),
             PropertyValue::Number(needs.length_m),
             PropertyValue::Number(needs.width_m),
-            PropertyValue::Number(zone.slope_deg),
-            PropertyValue::Number(f64::from(ground.heights()[zone.index])),
+            PropertyValue::Number(zone.surface.slope_deg),
+            zone.surface.cover_noun(),
             PropertyValue::Whole(needs.jumpers()),
-        ]
+        ]);
+        row
     };
     let rows = zones.iter().enumerate().map(row).collect();
     OutcomeTable { title: "Drop zones".to_owned(), columns, rows }

@@ -8,6 +8,7 @@ mod oracle_tests;
 mod rectangle;
 mod sites;
 mod suitability;
+mod zone_sites;
 pub mod zones;
 
 use crate::run::KindFunction;

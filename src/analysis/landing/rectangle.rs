@@ -147,6 +147,20 @@ impl RectangleRows {
     }
 }
 
+impl RectangleRows {
+    /// The posts of the rectangle around a post that lie on land of so many columns and rows.
+    pub fn posts(&self, [columns, rows]: [usize; 2], center: usize) -> impl Iterator<Item = usize> + use<'_> {
+        let (column, row) = ((center % columns) as i64, (center / columns) as i64);
+        let spans = self.spans.iter().map(move |&[north, first, last]| {
+            (row + north, (column + first).max(0), (column + last).min(columns as i64 - 1))
+        });
+        let spans = spans.filter(move |&(row, ..)| (0..rows as i64).contains(&row));
+        spans.flat_map(move |(row, first, last)| {
+            (first..=last).map(move |column| (row * columns as i64 + column) as usize)
+        })
+    }
+}
+
 /// The x for which |x · factor − center| is at most `half`.
 fn interval(factor: f64, center: f64, half: f64) -> (f64, f64) {
     if factor.abs() < 1e-12 {

@@ -9,15 +9,18 @@ use rayon::prelude::*;
 use super::disk::{DiskRows, circle};
 use super::mask::mask_tangents;
 use super::suitability::{
-    LOW_M, SuitedSlopes, class_name, code_raster, cover_at, first_apart, hindrances, is_suited,
+    LOW_M, SiteSurface, SuitedSlopes, class_name, code_raster, cover_at, hindrances, is_suited,
     suited_ground, tangent,
 };
+use crate::apart::first_apart;
 use crate::arguments::AnalysisArguments;
+use crate::center_columns::CenterColumns;
 use crate::error::AnalysisError;
 use crate::land::{Land, LandCover, WaterKind};
 use crate::line_posts::along_line;
 use crate::measures::post_grid;
-use crate::observation::lookout::{Lookout, check_looks, curvature, look, posts_within, range_m};
+use crate::observation::lookout::{Lookout, check_looks, curvature, posts_within, range_m};
+use crate::observation::sight_land::SightLand;
 use crate::outcome::{
     FeatureRole, Outcome, OutcomeFeature, OutcomeShape, OutcomeTable, PostValues, PropertyValue, TableColumn,
 };
@@ -115,26 +118,42 @@ pub(crate) fn sites(
     let apart_m = size_m + arguments.number("separation_m");
     let at = |index: u32| ground.map_position(ground.post_at(index as usize));
     let best = first_apart(&order, count, apart_m, |(_, index)| at(index));
-    let rows: Vec<SiteRow> = best
-        .iter()
-        .enumerate()
-        .map(|(rank, &(score, index))| {
-            SiteRow::new(rank + 1, score, codes[index as usize], &site, index as usize)
-        })
-        .collect();
-    let features = rows.iter().map(|row| OutcomeFeature {
+    let disk = site_disk(land, size_m);
+    let row = |&(score, index): &(f32, u32)| {
+        let surface = SiteSurface::of(land, disk.posts(size_of(land), index as usize));
+        SiteRow::new((score, codes[index as usize]), surface, &site, index as usize)
+    };
+    let rows: Vec<SiteRow> = best.iter().map(row).collect();
+    let centers = CenterColumns::new(land, best.iter().map(|&(_, index)| at(index)).collect());
+    let features = rows.iter().enumerate().map(|(rank, row)| OutcomeFeature {
         shape: OutcomeShape::Area(vec![circle(at(row.index as u32), size_m / 2.0)]),
-        name: format!("Site {}", row.number),
+        name: site_name(rank),
         role: FeatureRole::Site,
-        properties: row.properties(),
+        properties: row.properties().into_iter().chain(centers.properties(rank)).collect(),
     });
     Ok(Outcome {
         features: features.collect(),
-        tables: vec![table(&rows)],
+        tables: vec![table(&rows, &centers)],
         figures: vec![suited_ground(ground, suited)],
         raster: Some(code_raster("sites", codes)),
         ..Outcome::default()
     })
+}
+
+/// The posts of a site this far across.
+fn site_disk(land: &Land, size_m: f64) -> DiskRows {
+    let [columns, rows] = size_of(land);
+    DiskRows::new(size_m / 2.0, land.ground.cell(), columns.max(rows))
+}
+
+/// Columns and rows of the ground.
+fn size_of(land: &Land) -> [usize; 2] {
+    [land.ground.columns(), land.ground.rows()].map(|count| count as usize)
+}
+
+/// The name of a site by its place in the order of scores.
+fn site_name(rank: usize) -> String {
+    format!("Site {}", rank + 1)
 }
 
 fn site_limits(arguments: &AnalysisArguments) -> Result<SiteLimits, AnalysisError> {
@@ -202,9 +221,7 @@ fn site_ground(
     }
     rule_out_seen(land, arguments, &mut values, stop)?;
     let masks = masks(land, arguments, &mut values, stop)?;
-    let disk =
-        DiskRows::new(arguments.number("size_m") / 2.0, ground.cell(), columns.max(ground.rows() as usize));
-    let steepest = disk.maxima(&values, columns, f32::INFINITY);
+    let steepest = site_disk(land, arguments.number("size_m")).maxima(&values, columns, f32::INFINITY);
     Ok(SiteGround { steepest, water_m, road_m, masks })
 }
 
@@ -225,6 +242,7 @@ fn rule_out_seen(
     let ground = &*land.ground;
     let range_m = range_m(arguments);
     check_looks(KEY, arguments.points(KEY).len() as f64, posts_within(ground, range_m))?;
+    let sight = SightLand::new(land);
     for lookout in Lookout::all(land, arguments, KEY, arguments.number("observer_height"))? {
         let options = ViewshedOptions {
             target_above_m: arguments.number("hidden_height"),
@@ -232,7 +250,7 @@ fn rule_out_seen(
             curvature: curvature(arguments),
             ..ViewshedOptions::new(lookout.end)
         };
-        let view = look(ground, KEY, &options, stop)?;
+        let view = sight.look(KEY, &options, stop)?;
         view.merge_into(values, PostRect::all(ground), |value, post| {
             if post == PostVisibility::Visible {
                 *value = f32::INFINITY;
@@ -309,28 +327,26 @@ fn score(site: &SiteGround, limits: &SiteLimits, index: usize) -> f32 {
 
 /// A row of the table of sites. What is unknown or not stated is `None`.
 struct SiteRow {
-    number: usize,
     index: usize,
     code: u8,
     score: f64,
-    slope_deg: f64,
+    surface: SiteSurface,
     water_m: Option<f64>,
     road_m: Option<f64>,
     mask_deg: Option<f64>,
 }
 
 impl SiteRow {
-    fn new(number: usize, score: f32, code: u8, site: &SiteGround, index: usize) -> Self {
+    fn new((score, code): (f32, u8), surface: SiteSurface, site: &SiteGround, index: usize) -> Self {
         let finite = |distances: &Option<Vec<f64>>| {
             distances.as_ref().map(|distances| distances[index]).filter(|distance| distance.is_finite())
         };
         let degrees = |tangent: f32| libm::atan(f64::from(tangent)).to_degrees();
         Self {
-            number,
             index,
             code,
             score: f64::from(score),
-            slope_deg: degrees(site.steepest[index]),
+            surface,
             water_m: finite(&site.water_m),
             road_m: finite(&site.road_m),
             mask_deg: site.masks.as_ref().map(|masks| degrees(masks[index])),
@@ -341,7 +357,8 @@ impl SiteRow {
         let mut properties = vec![
             ("code", PropertyValue::Whole(i64::from(self.code))),
             ("score", PropertyValue::Number(self.score)),
-            ("slope_deg", PropertyValue::Number(self.slope_deg)),
+            ("slope_deg", PropertyValue::Number(self.surface.slope_deg)),
+            ("surface", self.surface.cover_noun()),
         ];
         let distances = [("water_m", self.water_m), ("road_m", self.road_m), ("mask_deg", self.mask_deg)];
         properties.extend(
@@ -351,7 +368,7 @@ impl SiteRow {
     }
 }
 
-fn table(rows: &[SiteRow]) -> OutcomeTable {
+fn table(rows: &[SiteRow], centers: &CenterColumns) -> OutcomeTable {
     let column = TableColumn::new;
     let optional = [
         (column("to water", "m", 0), (|row: &SiteRow| row.water_m) as fn(&SiteRow) -> Option<f64>),
@@ -359,23 +376,31 @@ fn table(rows: &[SiteRow]) -> OutcomeTable {
         (column("mask", "°", 1), |row| row.mask_deg),
     ];
     let shown = || optional.iter().filter(|(_, value)| rows.iter().any(|row| value(row).is_some()));
-    let mut columns =
-        vec![column("site", "", 0), column("class", "", 0), column("score", "", 2), column("slope", "°", 1)];
+    let mut columns = vec![column("site", "", 0)];
+    columns.extend(centers.columns());
+    columns.extend([
+        column("class", "", 0),
+        column("score", "", 2),
+        column("slope", "°", 1),
+        column("surface", "", 0),
+    ]);
     columns.extend(shown().map(|(column, _)| column.clone()));
-    let cells = |row: &SiteRow| {
-        let mut cells = vec![
-            PropertyValue::Whole(row.number as i64),
+    let cells = |(rank, row): (usize, &SiteRow)| {
+        let mut cells = vec![PropertyValue::Text(site_name(rank))];
+        cells.extend(centers.cells(rank));
+        cells.extend([
             PropertyValue::Text(class_name(row.code).to_owned()),
             PropertyValue::Number(row.score),
-            PropertyValue::Number(row.slope_deg),
-        ];
+            PropertyValue::Number(row.surface.slope_deg),
+            row.surface.cover_noun(),
+        ]);
         cells.extend(shown().map(|(_, value)| match value(row) {
             Some(value) => PropertyValue::Number(value),
             None => PropertyValue::Text(String::new()),
         }));
         cells
     };
-    OutcomeTable { title: "Sites".to_owned(), columns, rows: rows.iter().map(cells).collect() }
+    OutcomeTable { title: "Sites".to_owned(), columns, rows: rows.iter().enumerate().map(cells).collect() }
 }
 
 #[cfg(test)]

@@ -62,12 +62,15 @@ fn the_best_site_is_the_nearest_to_water_and_road_and_sites_lie_apart() {
     let outcome = run_kind("sites", &place(), arguments).expect("sound");
     let rows = &outcome.tables[0].rows;
     assert_eq!(rows.len(), 2);
-    let numbers = |row: usize| [4, 5].map(|column: usize| rows[row][column].clone());
+    let numbers = |row: usize| [8, 9].map(|column: usize| rows[row][column].clone());
     assert_eq!(numbers(0), [PropertyValue::Number(50.0), PropertyValue::Number(30.0)]);
     // Slope, water and road leave 1, 1/2 and 3/4: 0.75 in the mean.
-    assert_eq!(rows[0][2], PropertyValue::Number(0.75));
+    assert_eq!(rows[0][5], PropertyValue::Number(0.75));
     let names: Vec<&str> = outcome.tables[0].columns.iter().map(|column| column.name).collect();
-    assert_eq!(names, ["site", "class", "score", "slope", "to water", "to road"]);
+    let place = ["site", "east", "north", "height", "class", "score", "slope", "surface"];
+    assert_eq!(names, [&place[..], &["to water", "to road"]].concat());
+    let written = outcome.tables[0].written_rows().next().expect("a site");
+    assert_eq!(written[..4], ["Site 1", "50", "170", "0"]);
     let center = |feature: &OutcomeFeature| match &feature.shape {
         OutcomeShape::Area(rings) => rings[0].iter().sum::<DVec2>() / 32.0,
         other => panic!("{other:?}"),

@@ -1,12 +1,13 @@
-//! How the ground suits what lands, drops or stays on it: 0 not, 1 with caution, 2 well; and the best posts that lie apart.
+//! How the ground suits what lands, drops or stays on it: 0 not, 1 with caution, 2 well; and what their surface is like.
 
-use glam::DVec2;
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::{Land, LandCover, WaterKind};
-use crate::outcome::{Figure, Hatching, OutcomeRaster, PostValues, ValueClass};
+use crate::outcome::{Figure, Hatching, OutcomeRaster, PostValues, PropertyValue, ValueClass};
 use sandtable_terrain::lattice::Lattice;
 
 /// The greatest height in meters of what may stand on open ground that is used: 18 inches.
@@ -79,23 +80,32 @@ pub(crate) fn is_suited(code: u8) -> bool {
     matches!(code, 1 | 2)
 }
 
-/// The first of the posts, up to `most`, of which each lies `apart_m` or more from all before it.
-pub(crate) fn first_apart<T: Copy>(
-    posts: &[T],
-    most: usize,
-    apart_m: f64,
-    at: impl Fn(T) -> DVec2,
-) -> Vec<T> {
-    let mut taken: Vec<T> = Vec::new();
-    for &post in posts {
-        if taken.len() >= most {
-            break;
+/// What the ground of a site is like.
+pub(crate) struct SiteSurface {
+    /// The steepest slope of its posts, degrees.
+    pub slope_deg: f64,
+    /// What covers most of it; of equal ones the first in the order of covers.
+    pub cover: LandCover,
+}
+
+impl SiteSurface {
+    /// The surface of these posts.
+    pub fn of(land: &Land, posts: impl Iterator<Item = usize>) -> Self {
+        let ground = &*land.ground;
+        let (mut steepest, mut counts) = (0.0_f32, BTreeMap::<LandCover, usize>::new());
+        for index in posts.filter(|&index| !ground.heights()[index].is_nan()) {
+            steepest = steepest.max(ground.slopes(ground.post_at(index)).length());
+            *counts.entry(cover_at(land, index)).or_default() += 1;
         }
-        if taken.iter().all(|&other| at(other).distance(at(post)) >= apart_m) {
-            taken.push(post);
-        }
+        let most = counts.values().max();
+        let cover = counts.iter().find(|(_, count)| Some(*count) == most).map(|(&cover, _)| cover);
+        Self { slope_deg: libm::atan(f64::from(steepest)).to_degrees(), cover: cover.unwrap_or_default() }
     }
-    taken
+
+    /// The noun of its cover as a value.
+    pub fn cover_noun(&self) -> PropertyValue {
+        PropertyValue::Text(self.cover.noun().to_owned())
+    }
 }
 
 /// The area of so many posts of suited ground.

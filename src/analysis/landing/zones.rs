@@ -1,23 +1,26 @@
 //! Helicopter landing points: a flat, clear touchdown disk with a clear way in and out (FM 3-21.38, chapter 4).
+//! [`zone_sites`](super::zone_sites) says of the best of them what a pilot needs.
 
 use std::sync::atomic::{AtomicU8, Ordering};
 
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::disk::{DiskRows, circle};
+use super::disk::DiskRows;
 use super::suitability::{
-    LOW_M, SuitedSlopes, code_raster, cover_at, first_apart, hindrances, is_low_and_dry, is_suited,
-    suited_ground,
+    LOW_M, SuitedSlopes, code_raster, cover_at, hindrances, is_low_and_dry, is_suited, suited_ground,
 };
+use super::zone_sites::{ApproachGround, SiteSearch};
+use crate::apart::first_apart;
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::{Land, LandCover};
-use crate::outcome::{FeatureRole, Outcome, OutcomeFeature, OutcomeShape, PostValues, PropertyValue};
+use crate::outcome::{Outcome, PostValues};
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// Steps by column and row to the neighbors, clockwise from the north; the opposite of `n` is `n + 4`.
-const HEADINGS: [(i64, i64); 8] = [(0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1)];
+pub(super) const HEADINGS: [(i64, i64); 8] =
+    [(0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1)];
 
 /// The diameter in meters of a touchdown disk of size 1 to 7.
 fn diameter_m(size: &str) -> f64 {
@@ -54,15 +57,16 @@ pub(crate) fn landing_zones(
     if stop.is_stopped() {
         return Err(AnalysisError::Stopped);
     }
-    let headings =
-        clear_headings(land, &disk, arguments.number("obstacle_ratio"), arguments.number("approach_m"));
+    let tops = tops(land, &disk);
+    let length_m = arguments.number("approach_m");
+    let headings = clear_headings(land, &tops, arguments.number("obstacle_ratio"), length_m);
     if stop.is_stopped() {
         return Err(AnalysisError::Stopped);
     }
     let code = |index: usize| {
         if ground.heights()[index].is_nan() {
             PostValues::NO_CODE
-        } else if greatest[index] > limits.greatest || axis(headings[index]).is_none() {
+        } else if greatest[index] > limits.greatest || axes(headings[index]).next().is_none() {
             0
         } else if greatest[index] > limits.free {
             1
@@ -80,28 +84,20 @@ pub(crate) fn landing_zones(
     let at =
         |index: u32| DVec2::new(f64::from(index % columns as u32), f64::from(index / columns as u32)) * cell;
     let sites = first_apart(&order, count, apart, at);
-    let features = sites.iter().enumerate().map(|(rank, &index)| {
-        let center = ground.map_position(ground.post_at(index as usize));
-        let mut properties = vec![
-            ("code", PropertyValue::Whole(i64::from(codes[index as usize]))),
-            ("diameter_m", PropertyValue::Number(diameter)),
-        ];
-        if let Some(from) = axis(headings[index as usize]) {
-            let (east, north) = HEADINGS[from];
-            let azimuth = libm::atan2(east as f64 * cell.x, north as f64 * cell.y).to_degrees();
-            properties.push(("approach_from_deg", PropertyValue::Number((azimuth + 360.0) % 360.0)));
-        }
-        OutcomeFeature {
-            shape: OutcomeShape::Area(vec![circle(center, diameter / 2.0)]),
-            name: format!("LZ {}", rank + 1),
-            role: FeatureRole::Site,
-            properties,
-        }
-    });
-    let features = features.collect();
+    let search = SiteSearch {
+        land,
+        codes: &codes,
+        headings: &headings,
+        approach: ApproachGround { tops: &tops, length_m },
+        disk: &disk,
+        size: arguments.word("size"),
+        diameter_m: diameter,
+    };
+    let (features, table) = search.zones(&sites);
     Ok(Outcome {
         raster: Some(code_raster("landing", codes)),
         features,
+        tables: vec![table],
         figures: vec![suited_ground(ground, suited)],
         ..Outcome::default()
     })
@@ -123,18 +119,24 @@ fn fitness(land: &Land, index: usize) -> u8 {
     }
 }
 
-/// For each post, a bit for each heading in which a lane as wide as the disk is clear: at `t` meters from the disk,
-/// nothing in the lane is higher above the center than `t` over `ratio` and what may stand in the disk.
-fn clear_headings(land: &Land, disk: &DiskRows, ratio: f64, length_m: f64) -> Vec<u8> {
-    let ground = &*land.ground;
-    let (columns, rows, cell) = (ground.columns() as usize, ground.rows() as usize, ground.cell());
-    let heights = ground.heights();
+/// The highest top of ground and what stands on it in the disk around each post; minus infinity without data.
+fn tops(land: &Land, disk: &DiskRows) -> Vec<f32> {
+    let heights = land.ground.heights();
     let top = |index: usize| match heights[index] {
         height if height.is_nan() => f32::NEG_INFINITY,
         height => height + land.obstacles_m.as_ref().map_or(0.0, |obstacles| obstacles[index].max(0.0)),
     };
     let tops: Vec<f32> = (0..heights.len()).into_par_iter().map(top).collect();
-    let tops = disk.maxima(&tops, columns, f32::NEG_INFINITY);
+    disk.maxima(&tops, land.ground.columns() as usize, f32::NEG_INFINITY)
+}
+
+/// For each post, a bit for each heading in which a lane as wide as the disk is clear: at `t` meters from the disk,
+/// nothing in the lane is higher above the center than `t` over `ratio` and what may stand in the disk. `tops` are the
+/// highest in the disk around each post.
+fn clear_headings(land: &Land, tops: &[f32], ratio: f64, length_m: f64) -> Vec<u8> {
+    let ground = &*land.ground;
+    let (columns, rows, cell) = (ground.columns() as usize, ground.rows() as usize, ground.cell());
+    let heights = ground.heights();
     let bits: Vec<AtomicU8> = (0..heights.len()).map(|_| AtomicU8::new(0)).collect();
     for (bit, (east, north)) in HEADINGS.into_iter().enumerate() {
         let step = DVec2::new(east as f64 * cell.x, north as f64 * cell.y).length();
@@ -179,9 +181,9 @@ fn clear_headings(land: &Land, disk: &DiskRows, ratio: f64, length_m: f64) -> Ve
     bits.into_iter().map(AtomicU8::into_inner).collect()
 }
 
-/// The first heading that is clear with its opposite: the way in and the way out.
-fn axis(headings: u8) -> Option<usize> {
-    (0..4).find(|&heading| headings >> heading & 0b1_0001 == 0b1_0001)
+/// The headings from 0 to 3 that are clear with their opposites: a way in and a way out.
+pub(super) fn axes(headings: u8) -> impl Iterator<Item = usize> {
+    (0..4).filter(move |&heading| headings >> heading & 0b1_0001 == 0b1_0001)
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::arguments::ArgumentValue;
+use crate::outcome::OutcomeShape;
 use crate::test_land::{bare, codes_of, plant};
 
 const COLUMNS: usize = 41;

@@ -5,6 +5,7 @@
 
 use glam::DVec2;
 
+use crate::apart::first_apart;
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
@@ -216,12 +217,7 @@ pub(crate) fn chokes(
     // A stable sort: ties stay by avenue and station.
     places.sort_by(|one, other| one.width_m.total_cmp(&other.width_m));
     let (most, apart_m) = (arguments.number("most") as usize, arguments.number("apart_m"));
-    let mut kept: Vec<ChokePoint> = Vec::new();
-    for place in places {
-        if kept.len() < most && kept.iter().all(|other| other.at.distance(place.at) > apart_m) {
-            kept.push(place);
-        }
-    }
+    let kept = first_apart(&places, most, apart_m, |place| place.at);
     let feature = |(index, place): (usize, &ChokePoint)| OutcomeFeature {
         shape: OutcomeShape::Point(place.at),
         name: format!("{} m", place.width_m.round()),

@@ -7,12 +7,14 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::arguments::AnalysisArguments;
+use crate::center_columns::CenterColumns;
 use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::measures::{area_km2, percent};
 use crate::observation::lookout::{
-    Lookout, LookoutView, check_looks, count_classes, curvature, look, posts_within, range_m,
+    Lookout, LookoutView, check_looks, count_classes, curvature, posts_within, range_m,
 };
+use crate::observation::sight_land::SightLand;
 use crate::outcome::{Figure, Outcome, OutcomeRaster, OutcomeTable, PostValues, PropertyValue, TableColumn};
 use crate::place::height_under;
 use crate::ring::is_in_area;
@@ -73,6 +75,7 @@ pub(crate) fn best_posts(
         "state a larger `spacing` or a smaller `watch`",
     )?;
     let places = places(ground, arguments, rect, steps)?;
+    let sight = SightLand::new(land);
     let view = |place: &Lookout| {
         let options = ViewshedOptions {
             target_above_m: arguments.number("target_height"),
@@ -80,7 +83,7 @@ pub(crate) fn best_posts(
             curvature: curvature(arguments),
             ..ViewshedOptions::new(place.end)
         };
-        let seen = watched.seen(&look(ground, "area", &options, stop)?);
+        let seen = watched.seen(&sight.look("area", &options, stop)?);
         stop.did(1);
         Ok(seen)
     };
@@ -93,7 +96,7 @@ pub(crate) fn best_posts(
     let views = views?;
     let count = arguments.number("count").round().max(1.0) as usize;
     let chosen = choose(&places, &views, &watched, count);
-    let mut outcome = outcome(ground, &chosen, watched.count());
+    let mut outcome = outcome(land, &chosen, watched.count());
     outcome.raster = Some(OutcomeRaster {
         name: "posts in sight",
         unit: "",
@@ -260,7 +263,8 @@ fn choose(places: &[Lookout], views: &[Vec<u64>], watched: &WatchedGround, count
     chosen
 }
 
-fn outcome(ground: &Lattice, chosen: &[ChosenPost], watched: usize) -> Outcome {
+fn outcome(land: &Land, chosen: &[ChosenPost], watched: usize) -> Outcome {
+    let centers = CenterColumns::new(land, chosen.iter().map(|post| post.place.end.at).collect());
     let together: Vec<usize> = chosen
         .iter()
         .scan(0, |sum, post| {
@@ -275,29 +279,23 @@ fn outcome(ground: &Lattice, chosen: &[ChosenPost], watched: usize) -> Outcome {
             ("together_percent", PropertyValue::Number(percent(together, watched))),
         ])
     };
-    let row = |(post, &together): (&ChosenPost, &usize)| {
-        vec![
-            PropertyValue::Whole(post.place.number as i64),
-            PropertyValue::Number(post.place.end.at.x),
-            PropertyValue::Number(post.place.end.at.y),
-            PropertyValue::Number(post.place.ground_m),
+    let row = |(index, (post, &together)): (usize, (&ChosenPost, &usize))| {
+        let mut row = vec![PropertyValue::Whole(post.place.number as i64)];
+        row.extend(centers.cells(index));
+        row.extend([
             PropertyValue::Number(percent(post.seen, watched)),
             PropertyValue::Number(percent(post.gained, watched)),
             PropertyValue::Number(percent(together, watched)),
-        ]
+        ]);
+        row
     };
+    let mut columns = vec![TableColumn::new("post", "", 0)];
+    columns.extend(centers.columns());
+    columns.extend(["sees", "adds", "together"].map(|name| TableColumn::new(name, "%", 1)));
     let table = OutcomeTable {
         title: "Best posts".into(),
-        columns: vec![
-            TableColumn::new("post", "", 0),
-            TableColumn::new("east", "m", 0),
-            TableColumn::new("north", "m", 0),
-            TableColumn::new("ground", "m", 0),
-            TableColumn::new("sees", "%", 1),
-            TableColumn::new("adds", "%", 1),
-            TableColumn::new("together", "%", 1),
-        ],
-        rows: chosen.iter().zip(&together).map(row).collect(),
+        columns,
+        rows: chosen.iter().zip(&together).enumerate().map(row).collect(),
     };
     let last = together.last().copied().unwrap_or(0);
     Outcome {
@@ -305,7 +303,7 @@ fn outcome(ground: &Lattice, chosen: &[ChosenPost], watched: usize) -> Outcome {
         tables: vec![table],
         figures: vec![
             Figure::new("seen together", percent(last, watched), "%"),
-            Figure::new("watched", area_km2(ground, watched), "km²"),
+            Figure::new("watched", area_km2(&land.ground, watched), "km²"),
         ],
         ..Outcome::default()
     }
@@ -403,7 +401,7 @@ mod tests {
         assert_eq!(outcome.figures[0].value, 100.0);
         // 69 steps of 10 m leave 9 beside two of 30: the first place is 4 in.
         assert_eq!(outcome.features[0].shape, crate::outcome::OutcomeShape::Point(at(4.0, 4.0)));
-        assert!(outcome.notes[0].contains("first 1 of 3 posts"), "{:?}", outcome.notes);
+        assert!(outcome.notes[1].contains("first 1 of 3 posts"), "{:?}", outcome.notes);
     }
 
     #[test]

@@ -10,14 +10,16 @@ use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::observation::lookout::{Lookout, check_work, curvature, range_m};
+use crate::observation::sight_land::SightLand;
 use crate::outcome::{
     FeatureRole, Figure, Outcome, OutcomeFeature, OutcomeShape, OutcomeTable, PropertyValue, TableColumn,
 };
 use crate::place::height_under;
 use sandtable_base::limits::memory::check_memory;
+use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::sight::Curvature;
 use sandtable_terrain::sight::ground::SightGround;
-use sandtable_terrain::sight::line::{Sight, SightEnd};
+use sandtable_terrain::sight::line::Sight;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// Lines of sight that an analysis may compute: some minutes on two cores.
@@ -68,7 +70,10 @@ struct RouteStretch {
 
 /// What looks at the route.
 struct RouteWatch<'a> {
-    ground: SightGround,
+    /// The ground below all that stands on it.
+    ground: &'a Lattice,
+    sight: SightLand,
+    tops: SightGround,
     lookouts: &'a [Lookout],
     above_m: f64,
     range_m: f64,
@@ -77,20 +82,23 @@ struct RouteWatch<'a> {
 
 impl RouteWatch<'_> {
     fn line(&self, lookout: &Lookout, at: DVec2) -> RouteSight {
-        let target = SightEnd { at, above_m: self.above_m };
         if lookout.end.at.distance(at) > self.range_m {
             return RouteSight::Hidden;
         }
-        match self.ground.line_of_sight(lookout.end, target, self.curvature) {
-            Sight::Clear => RouteSight::Seen,
-            Sight::Blocked(_) => RouteSight::Hidden,
-            Sight::NoGround(_) => RouteSight::Unknown,
+        let mut found = RouteSight::Hidden;
+        for target in self.sight.target(at, self.above_m) {
+            match self.tops.line_of_sight(lookout.end, target, self.curvature) {
+                Sight::Clear => return RouteSight::Seen,
+                Sight::Blocked(_) => {}
+                Sight::NoGround(_) => found = RouteSight::Unknown,
+            }
         }
+        found
     }
 
     /// Whether any post sees a place.
     fn sight(&self, at: DVec2) -> RouteSight {
-        if height_under(self.ground.lattice(), "route", at).is_err() {
+        if height_under(self.ground, "route", at).is_err() {
             return RouteSight::Unknown;
         }
         let is_seen = self.lookouts.iter().any(|lookout| self.line(lookout, at) == RouteSight::Seen);
@@ -137,8 +145,11 @@ pub(crate) fn exposure(
     check_work("step", posts as f64, expected, MOST_LINES)?;
     check_memory((expected * BYTES_PER_PLACE) as u64, "the places of the route", "state a larger `step`")?;
     let lookouts = Lookout::all(land, arguments, "posts", arguments.number("observer_height"))?;
+    let sight = SightLand::new(land).cleared_around(lookouts.iter().map(|lookout| lookout.end.at));
     let watch = RouteWatch {
-        ground: SightGround::new(land.ground.clone()),
+        ground,
+        tops: SightGround::new(sight.tops().clone()),
+        sight,
         lookouts: &lookouts,
         above_m: arguments.number("target_height"),
         range_m: range_m(arguments),
@@ -189,7 +200,7 @@ fn stretches(watch: &RouteWatch<'_>, places: &[RoutePlace], seen: &[bool]) -> Ve
         .zip(rows.collect::<Vec<_>>())
         .map(|(place, row)| match row.contains(&true) {
             true => RouteSight::Seen,
-            false if height_under(watch.ground.lattice(), "route", place.at).is_err() => RouteSight::Unknown,
+            false if height_under(watch.ground, "route", place.at).is_err() => RouteSight::Unknown,
             false => RouteSight::Hidden,
         })
         .collect();

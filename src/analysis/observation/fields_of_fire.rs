@@ -12,9 +12,8 @@ use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::measures::{area_km2, percent};
-use crate::observation::lookout::{
-    Lookout, LookoutView, check_windows, count_classes, curvature, look_at, shares,
-};
+use crate::observation::lookout::{Lookout, LookoutView, check_windows, count_classes, curvature, shares};
+use crate::observation::sight_land::SightLand;
 use crate::outcome::{
     FeatureRole, Figure, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, OutcomeTable, PostValues,
     PropertyValue, TableColumn,
@@ -28,8 +27,8 @@ use sandtable_terrain::sight::line::SightEnd;
 use sandtable_terrain::sight::viewshed::{PostVisibility, Sector, ViewshedOptions};
 use sandtable_terrain::stop_flag::StopFlag;
 
-/// A value and the visibility of each post, with what a viewshed needs while it is computed.
-const BYTES_PER_POST: u64 = 8;
+/// A value, the visibility, and what stands at each post, with what a viewshed needs while it is computed.
+const BYTES_PER_POST: u64 = 16;
 
 /// Corners of a full circle of a fan: its chords lie at most 0.04 % of the radius within it.
 const CIRCLE_CORNERS: f64 = 120.0;
@@ -61,11 +60,12 @@ pub(crate) fn fields_of_fire(
 /// The values of `posts`. The tally has the posts that each weapon hits, and of how many; then those that any hits, and of how
 /// many.
 fn values(
-    ground: &Lattice,
+    land: &Land,
     arguments: &AnalysisArguments,
     posts: PostRect,
     stop: &StopFlag,
 ) -> Result<SightValues, AnalysisError> {
+    let ground = &*land.ground;
     let fan = fan(arguments)?;
     let [muzzle_m, target_m] = heights_less_clearance(arguments)?;
     let places = arguments.points("weapons");
@@ -75,6 +75,7 @@ fn values(
     check_memory(count as u64 * BYTES_PER_POST, "the fields of fire", "state a smaller `extent`")?;
     let mut values = vec![f32::NAN; count];
     let mut tally = vec![0; 2 * places.len()];
+    let sight = SightLand::new(land).cleared_around(places.iter().copied());
     stop.stretch(0.0..1.0, windows.len());
     for (index, window) in windows {
         let end = SightEnd { at: places[index], above_m: muzzle_m };
@@ -85,7 +86,7 @@ fn values(
             curvature: curvature(arguments),
             ..ViewshedOptions::new(end)
         };
-        let mut view = look_at(ground, "weapons", (&options, window), stop)?;
+        let mut view = sight.look_at("weapons", (&options, window), stop)?;
         hide_nearer(ground, &mut view, end.at, fan.min_m);
         view.merge_into(&mut values, posts, |value, post| match post {
             PostVisibility::Beyond | PostVisibility::NoData => {}

@@ -6,6 +6,7 @@ use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::observation::lookout::{Lookout, curvature, range_m};
+use crate::observation::sight_land::SightLand;
 use crate::outcome::{
     FeatureRole, Figure, Outcome, OutcomeFeature, OutcomeShape, OutcomeTable, PropertyValue, TableColumn,
 };
@@ -83,7 +84,8 @@ fn pairs(
     curvature: Curvature,
     stop: &StopFlag,
 ) -> Result<Vec<PostPair>, AnalysisError> {
-    let ground = SightGround::new(land.ground.clone());
+    let sight = SightLand::new(land).cleared_around(lookouts.iter().map(|lookout| lookout.end.at));
+    let ground = SightGround::new(sight.tops().clone());
     let pair = |from: usize, to: usize| {
         let ends = [lookouts[from].end, lookouts[to].end];
         let distance_m = ends[0].at.distance(ends[1].at);

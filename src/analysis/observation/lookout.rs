@@ -9,16 +9,15 @@ use rayon::prelude::*;
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
+use crate::observation::sight_land::EDGE_M;
 use crate::outcome::{FeatureRole, Hatching, OutcomeFeature, OutcomeShape, PropertyValue, ValueClass};
-use crate::place::{height_under, missing_ground};
+use crate::place::height_under;
 use crate::tally::FigureTally;
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::sight::Curvature;
 use sandtable_terrain::sight::line::SightEnd;
-use sandtable_terrain::sight::viewshed::rises::required_rises;
-use sandtable_terrain::sight::viewshed::{PostVisibility, Viewshed, ViewshedOptions, viewshed_until};
-use sandtable_terrain::stop_flag::StopFlag;
+use sandtable_terrain::sight::viewshed::{PostVisibility, Viewshed};
 
 /// The tint of ground that nothing sees.
 pub(crate) const DEAD_TINT: [u8; 4] = [90, 90, 90, 110];
@@ -75,8 +74,9 @@ impl LookWindow {
         let looked = around.intersection(posts)?;
         let grid = ground.grid_from_map(at).clamp(DVec2::ZERO, ground.last_grid());
         let hull = looked.with(Post::at_grid(grid.floor())).with(Post::at_grid(grid.ceil()));
-        // Lines along its border look at the cells on both sides.
-        let held = hull.grown((1, 1), ground).intersection(around).unwrap_or(hull);
+        // Lines along its border look at the cells on both sides, and posts under trees at the open ground beside them.
+        let edge = (DVec2::splat(EDGE_M) / ground.cell()).max(DVec2::ONE).ceil().as_uvec2() + 1;
+        let held = hull.grown((edge.x, edge.y), ground).intersection(around).unwrap_or(hull);
         Some(Self { held, looked })
     }
 
@@ -194,66 +194,8 @@ pub(crate) fn check_windows<'a>(
     check_looks(key, looks, largest)
 }
 
-/// What is seen of the land; see [`viewshed_until`].
-///
-/// # Errors
-/// The observer has no ground, or the analysis was stopped.
-pub(crate) fn look(
-    ground: &Lattice,
-    key: &'static str,
-    options: &ViewshedOptions,
-    stop: &StopFlag,
-) -> Result<LookoutView, AnalysisError> {
-    let window = LookWindow::whole(ground, options.observer.at, options.range_m);
-    look_at(ground, key, (options, window), stop)
-}
-
-/// What is seen of the posts of a window; see [`viewshed_until`].
-///
-/// # Errors
-/// As for [`look`].
-pub(crate) fn look_at(
-    ground: &Lattice,
-    key: &'static str,
-    (options, window): (&ViewshedOptions, LookWindow),
-    stop: &StopFlag,
-) -> Result<LookoutView, AnalysisError> {
-    let view = on_posts(ground, key, (options, window), |ground| viewshed_until(ground, options, stop))?;
-    Ok(LookoutView { window, view })
-}
-
-/// How far targets on the held posts of a window must rise to be seen; see [`required_rises`].
-///
-/// # Errors
-/// As for [`look`].
-pub(crate) fn rises(
-    ground: &Lattice,
-    key: &'static str,
-    (options, window): (&ViewshedOptions, LookWindow),
-    stop: &StopFlag,
-) -> Result<Vec<f32>, AnalysisError> {
-    let rises = on_posts(ground, key, (options, window), |ground| required_rises(ground, options, stop))?;
-    Ok(rises.rises_m)
-}
-
-/// What `task` gives on the ground that holds the posts of a window alone.
-fn on_posts<T, E>(
-    ground: &Lattice,
-    key: &'static str,
-    (options, window): (&ViewshedOptions, LookWindow),
-    task: impl FnOnce(&Lattice) -> Result<Option<T>, E>,
-) -> Result<T, AnalysisError> {
-    let at = options.observer.at;
-    let place = |_| AnalysisError::Place { key, at, problem: missing_ground(ground, at) };
-    let found = match window.held == ground.held() {
-        true => task(ground),
-        false => task(&ground.holding_only(window.held)),
-    };
-    found.map_err(place)?.ok_or(AnalysisError::Stopped)
-}
-
 /// The posts within a range and those of a cell around them.
-fn posts_around(ground: &Lattice, at: DVec2, range_m: f64) -> PostRect {
+pub(crate) fn posts_around(ground: &Lattice, at: DVec2, range_m: f64) -> PostRect {
     let reach = DVec2::splat(range_m) / ground.cell() + 2.0;
     let at = ground.grid_from_map(at);
     let around = PostRect::between(ground, (at - reach).floor(), (at + reach).ceil());

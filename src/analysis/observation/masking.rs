@@ -10,7 +10,8 @@ use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::measures::percent;
-use crate::observation::lookout::{LookWindow, Lookout, check_windows, curvature, range_m, rises};
+use crate::observation::lookout::{LookWindow, Lookout, check_windows, curvature, range_m};
+use crate::observation::sight_land::SightLand;
 use crate::outcome::{
     Figure, Hatching, Outcome, OutcomeRaster, OutcomeTable, PostValues, PropertyValue, TableColumn,
     ValueClass,
@@ -25,8 +26,8 @@ use sandtable_terrain::sight::line::SightEnd;
 use sandtable_terrain::sight::viewshed::ViewshedOptions;
 use sandtable_terrain::stop_flag::StopFlag;
 
-/// A value and the rise of each post, and the rise as the sweep stores it.
-const BYTES_PER_POST: u64 = 12;
+/// A value, the rise of each post and what stands there, and the rise as the sweep stores it.
+const BYTES_PER_POST: u64 = 20;
 
 /// Heights above the ground at which the hidden share is a figure, meters.
 const LEVELS_M: [f32; 4] = [0.0, 50.0, 100.0, 300.0];
@@ -36,6 +37,7 @@ pub(crate) const SIGHT: SightKind = SightKind { values, summary };
 
 /// What looks for targets.
 struct MaskingWatch<'a> {
+    sight: SightLand,
     ground: &'a Lattice,
     radars: &'a [DVec2],
     height_m: f64,
@@ -62,17 +64,19 @@ pub(crate) fn masking(
 /// The values of `posts`. The tally has the posts that each radar sees, and of how many; then for each level those that are
 /// hidden up to it, and of how many.
 fn values(
-    ground: &Lattice,
+    land: &Land,
     arguments: &AnalysisArguments,
     posts: PostRect,
     stop: &StopFlag,
 ) -> Result<SightValues, AnalysisError> {
+    let ground = &*land.ground;
     let radars = arguments.points("radars");
     let windows = windows(ground, arguments, posts);
     check_windows("radars", windows.iter().map(|(_, window)| window))?;
     let count = posts.width() * posts.height();
     check_memory(count as u64 * BYTES_PER_POST, "the masking heights", "state a smaller `extent`")?;
     let watch = MaskingWatch {
+        sight: SightLand::new(land).cleared_around(radars.iter().copied()),
         ground,
         radars,
         height_m: arguments.number("radar_height"),
@@ -156,7 +160,7 @@ impl MaskingWatch<'_> {
         let end = SightEnd { at: self.radars[index], above_m: self.height_m };
         let options =
             ViewshedOptions { range_m: self.range_m, curvature: self.curvature, ..ViewshedOptions::new(end) };
-        let rises_m = rises(self.ground, "radars", (&options, window), stop)?;
+        let rises_m = self.sight.rises("radars", (&options, window), stop)?;
         let LookWindow { held, looked } = window;
         let (from, to) = (looked.counted_in(held).first, looked.counted_in(self.posts).first);
         let rows = values.par_chunks_mut(self.posts.width()).skip(to.row as usize).take(looked.height());

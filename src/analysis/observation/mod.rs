@@ -1,7 +1,7 @@
 //! Observation and fire over the land.
 //!
 //! All kinds ask one definition of sight, `sandtable_terrain::sight`: the line between two points over the triangles of the
-//! ground, with the Earth's curvature and refraction.
+//! ground, with the Earth's curvature and refraction; `sight_land` has trees and buildings stand in its way.
 
 mod best_posts;
 mod exposure;
@@ -9,6 +9,7 @@ pub(crate) mod fields_of_fire;
 mod intervisibility;
 pub(crate) mod lookout;
 pub(crate) mod masking;
+pub(crate) mod sight_land;
 #[cfg(test)]
 pub(crate) mod test_hills;
 pub(crate) mod viewsheds;

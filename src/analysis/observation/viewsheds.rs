@@ -5,8 +5,9 @@ use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::measures::{area_km2, percent};
 use crate::observation::lookout::{
-    DEAD_TINT, Lookout, check_windows, count_classes, curvature, look_at, range_m, shares,
+    DEAD_TINT, Lookout, check_windows, count_classes, curvature, range_m, shares,
 };
+use crate::observation::sight_land::SightLand;
 use crate::outcome::{
     Figure, Hatching, Outcome, OutcomeRaster, OutcomeTable, PostValues, PropertyValue, TableColumn,
     ValueClass,
@@ -21,8 +22,8 @@ use sandtable_terrain::sight::line::SightEnd;
 use sandtable_terrain::sight::viewshed::{PostVisibility, ViewshedOptions};
 use sandtable_terrain::stop_flag::StopFlag;
 
-/// A value and the visibility of each post, with what a viewshed needs while it is computed.
-const BYTES_PER_POST: u64 = 8;
+/// A value, the visibility, and what stands at each post, with what a viewshed needs while it is computed.
+const BYTES_PER_POST: u64 = 16;
 
 /// What the values of viewsheds are.
 #[derive(Clone, Copy, PartialEq)]
@@ -50,11 +51,12 @@ pub(crate) fn viewsheds(
 /// The values of `posts`. The tally has the posts that each lookout sees, and of how many; then those that any sees, and of how
 /// many.
 fn values(
-    ground: &Lattice,
+    land: &Land,
     arguments: &AnalysisArguments,
     posts: PostRect,
     stop: &StopFlag,
 ) -> Result<SightValues, AnalysisError> {
+    let ground = &*land.ground;
     let show = match arguments.word("show").as_str() {
         "first" => ViewshedShow::First,
         "dead" => ViewshedShow::Dead,
@@ -67,6 +69,7 @@ fn values(
     check_memory(count as u64 * BYTES_PER_POST, "the viewsheds", "state a smaller `extent`")?;
     let mut values = vec![f32::NAN; count];
     let mut tally = vec![0; 2 * places.len()];
+    let sight = SightLand::new(land).cleared_around(places.iter().copied());
     stop.stretch(0.0..1.0, windows.len());
     for (index, window) in windows {
         let end = SightEnd { at: places[index], above_m: arguments.number("observer_height") };
@@ -76,7 +79,7 @@ fn values(
             curvature: curvature(arguments),
             ..ViewshedOptions::new(end)
         };
-        let view = look_at(ground, "posts", (&options, window), stop)?;
+        let view = sight.look_at("posts", (&options, window), stop)?;
         let number = (index + 1) as f32;
         view.merge_into(&mut values, posts, |value, post| {
             *value = merged(show, number, *value, post);

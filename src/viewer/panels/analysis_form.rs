@@ -4,7 +4,9 @@ use egui::{ComboBox, Response, TextEdit, Ui};
 
 use sandtable_catalog::kind::{AnalysisFamily, AnalysisKind};
 use sandtable_catalog::kinds;
-use sandtable_catalog::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
+use sandtable_catalog::parameter::{
+    AnalysisParameter, PHASE_PREFIX, ParameterDefault, ParameterForm, SOURCE_GROUND,
+};
 use sandtable_editing::analysis_draft::{AnalysisDraft, DraftField};
 
 /// The width of a field, in points.
@@ -27,6 +29,8 @@ pub struct AnalysisForm<'a> {
     pub draft: Option<&'a mut AnalysisDraft>,
     /// The names of vehicles.
     pub vehicles: &'a [String],
+    /// The names of the scene's phases.
+    pub phases: &'a [String],
     /// What is wrong beside the fields; empty for nothing.
     pub problem: &'a str,
     /// What is being made; `None` while nothing is.
@@ -69,7 +73,7 @@ pub fn analysis_form(ui: &mut Ui, form: &mut AnalysisForm<'_>) -> Option<Analysi
         ui.add(field).labelled_by(label.id);
     });
     for field in &mut draft.fields {
-        event = field_rows(ui, field, (form.vehicles, form.picking)).or(event);
+        event = field_rows(ui, field, (form.vehicles, form.phases, form.picking)).or(event);
     }
     if !form.problem.is_empty() {
         ui.colored_label(ui.visuals().error_fg_color, form.problem);
@@ -119,7 +123,7 @@ fn kind_choice(ui: &mut Ui, chosen: Option<&'static AnalysisKind>) -> Option<&'s
 fn field_rows(
     ui: &mut Ui,
     field: &mut DraftField,
-    (vehicles, picking): (&[String], Option<&str>),
+    (vehicles, phases, picking): (&[String], &[String], Option<&str>),
 ) -> Option<AnalysisFormEvent> {
     let mut event = None;
     let parameter = field.parameter;
@@ -138,6 +142,9 @@ fn field_rows(
             }
         };
         response.labelled_by(label.id).on_hover_text(parameter.doc);
+        if parameter.form == ParameterForm::Ground {
+            ground_choice(ui, field, phases);
+        }
         let allowed = allowed(parameter);
         if !allowed.is_empty() {
             ui.weak(allowed);
@@ -156,6 +163,20 @@ fn field_rows(
         ui.colored_label(ui.visuals().error_fg_color, problem);
     }
     event
+}
+
+/// A choice among the grounds that a scene has itself: before its earthworks, and in its phases.
+fn ground_choice(ui: &mut Ui, field: &mut DraftField, phases: &[String]) {
+    let button = ui.menu_button("Choose", |ui| {
+        let of_phases = phases.iter().map(|phase| format!("{PHASE_PREFIX}{phase}"));
+        for ground in std::iter::once(SOURCE_GROUND.to_owned()).chain(of_phases) {
+            if ui.button(&ground).clicked() {
+                field.set(ground);
+                ui.close();
+            }
+        }
+    });
+    button.response.on_hover_text("The elevation before the scene's earthworks, or the ground of a phase");
 }
 
 /// A choice among words.
@@ -208,6 +229,7 @@ mod tests {
             let mut form = AnalysisForm {
                 draft: state.draft.as_mut(),
                 vehicles: &vehicles,
+                phases: &["morning".to_owned(), "noon".to_owned()],
                 problem: "",
                 running: state.running.then_some(RunningAnalysis {
                     step: "analyzing",
@@ -265,6 +287,19 @@ mod tests {
         let events = &harness.state().events;
         let is_pick = |event: &AnalysisFormEvent| matches!(event, AnalysisFormEvent::Pick(known) if known.name == "from");
         assert!(events.iter().any(is_pick), "{events:?}");
+    }
+
+    #[test]
+    fn a_phase_to_compare_with_is_chosen() {
+        let cut_fill = AnalysisDraft::new(sandtable_catalog::kind("cut-fill").expect("a kind"));
+        let mut harness = form(Some(cut_fill), false);
+        harness.get_by_label("Choose").click();
+        harness.run();
+        harness.get_by_label("source");
+        harness.get_by_label("phase:noon").click();
+        harness.run();
+        let draft = harness.state_mut().draft.as_mut().expect("there");
+        assert_eq!(draft.field_mut("against").expect("there").text, "phase:noon");
     }
 
     #[test]
