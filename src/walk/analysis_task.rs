@@ -126,6 +126,7 @@ mod tests {
     use sandtable_editing::viewing::open_to_view;
     use sandtable_picture as picture;
     use sandtable_picture::tried_analysis::tried_feature;
+    use sandtable_query::analysis::analyze;
     use sandtable_scene::scene_file::open_scene_land;
     use std::path::Path;
 
