@@ -66,6 +66,9 @@ const LANDING_ZONES: AnalysisKind = AnalysisKind {
     limits: &[
         "Approach and departure are opposite, straight, and in the directions of the eight neighbors of a post alone.",
         "Ground beyond the land and without data counts as clear of obstacles on approach and departure.",
+        "Forests in which a scene places no trees count as 15 m high, orchards as 4 m.",
+        "The table's points count disks beside each other on suited ground, each with a clear way of its own; up to 20 are counted. \
+         Wind may turn the way in into the way out.",
         "Wires and obstacles between posts are unknown, as are wind, dust and the bearing strength of soil.",
     ],
 };
@@ -277,5 +280,6 @@ const SITES: AnalysisKind = AnalysisKind {
         "A mask is that of bare ground on a flat Earth, along the chain of posts nearest to the direction; ground beyond the \
          model masks nothing.",
         "A crest that a gun clears says nothing of its range, charge and fuze.",
+        "Trees and buildings hide a site from the posts of `hidden_from`, and mask nothing.",
     ],
 };

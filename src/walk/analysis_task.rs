@@ -126,6 +126,7 @@ mod tests {
     use sandtable_editing::viewing::open_to_view;
     use sandtable_picture as picture;
     use sandtable_picture::tried_analysis::tried_feature;
+    use sandtable_query::analysis::analyze;
     use sandtable_scene::scene_file::open_scene_land;
     use std::path::Path;
 
@@ -237,14 +238,14 @@ mod tests {
             Ok::<_, AnalyzeError>(figures.iter().find(|figure| figure.name == "cut").map(|cut| cut.value))
         };
         let dug = net_m3("dug", "phase:before").expect("an outcome").expect("a figure");
-        assert!((20_000.0..32_000.0).contains(&dug), "8100 m² by 3 m and its batters: {dug}");
+        assert_eq!(dug, 36_300.0, "11 by 11 posts of 100 m² lie 3 m lower");
         assert_eq!(
             net_m3("before", "phase:dug").expect("an outcome"),
             Some(0.0),
             "the other way it is filled"
         );
         assert_eq!(net_m3("dug", "phase:dug").expect("an outcome"), Some(0.0));
-        let missing = net_m3("dug", "phase:dusk").err().expect("no such phase");
+        let missing = net_m3("dug", "phase:dusk").expect_err("no such phase");
         assert_eq!(missing.key(), Some("against"), "{missing}");
         std::fs::remove_dir_all(&folder).expect("removed");
     }
