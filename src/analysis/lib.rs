@@ -20,6 +20,7 @@ pub mod observation;
 pub mod outcome;
 mod place;
 mod ring;
+mod round_classes;
 pub mod run;
 pub mod surface;
 #[cfg(test)]

@@ -34,7 +34,7 @@ impl TriedAnalysis {
             color: None,
             feature: tried_feature(scene),
             ground: placed.ground,
-            outcome: placed.outcome,
+            outcome: placed.outcome.with_classes(),
         };
         let tint = analyses::tint(&analysis, scene);
         let lines = analyses::colors(&analysis, scene).into_iter().chain([graphic_lines::CASING]);

@@ -62,7 +62,7 @@ pub struct SceneAnalysis {
     pub feature: FeatureId,
     /// The ground on whose posts the values of its raster are.
     pub ground: Arc<Lattice>,
-    /// What it gives.
+    /// What it gives; a raster has classes, see [`Outcome::with_classes`].
     pub outcome: Outcome,
 }
 
@@ -115,7 +115,7 @@ impl SceneModel {
             color: None,
             feature,
             ground,
-            outcome,
+            outcome: outcome.with_classes(),
         });
     }
 }
@@ -260,7 +260,7 @@ pub(super) fn analyze(
             color: table.color.map(|Color(color)| Srgba(color)),
             feature,
             ground,
-            outcome,
+            outcome: outcome.with_classes(),
         });
     }
     errors.finish()?;

@@ -166,13 +166,22 @@ mod tests {
             let mut lattice = densify(&lattice, times).expect("few posts");
             for pinned in [0, 1, 5] {
                 for number in 0..pinned {
-                    let post = Post { column: number * 5 % lattice.columns(), row: (number * 11 + 3) % lattice.rows() };
+                    let post = Post {
+                        column: number * 5 % lattice.columns(),
+                        row: (number * 11 + 3) % lattice.rows(),
+                    };
                     lattice.pin(post, 4.0 + number as f32);
                 }
                 for row in 0..lattice.rows() {
                     let slopes = (0..lattice.columns()).map(|column| lattice.slopes(Post { column, row }));
-                    let bits = |slopes: Vec<Vec2>| slopes.iter().map(|at| at.to_array().map(f32::to_bits)).collect::<Vec<_>>();
-                    assert_eq!(bits(lattice.slopes_of_row(row)), bits(slopes.collect()), "{columns} {times} {row}");
+                    let bits = |slopes: Vec<Vec2>| {
+                        slopes.iter().map(|at| at.to_array().map(f32::to_bits)).collect::<Vec<_>>()
+                    };
+                    assert_eq!(
+                        bits(lattice.slopes_of_row(row)),
+                        bits(slopes.collect()),
+                        "{columns} {times} {row}"
+                    );
                 }
             }
         }
@@ -224,15 +233,21 @@ mod tests {
                 11 => 90.0,
                 _ => (index * 7919 % 101) as f32 / 7.0,
             };
-            let lattice = Lattice::new(DVec2::ZERO, DVec2::new(9.77, 3.1), 11, (0..121).map(height).collect());
+            let lattice =
+                Lattice::new(DVec2::ZERO, DVec2::new(9.77, 3.1), 11, (0..121).map(height).collect());
             let mut lattice = densify(&lattice.expect("sound"), times).expect("few posts");
             for number in 0..6 {
-                let post = Post { column: number * 7 % lattice.columns(), row: (number * 5 + 2) % lattice.rows() };
+                let post =
+                    Post { column: number * 7 % lattice.columns(), row: (number * 5 + 2) % lattice.rows() };
                 lattice.pin(post, 60.0 * number as f32);
             }
             for post in lattice.posts() {
                 let (found, wanted) = (lattice.slopes(post), defined(&lattice, post));
-                assert_eq!(found.to_array().map(f32::to_bits), wanted.to_array().map(f32::to_bits), "{times} {post:?}");
+                assert_eq!(
+                    found.to_array().map(f32::to_bits),
+                    wanted.to_array().map(f32::to_bits),
+                    "{times} {post:?}"
+                );
             }
         }
     }
