@@ -10,12 +10,12 @@ use crate::post_tint::{PostTint, TintPlan};
 use crate::sight::{circle, level_text};
 use sandtable_analysis::outcome::{FeatureRole, Hatching, OutcomeFeature, OutcomeShape, PropertyValue};
 use sandtable_draw::color::Srgba;
+use sandtable_geom::azimuth::heading;
 use sandtable_geom::polygon::counter_clockwise;
 use sandtable_ribbon::area;
 use sandtable_scene::analyses::SceneAnalysis;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::seen_ground::PostFrame;
-use sandtable_scene::sight_layers::heading;
 
 /// The radius of marks of places in text heights.
 const MARK_EM: f64 = 0.5;

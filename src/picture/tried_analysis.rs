@@ -50,7 +50,7 @@ impl TriedAnalysis {
 
 /// The feature that an analysis is that is tried: none of the scene's own.
 pub fn tried_feature(scene: &SceneModel) -> FeatureId {
-    FeatureId(FeatureId::GROUND.0 + 1 + scene.features.len() as u32)
+    FeatureId::of_index(scene.features.len())
 }
 
 impl GroundSheets {

@@ -104,8 +104,8 @@ impl SceneModel {
         outcome: Outcome,
     ) {
         let origin = FeatureOrigin::default();
+        let feature = FeatureId::of_index(self.features.len());
         self.features.push(SceneFeature { kind: FeatureKind::Analysis, name: name.clone(), origin });
-        let feature = FeatureId(FeatureId::GROUND.0 + self.features.len() as u32);
         let number = self.analyses.len();
         self.analyses.push(SceneAnalysis {
             name,
