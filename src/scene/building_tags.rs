@@ -220,6 +220,7 @@ fn azimuth_deg(value: &Scalar) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec2;
 
     #[test]
     fn directions_are_degrees_or_points_of_the_compass() {
