@@ -16,9 +16,9 @@ use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::outcome::{Outcome, OutcomeRaster, PostValues};
+use crate::ring::AreaRow;
 use crate::run::{raster_tally, run, tally_figures};
 use sandtable_catalog::parameter::EXTENT;
-use sandtable_geom::polygon::crossings;
 use sandtable_geom::rect::Rect;
 use sandtable_terrain::lattice::{Lattice, LatticeError, Post};
 use sandtable_terrain::post_rect::PostRect;
@@ -228,11 +228,10 @@ fn outside(ring: &[DVec2], ground: &Lattice, mut visit: impl FnMut(usize)) {
     let held = ground.held();
     for row in held.first.row..=held.last.row {
         let start = Post { column: held.first.column, row };
-        let inside = crossings([ring], ground.map_position(start).y);
+        let inside = AreaRow::new(ring, ground.map_position(start).y);
         for column in held.first.column..=held.last.column {
             let post = Post { column, ..start };
-            let x = ground.map_position(post).x;
-            if inside.partition_point(|&crossing| crossing <= x) % 2 == 0 {
+            if !inside.holds(ground.map_position(post).x) {
                 visit(ground.index(post));
             }
         }

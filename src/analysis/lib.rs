@@ -22,6 +22,7 @@ pub mod observation;
 pub mod outcome;
 mod place;
 mod ring;
+mod round_classes;
 pub mod run;
 pub mod sight_parts;
 pub mod surface;

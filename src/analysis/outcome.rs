@@ -1,6 +1,9 @@
 //! What an analysis gives: a raster, features, tables and figures, with units and notes.
 
 use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::round_classes::round_classes;
 
 use crate::tally::FigureTally;
 
@@ -30,8 +33,70 @@ pub struct OutcomeRaster {
     pub unit: &'static str,
     /// The values.
     pub values: PostValues,
-    /// How a picture divides them; rising, without gaps. Empty where they are shown by a ramp.
+    /// How a picture divides them; rising, without gaps. Empty where [`OutcomeRaster::with_classes`] makes them.
     pub classes: Vec<ValueClass>,
+}
+
+impl Outcome {
+    /// With classes of round numbers where the raster has none of its own.
+    pub fn with_classes(self) -> Self {
+        Self { raster: self.raster.map(OutcomeRaster::with_classes), ..self }
+    }
+}
+
+impl OutcomeRaster {
+    /// The number of posts that have no class, in [`OutcomeRaster::class_numbers`].
+    pub const NO_CLASS: u16 = u16::MAX;
+
+    /// With classes of round numbers over the range of its values where it has none of its own.
+    pub fn with_classes(self) -> Self {
+        let classes = if self.classes.is_empty() { round_classes(&self) } else { self.classes };
+        Self { classes, ..self }
+    }
+
+    /// The class of a value; `None` below the first, and of no data.
+    pub fn class_of(&self, value: f32) -> Option<usize> {
+        // Not a number is below every class.
+        self.classes.partition_point(|class| class.from <= value).checked_sub(1).filter(|_| !value.is_nan())
+    }
+
+    /// The number of each post's class; [`OutcomeRaster::NO_CLASS`] where it has none.
+    pub fn class_numbers(&self) -> Vec<u16> {
+        let number = |value: f32| self.class_of(value).map_or(Self::NO_CLASS, |class| class as u16);
+        match &self.values {
+            PostValues::Numbers(values) => {
+                let values = values.par_iter().with_min_len(Self::CLASSED_TOGETHER);
+                values.map(|&value| number(value)).collect()
+            }
+            PostValues::Codes(codes) => {
+                let of_codes: Vec<u16> = (0..=u8::MAX)
+                    .map(
+                        |code| if code == PostValues::NO_CODE { Self::NO_CLASS } else { number(code.into()) },
+                    )
+                    .collect();
+                let number = |&code: &u8| of_codes[usize::from(code)];
+                codes.par_iter().with_min_len(Self::CLASSED_TOGETHER).map(number).collect()
+            }
+        }
+    }
+
+    /// Which of its classes a post has.
+    pub fn held_classes(&self) -> Vec<bool> {
+        let none = || vec![false; self.classes.len()];
+        let numbers = self.class_numbers();
+        let held = |few: &[u16]| {
+            let mut held = none();
+            few.iter()
+                .filter(|&&class| class != Self::NO_CLASS)
+                .for_each(|&class| held[usize::from(class)] = true);
+            held
+        };
+        let either = |a: Vec<bool>, b: Vec<bool>| a.iter().zip(b).map(|(a, b)| *a || b).collect();
+        numbers.par_chunks(Self::CLASSED_TOGETHER).map(held).reduce(none, either)
+    }
+
+    /// Posts that a thread finds the classes of together.
+    const CLASSED_TOGETHER: usize = 1 << 16;
 }
 
 /// Values of posts.

@@ -25,15 +25,15 @@ pub fn paint<'a>(pixels: &mut Pixels, drawings: impl IntoIterator<Item = &'a Dra
         .filter(|(_, color)| color.0[3] < 255)
         .map(|(index, &straight)| Translucent { index, straight, multiplied: multiply(straight) })
         .collect();
-    for pixel in &translucent {
-        pixels.data_mut()[pixel.index] = pixel.multiplied;
-    }
+    let data = pixels.data_mut();
+    translucent.iter().for_each(|pixel| data[pixel.index] = pixel.multiplied);
     let (width, height) = (pixels.width(), pixels.height());
     if let Some(mut map) = PixmapMut::from_bytes(bytemuck::cast_slice_mut(pixels.data_mut()), width, height) {
         drawings.into_iter().flat_map(|drawing| &drawing.marks).for_each(|mark| fill(&mut map, mark));
     }
+    let data = pixels.data_mut();
     for pixel in translucent {
-        let painted = &mut pixels.data_mut()[pixel.index];
+        let painted = &mut data[pixel.index];
         *painted = if *painted == pixel.multiplied { pixel.straight } else { divide(*painted) };
     }
 }

@@ -40,6 +40,16 @@ impl FeatureId {
     /// The walls and the base of the block that the ground is the top of.
     pub const PLINTH: Self = Self(u32::MAX);
 
+    /// The feature of an index, counted from 0; the inverse of [`FeatureId::index`].
+    ///
+    /// ```
+    /// use sandtable_draw::list::FeatureId;
+    /// assert_eq!(FeatureId::of_index(7).index(), Some(7));
+    /// ```
+    pub fn of_index(index: usize) -> Self {
+        Self(Self::GROUND.0 + 1 + index as u32)
+    }
+
     /// Which feature it is, counted from 0; `None` for nothing, for the ground and for the plinth.
     pub fn index(self) -> Option<usize> {
         match self {

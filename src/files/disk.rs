@@ -8,6 +8,7 @@ use std::string::FromUtf8Error;
 use crate::error::FileError;
 use crate::output_files::OutputFiles;
 use crate::png::encode_png;
+use crate::synced_file::SyncedFile;
 use sandtable_base::limits::INPUT_BYTES;
 use sandtable_draw::pixels::Pixels;
 use sandtable_remote::address::is_address_path;
@@ -301,7 +302,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteFileError> {
 /// The system or `content` fails.
 pub fn write_with(
     path: &Path,
-    content: impl FnOnce(&mut BufWriter<&fs::File>) -> io::Result<()>,
+    content: impl FnOnce(&mut BufWriter<SyncedFile<'_>>) -> io::Result<()>,
 ) -> Result<(), WriteFileError> {
     let mut files = OutputFiles::default();
     files.write_with(path, content)?;

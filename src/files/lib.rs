@@ -16,3 +16,4 @@ mod part_name;
 pub mod png;
 pub mod raster_file;
 mod set_record;
+pub mod synced_file;

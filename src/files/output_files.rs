@@ -5,12 +5,13 @@
 //! `kill -9`. Between the first name and the last it leaves a record, by which the next program
 //! that writes into the folder gives the remaining names.
 
-use std::fs::{self, File};
+use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use crate::disk::{SystemError, WriteFileCause, WriteFileError};
 use crate::part_file::{self, PartFile};
+use crate::synced_file::SyncedFile;
 
 /// The longest chain of links that is followed, as in Linux.
 const MOST_LINKS: usize = 40;
@@ -37,7 +38,7 @@ impl OutputFiles {
     pub fn write_with(
         &mut self,
         path: &Path,
-        content: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
+        content: impl FnOnce(&mut BufWriter<SyncedFile<'_>>) -> io::Result<()>,
     ) -> Result<(), WriteFileError> {
         let failed = |error: io::Error| WriteFileError::new(path, SystemError::from(error));
         let place = followed(path).map_err(failed)?;
@@ -47,9 +48,9 @@ impl OutputFiles {
         let folder = place.parent().filter(|folder| !folder.as_os_str().is_empty());
         let part = PartFile::create(folder.unwrap_or(Path::new("."))).map_err(failed)?;
         let fill = || {
-            let mut out = BufWriter::new(part.file());
+            let mut out = BufWriter::new(SyncedFile::new(part.file()));
             content(&mut out)?;
-            out.into_inner()?;
+            out.into_inner()?.finish()?;
             // A file that is replaced keeps who may read it.
             if let Ok(before) = fs::metadata(&place) {
                 part.file().set_permissions(before.permissions())?;

@@ -2,6 +2,7 @@
 
 pub mod aabb;
 pub mod axis;
+pub mod azimuth;
 pub mod cell_outlines;
 pub mod chebyshev;
 pub mod convex;

@@ -23,7 +23,7 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     let mut gaps = WorstOfTables::default();
     // Every lake has a row, in the order of their features.
     for ((index, _), row) in lakes.zip(&context.scene.report.lakes) {
-        let lake = FeatureId(FeatureId::GROUND.0 + 1 + index as u32);
+        let lake = FeatureId::of_index(index);
         let (Some(lowest_m), Some(highest_m)) = (row.lowest_shore, row.highest_shore) else { continue };
         let is_far_off = far_off_m(row.level, [lowest_m, highest_m]).is_some();
         if let Some((gap_m, message)) = gap(row, lowest_m).filter(|_| !is_far_off) {

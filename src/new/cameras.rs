@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use glam::{DVec2, DVec3};
 
+use sandtable_geom::azimuth::heading;
 use sandtable_geom::rect::Rect;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::sunlight::{ALTITUDE_DEG, LEFT_DEG};
@@ -108,9 +109,9 @@ fn best_approach(lattice: &Lattice, block: Rect, exaggeration: f64) -> f64 {
         .filter(|height| !height.is_nan())
         .fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), height| (low.min(height), high.max(height)));
     let cost = |azimuth_deg: f64| {
-        let (sin, cos) = (libm::sin(azimuth_deg.to_radians()), libm::cos(azimuth_deg.to_radians()));
+        let toward = heading(azimuth_deg);
         let approach = APPROACH.map(|step| {
-            let at = center - DVec2::new(sin, cos) * (reach * f64::from(step) / 16.0);
+            let at = center - toward * (reach * f64::from(step) / 16.0);
             lattice.cell_at(at).map_or(f32::NAN, |(post, _)| lattice.height(post))
         });
         let (beyond, highest) = approach.fold((0, low), |(beyond, highest), height| {

@@ -2,9 +2,7 @@
 
 use glam::{DVec2, UVec2};
 
-use crate::analysis_look::{
-    class_of, feature_color, hatch_color, is_print, is_seen, printed, property, shown_classes,
-};
+use crate::analysis_look::{feature_color, hatch_color, is_print, is_seen, printed, property};
 use crate::class_hatching::HatchedRaster;
 use crate::graphic_lines::{GraphicPen, GraphicView, LineLook, LineOrder};
 use crate::placed_text::{PlacedCourse, PlacedText};
@@ -12,12 +10,12 @@ use crate::post_tint::{PostTint, TintPlan};
 use crate::sight::{circle, level_text};
 use sandtable_analysis::outcome::{FeatureRole, Hatching, OutcomeFeature, OutcomeShape, PropertyValue};
 use sandtable_draw::color::Srgba;
+use sandtable_geom::azimuth::heading;
 use sandtable_geom::polygon::counter_clockwise;
 use sandtable_ribbon::area;
 use sandtable_scene::analyses::SceneAnalysis;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::seen_ground::PostFrame;
-use sandtable_scene::sight_layers::heading;
 
 /// The radius of marks of places in text heights.
 const MARK_EM: f64 = 0.5;
@@ -45,7 +43,7 @@ pub(super) fn tints(scene: &SceneModel) -> Vec<TintPlan> {
 /// The tint of an analysis of the scene's land; `None` where it has none.
 pub(super) fn tint(analysis: &SceneAnalysis, scene: &SceneModel) -> Option<TintPlan> {
     let raster = analysis.tinted_raster()?;
-    let (classes, lattice) = (shown_classes(raster), &*analysis.ground);
+    let (classes, lattice) = (&raster.classes, &*analysis.ground);
     if is_print(scene) && classes.iter().any(|class| class.look.hatching != Hatching::None) {
         return None;
     }
@@ -53,7 +51,8 @@ pub(super) fn tint(analysis: &SceneAnalysis, scene: &SceneModel) -> Option<TintP
         .iter()
         .map(|class| Some(Srgba(class.look.tint)).filter(|Srgba([.., alpha])| *alpha > 0))
         .collect();
-    let color = |index: usize| colors[class_of(&classes, raster.values.value(index))?];
+    let numbers = raster.class_numbers();
+    let color = |index: usize| colors.get(usize::from(numbers[index])).copied().flatten();
     let tint = PostTint {
         size: UVec2::new(lattice.columns(), lattice.rows()),
         frame: &PostFrame::of(lattice),
@@ -66,7 +65,7 @@ pub(super) fn tint(analysis: &SceneAnalysis, scene: &SceneModel) -> Option<TintP
 
 /// The colors of all that [`draw`] draws of an analysis.
 pub(super) fn colors(analysis: &SceneAnalysis, scene: &SceneModel) -> Vec<Srgba> {
-    let classes = analysis.hatched_raster().into_iter().flat_map(|raster| shown_classes(raster).into_owned());
+    let classes = analysis.hatched_raster().into_iter().flat_map(|raster| &raster.classes);
     let of_classes = classes.map(|class| printed(scene, hatch_color(class.look.tint)));
     let of_features =
         analysis.shown_features().iter().map(|feature| printed(scene, feature_color(analysis, feature)));
@@ -87,8 +86,7 @@ pub(super) fn draw(
 ) {
     for analysis in scene.analyses.iter().chain(tried) {
         if let Some(raster) = analysis.hatched_raster() {
-            let classes = shown_classes(raster);
-            HatchedRaster { raster, classes: &classes, analysis, scene }.draw(view, pen);
+            HatchedRaster { raster, analysis, scene }.draw(view, pen);
         }
         let drawing = FeatureDrawing { analysis, view, scene, origin: scene.lattice.origin() };
         for feature in analysis.shown_features() {

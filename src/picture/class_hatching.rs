@@ -8,9 +8,9 @@ use std::f64::consts::FRAC_PI_4;
 use glam::DVec2;
 use rayon::prelude::*;
 
-use crate::analysis_look::{class_of, hatch_color, is_print, printed};
+use crate::analysis_look::{hatch_color, is_print, printed};
 use crate::graphic_lines::{GraphicPen, GraphicView, LineLook};
-use sandtable_analysis::outcome::{Hatching, OutcomeRaster, ValueClass};
+use sandtable_analysis::outcome::{Hatching, OutcomeRaster};
 use sandtable_geom::rect::Rect;
 use sandtable_scene::analyses::SceneAnalysis;
 use sandtable_scene::scene_model::SceneModel;
@@ -40,10 +40,8 @@ const DIRECTIONS: [f64; 3] = [FRAC_PI_4, -FRAC_PI_4, 0.0];
 
 /// What is hatched: the posts of a raster by its classes.
 pub(super) struct HatchedRaster<'a> {
-    /// The values.
+    /// The values and their classes.
     pub raster: &'a OutcomeRaster,
-    /// Their classes.
-    pub classes: &'a [ValueClass],
     /// Whose they are.
     pub analysis: &'a SceneAnalysis,
     /// The scene that it is of.
@@ -53,7 +51,7 @@ pub(super) struct HatchedRaster<'a> {
 impl HatchedRaster<'_> {
     /// Draws the hatching.
     pub fn draw(&self, view: &GraphicView<'_>, pen: &mut GraphicPen) {
-        if self.classes.iter().all(|class| class.look.hatching == Hatching::None) {
+        if self.raster.classes.iter().all(|class| class.look.hatching == Hatching::None) {
             return;
         }
         let extent = self.extent();
@@ -67,7 +65,7 @@ impl HatchedRaster<'_> {
                 Hatching::Crossed => number < 2,
                 Hatching::Dots | Hatching::Level => number == 2,
             };
-            if !self.classes.iter().any(|class| shows(class.look.hatching)) {
+            if !self.raster.classes.iter().any(|class| shows(class.look.hatching)) {
                 continue;
             }
             let along = DVec2::from_angle(turn).rotate(up.perp() * -1.0);
@@ -94,7 +92,7 @@ impl HatchedRaster<'_> {
         view: &GraphicView<'_>,
         pen: &mut GraphicPen,
     ) {
-        let look = self.classes[class].look;
+        let look = self.raster.classes[class].look;
         let color = printed(self.scene, hatch_color(look.tint));
         let width_px = match look.hatching {
             Hatching::Dots => DOT_WIDTH_PX,
@@ -127,15 +125,15 @@ impl HatchedRaster<'_> {
             if number % PIECE_POSTS == 0 {
                 is_drawn = lines.is_drawn(line, at((number + PIECE_POSTS / 2).min(count)));
             }
-            let class = self
-                .class_at(at(number))
-                .filter(|&class| is_drawn && number < count && shows(self.classes[class].look.hatching));
+            let class = self.class_at(at(number)).filter(|&class| {
+                is_drawn && number < count && shows(self.raster.classes[class].look.hatching)
+            });
             match (open, class) {
                 (Some((own, _)), Some(class)) if own == class => {}
                 (was, class) => {
                     if let Some((own, first)) = was.filter(|&(_, first)| number > first + 1) {
                         let ends = [at(first), at(number - 1)];
-                        match self.classes[own].look.hatching {
+                        match self.raster.classes[own].look.hatching {
                             Hatching::Dots => stretches.extend(lines.dots(line, own, ends)),
                             _ => stretches.push(Stretch { class: own, from: ends[0], to: ends[1] }),
                         }
@@ -156,7 +154,7 @@ impl HatchedRaster<'_> {
             return None;
         }
         let index = ground.index(Post::at_grid(grid));
-        class_of(self.classes, self.raster.values.value(index))
+        self.raster.class_of(self.raster.values.value(index))
     }
 }
 

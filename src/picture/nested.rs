@@ -174,7 +174,7 @@ fn feature_key(feature: &SceneFeature) -> FeatureKey<'_> {
 fn feature_ids(features: &[SceneFeature]) -> BTreeMap<FeatureKey<'_>, FeatureId> {
     let mut ids = BTreeMap::new();
     for (index, feature) in features.iter().enumerate() {
-        ids.entry(feature_key(feature)).or_insert(FeatureId(FeatureId::GROUND.0 + 1 + index as u32));
+        ids.entry(feature_key(feature)).or_insert(FeatureId::of_index(index));
     }
     ids
 }

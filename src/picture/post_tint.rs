@@ -4,7 +4,8 @@
 //! is cut to the displayed triangles like every ribbon. So no renderer knows of it, and its border is as smooth as the
 //! texture's filter makes it.
 
-use glam::{DVec2, UVec2, Vec4};
+use glam::{DVec2, UVec2, Vec3, Vec4};
+use rayon::prelude::*;
 
 use crate::graphic_lines::LAYER;
 use sandtable_draw::color::Srgba;
@@ -53,43 +54,37 @@ impl PostTint<'_> {
     /// post is.
     pub fn plan(
         &self,
-        within: impl Fn(usize) -> bool,
-        color: impl Fn(usize) -> Option<Srgba>,
+        within: impl Fn(usize) -> bool + Sync,
+        color: impl Fn(usize) -> Option<Srgba> + Sync,
     ) -> Option<TintPlan> {
         let Self { size, frame, origin, beside, feature } = *self;
         let index = |column: u32, row: u32| row as usize * size.x as usize + column as usize;
-        let mut corners: Option<[UVec2; 2]> = None;
-        for row in 0..size.y {
-            let Some(first) = (0..size.x).find(|&column| within(index(column, row))) else { continue };
+        let of_row = |row: u32| {
+            let first = (0..size.x).find(|&column| within(index(column, row)))?;
             let last = (first..size.x).rfind(|&column| within(index(column, row))).unwrap_or(first);
-            let (low, high) = (UVec2::new(first, row), UVec2::new(last, row));
-            corners = Some(corners.map_or([low, high], |[min, max]| [min.min(low), max.max(high)]));
-        }
-        let [min, max] = corners?;
+            Some([UVec2::new(first, row), UVec2::new(last, row)])
+        };
+        let [min, max] = (0..size.y)
+            .into_par_iter()
+            .filter_map(of_row)
+            .reduce_with(|[min, max], [low, high]| [min.min(low), max.max(high)])?;
         let posts = max - min + 1;
         let stride = posts.max_element().div_ceil(MOST_TEXELS).max(1);
         let texels = posts.map(|side| side.div_ceil(stride));
-        let pixels = Pixels::from_fn(texels.x, texels.y, |x, y| {
+        let texel = |x: u32, y: u32| {
             // V runs downward, rows upward.
             let from = min + UVec2::new(x, texels.y - 1 - y) * stride;
             let to = (from + stride - 1).min(max);
-            let (mut sum, mut count) = (Vec4::ZERO, 0.0f32);
-            for row in from.y..=to.y {
-                for column in from.x..=to.x {
-                    count += 1.0;
-                    if let Some(Srgba([red, green, blue, alpha])) = color(index(column, row)) {
-                        let share = f32::from(alpha);
-                        sum += Vec4::new(
-                            f32::from(red) * share,
-                            f32::from(green) * share,
-                            f32::from(blue) * share,
-                            share,
-                        );
-                    }
-                }
+            let of_posts =
+                || (from.y..=to.y).flat_map(|row| (from.x..=to.x).map(move |column| (column, row)));
+            let first = color(index(from.x, from.y));
+            if of_posts().all(|(column, row)| color(index(column, row)) == first) {
+                return seen(first, beside);
             }
-            blended(sum, count, beside)
-        });
+            mean(of_posts().map(|(column, row)| color(index(column, row))), beside)
+        };
+        let rows = (0..texels.y).into_par_iter().flat_map_iter(|y| (0..texels.x).map(move |x| (x, y)));
+        let pixels = Pixels::from_data(texels.x, texels.y, rows.map(|(x, y)| texel(x, y)).collect())?;
         let first = frame.map_position(Post { column: min.x, row: min.y }) - origin;
         let texel_m = frame.cell * f64::from(stride);
         // A post is in the middle of its texel; the tint ends half a texel from the border, where the texture would repeat.
@@ -109,15 +104,27 @@ impl PostTint<'_> {
     }
 }
 
+/// A color; where nothing shows of it, `beside`.
+fn seen(color: Option<Srgba>, Srgba([red, green, blue, _]): Srgba) -> Srgba {
+    color.filter(|Srgba([.., alpha])| *alpha > 0).unwrap_or(Srgba([red, green, blue, 0]))
+}
+
 /// The mean of colors weighted by their alpha; where there is none, `beside` that nothing shows of.
-fn blended(sum: Vec4, count: f32, beside: Srgba) -> Srgba {
-    let byte = |value: f32| (value + 0.5).clamp(0.0, 255.0) as u8;
-    if sum.w > 0.0 {
-        let color = sum / sum.w;
-        return Srgba([byte(color.x), byte(color.y), byte(color.z), byte(sum.w / count)]);
+fn mean(colors: impl Iterator<Item = Option<Srgba>>, beside: Srgba) -> Srgba {
+    let (mut sum, mut count) = (Vec4::ZERO, 0.0f32);
+    for color in colors {
+        count += 1.0;
+        if let Some(Srgba([red, green, blue, alpha])) = color {
+            let share = f32::from(alpha);
+            sum += Vec3::new(f32::from(red), f32::from(green), f32::from(blue)).extend(1.0) * share;
+        }
     }
-    let Srgba([red, green, blue, _]) = beside;
-    Srgba([red, green, blue, 0])
+    let byte = |value: f32| (value + 0.5).clamp(0.0, 255.0) as u8;
+    let shown = (sum.w > 0.0).then(|| {
+        let color = sum / sum.w;
+        Srgba([byte(color.x), byte(color.y), byte(color.z), byte(sum.w / count)])
+    });
+    shown.unwrap_or_else(|| seen(None, beside))
 }
 
 /// Adds the material of a tint.
@@ -131,4 +138,28 @@ pub(super) fn add_material(list: &mut DrawList, color: Srgba, texture: Option<Pi
         normals: NormalSource::Ground,
         ..Material::default()
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_colors_are_their_own_mean_and_what_is_not_seen_is_beside() {
+        let beside = Srgba([1, 2, 3, 200]);
+        for color in
+            [None, Some(Srgba([9, 8, 7, 0])), Some(Srgba([250, 180, 60, 90])), Some(Srgba([255, 1, 0, 255]))]
+        {
+            for count in [1, 4, 9, 64, 289] {
+                assert_eq!(
+                    mean(std::iter::repeat_n(color, count), beside),
+                    seen(color, beside),
+                    "{color:?} {count}"
+                );
+            }
+        }
+        assert_eq!(seen(None, beside), Srgba([1, 2, 3, 0]));
+        let half = [Some(Srgba([200, 100, 0, 80])), None];
+        assert_eq!(mean(half.into_iter(), beside), Srgba([200, 100, 0, 40]));
+    }
 }

@@ -34,7 +34,7 @@ impl TriedAnalysis {
             color: None,
             feature: tried_feature(scene),
             ground: placed.ground,
-            outcome: placed.outcome,
+            outcome: placed.outcome.with_classes(),
         };
         let tint = analyses::tint(&analysis, scene);
         let lines = analyses::colors(&analysis, scene).into_iter().chain([graphic_lines::CASING]);
@@ -50,7 +50,7 @@ impl TriedAnalysis {
 
 /// The feature that an analysis is that is tried: none of the scene's own.
 pub fn tried_feature(scene: &SceneModel) -> FeatureId {
-    FeatureId(FeatureId::GROUND.0 + 1 + scene.features.len() as u32)
+    FeatureId::of_index(scene.features.len())
 }
 
 impl GroundSheets {

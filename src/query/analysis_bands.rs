@@ -12,6 +12,7 @@
 //!  └────────────┘   └────────────┘
 //! ```
 
+use std::hint::black_box;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -38,8 +39,11 @@ use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::stop_flag::StopFlag;
 
-/// Posts of a band: some megabytes, which caches hold, and enough for all threads.
-const BAND_POSTS: u32 = 1 << 20;
+/// Posts of a band for each thread: what threads share is large enough to be worth sharing, and caches hold it.
+const THREAD_POSTS: usize = 1 << 17;
+
+/// The most posts of a band, whatever the number of threads.
+const BAND_POSTS: usize = 1 << 20;
 
 /// Rows of a band for each row of its halo: those are analyzed twice.
 const ROWS_PER_HALO: u32 = 32;
@@ -98,6 +102,7 @@ pub fn analysis_bands<'a>(
     let north_west = origin + DVec2::new(0.0, f64::from(header.height - 1)) * cell;
     let size = (header.width, header.height);
     let (data_type, nodata) = described(&raster.values);
+    keep_freed_memory();
     let header = node_header((north_west, cell), size, &ground_crs, (raster.name, data_type, nodata));
     Ok(Some(AnalysisBands {
         elevation,
@@ -109,6 +114,22 @@ pub fn analysis_bands<'a>(
         outcome,
         problem: None,
     }))
+}
+
+/// Posts of a band.
+fn band_posts() -> u32 {
+    (THREAD_POSTS * rayon::current_num_threads()).clamp(2 * THREAD_POSTS, BAND_POSTS) as u32
+}
+
+/// Lets the allocator keep the memory of a band for the next one.
+///
+/// Each band takes the same few buffers. The GNU allocator gives freed memory back to the system beyond a bound that it learns
+/// from the largest buffer that was freed, and page by page new memory costs more than what is computed in it. A buffer that is
+/// freed untouched teaches it; other allocators lose nothing.
+fn keep_freed_memory() {
+    /// Bytes of the largest buffer that it learns from.
+    const LEARNED_FROM: usize = 31 << 20;
+    drop(black_box(Vec::<u8>::with_capacity(LEARNED_FROM)));
 }
 
 /// The raster of values of the type of `values` at posts of a ground, north up, without its samples; `name` is its driver.
@@ -209,7 +230,7 @@ impl Windows for AnalysisBands<'_> {
 
     fn computed_rows(&self) -> Option<u32> {
         let most = (MOST_POSTS / self.header.width).saturating_sub(2 * self.reach);
-        let wanted = (BAND_POSTS / self.header.width).max(ROWS_PER_HALO * self.reach);
+        let wanted = (band_posts() / self.header.width).max(ROWS_PER_HALO * self.reach);
         Some(wanted.min(most).max(1))
     }
 }
@@ -257,7 +278,7 @@ impl Windows for OutcomeWindows<'_> {
     }
 
     fn computed_rows(&self) -> Option<u32> {
-        Some((BAND_POSTS / self.header.width).max(1))
+        Some((band_posts() / self.header.width).max(1))
     }
 }
 

@@ -62,7 +62,7 @@ pub struct SceneAnalysis {
     pub feature: FeatureId,
     /// The ground on whose posts the values of its raster are.
     pub ground: Arc<Lattice>,
-    /// What it gives.
+    /// What it gives; a raster has classes, see [`Outcome::with_classes`].
     pub outcome: Outcome,
 }
 
@@ -104,8 +104,8 @@ impl SceneModel {
         outcome: Outcome,
     ) {
         let origin = FeatureOrigin::default();
+        let feature = FeatureId::of_index(self.features.len());
         self.features.push(SceneFeature { kind: FeatureKind::Analysis, name: name.clone(), origin });
-        let feature = FeatureId(FeatureId::GROUND.0 + self.features.len() as u32);
         let number = self.analyses.len();
         self.analyses.push(SceneAnalysis {
             name,
@@ -115,7 +115,7 @@ impl SceneModel {
             color: None,
             feature,
             ground,
-            outcome,
+            outcome: outcome.with_classes(),
         });
     }
 }
@@ -272,7 +272,7 @@ pub(super) fn analyze(
             color: table.color.map(|Color(color)| Srgba(color)),
             feature,
             ground,
-            outcome,
+            outcome: outcome.with_classes(),
         });
     }
     errors.finish()?;

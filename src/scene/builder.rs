@@ -81,8 +81,9 @@ impl SceneBuilder {
 
     /// Adds a feature and returns its id.
     pub fn add(&mut self, kind: FeatureKind, name: String, origin: FeatureOrigin) -> FeatureId {
+        let feature = FeatureId::of_index(self.features.len());
         self.features.push(SceneFeature { kind, name, origin });
-        FeatureId(FeatureId::GROUND.0 + self.features.len() as u32)
+        feature
     }
 
     /// The feature of an id; `None` for the ground and beyond the last.

@@ -7,8 +7,6 @@
 //! | `roof:shape`, `roof:height`, `roof:angle` | the roof; shapes that are not drawn become the nearest that is |
 //! | `roof:orientation`, `roof:direction` | where the ridge runs, or to which side the roof falls |
 
-use glam::DVec2;
-
 use crate::attributes::{Attributes, DefaultCounts};
 use crate::meant_number::Meaning;
 use crate::tag_notes::{NumberLimits, TagNotes, TagOutcome};
@@ -16,6 +14,7 @@ use sandtable_base::message::choice::Choice;
 use sandtable_description::features::BuildingTable;
 use sandtable_description::scalar::Scalar;
 use sandtable_description::words::RoofShape;
+use sandtable_geom::azimuth::heading;
 use sandtable_structure::building::STORY_M;
 use sandtable_structure::roof_rectangle::RoofTurn;
 use sandtable_structure::unit_roof::UnitRoof;
@@ -115,7 +114,7 @@ impl RoofWish {
         };
         let pitch = if height_m.is_none() { angle().map(|deg| libm::tan(deg.to_radians())) } else { None };
         let turn = match attributes.value(building.roof_direction.as_ref()) {
-            Some(azimuth_deg) => RoofTurn::Facing(plan_direction(azimuth_deg)),
+            Some(azimuth_deg) => RoofTurn::Facing(heading(azimuth_deg)),
             None => tagged_turn(attributes, notes),
         };
         Self { shape, turn, height_m, pitch }
@@ -184,7 +183,7 @@ fn tagged_shape(attributes: &Attributes, notes: &mut TagNotes) -> Option<RoofSha
 fn tagged_turn(attributes: &Attributes, notes: &mut TagNotes) -> RoofTurn {
     if let Some(value) = attributes.get("roof:direction") {
         match azimuth_deg(&value) {
-            Some(azimuth_deg) => return RoofTurn::Facing(plan_direction(azimuth_deg)),
+            Some(azimuth_deg) => return RoofTurn::Facing(heading(azimuth_deg)),
             None => notes.add("roof:direction", TagOutcome::NotUnderstood, &value),
         }
     }
@@ -197,12 +196,6 @@ fn tagged_turn(attributes: &Attributes, notes: &mut TagNotes) -> RoofTurn {
             RoofTurn::Along
         }
     }
-}
-
-/// The unit vector in plan of a direction of the compass.
-fn plan_direction(azimuth_deg: f64) -> DVec2 {
-    let azimuth = azimuth_deg.to_radians();
-    DVec2::new(libm::sin(azimuth), libm::cos(azimuth))
 }
 
 /// The degrees of a direction that is stated in them, or as a point of the compass.
@@ -227,6 +220,7 @@ fn azimuth_deg(value: &Scalar) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec2;
 
     #[test]
     fn directions_are_degrees_or_points_of_the_compass() {
@@ -245,7 +239,7 @@ mod tests {
         for text in ["", "forward", "400", "nan", "inf", "NXE"] {
             assert_eq!(read(text), None, "{text}");
         }
-        let east = plan_direction(90.0);
+        let east = heading(90.0);
         assert!((east - DVec2::X).length() < 1e-12);
     }
 }

@@ -8,6 +8,7 @@ use glam::DVec2;
 use crate::seen_ground::{SceneSight, SceneViewshed};
 use sandtable_description::words::{GraphicSide, RangeExtent};
 use sandtable_draw::list::FeatureId;
+use sandtable_geom::azimuth::heading;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::sight::line::{Sight, SightEnd, line_of_sight};
 use sandtable_terrain::sight::viewshed::Sector;
@@ -83,12 +84,6 @@ impl SceneRange {
         };
         self.distances_m.iter().map(pieces).collect()
     }
-}
-
-/// The direction of an azimuth.
-pub fn heading(azimuth_deg: f64) -> DVec2 {
-    let angle = azimuth_deg.to_radians();
-    DVec2::new(libm::sin(angle), libm::cos(angle))
 }
 
 impl SightLayers {

@@ -119,7 +119,7 @@ fn classes(scene: &SceneModel) -> Vec<Option<ShownClass>> {
         scene.symbols.iter().map(|symbol| (symbol.feature, symbol.least_px)).collect();
     let names = model_names(scene);
     let class = |(index, feature): (usize, &sandtable_scene::feature::SceneFeature)| {
-        let id = FeatureId(FeatureId::GROUND.0 + 1 + index as u32);
+        let id = FeatureId::of_index(index);
         let surface = surfaces.get(&id).copied();
         Some(match feature.kind {
             FeatureKind::Lake => ShownClass::Lake,

@@ -1,7 +1,5 @@
 //! The slopes of the ground at its posts.
 
-use std::iter::once;
-
 use glam::{DVec2, Vec2};
 
 use crate::lattice::{Lattice, Post};
@@ -13,6 +11,9 @@ const WORKS_STEP: i64 = 2;
 /// The rise over run from which the ground between posts of earthworks is a wall's: steeper than batters are, where one
 /// side alone is.
 const WALL_SLOPE: f32 = 2.5;
+
+/// The columns eastward and the rows northward of the eight neighbors; each is four places from the opposite one.
+const AROUND: [(i64, i64); 8] = [(1, 1), (1, 0), (1, -1), (0, 1), (-1, -1), (-1, 0), (-1, 1), (0, -1)];
 
 impl Lattice {
     /// The slopes at a post, rise per meter eastward and northward, by the weights of Horn (1981) over the eight
@@ -35,26 +36,29 @@ impl Lattice {
             doublings if is_land => 1 << doublings,
             _ => WORKS_STEP,
         };
-        let at = |east: i64, north: i64| -> f32 {
-            let (east, north) = (east * step, north * step);
-            let (there, opposite) = (self.beside(post, east, north), self.beside(post, -east, -north));
-            let is_other = |other: Post| match (is_land, self.doublings()) {
-                (true, _) => self.is_pinned(other),
-                (false, 0) => false,
-                (false, _) => {
-                    let run_m = (self.cell() * DVec2::new(east as f64, north as f64)).length() as f32;
-                    (self.height(other) - own).abs() > WALL_SLOPE * run_m
-                }
-            };
-            let height = match (is_other(there), is_other(opposite)) {
-                (true, false) => 2.0 * own - self.height(opposite),
+        let beside = AROUND.map(|(east, north)| self.beside(post, east * step, north * step));
+        let heights = beside.map(|other| self.height(other));
+        let is_other: [bool; 8] = std::array::from_fn(|index| match (is_land, self.doublings()) {
+            (true, _) => self.is_pinned(beside[index]),
+            (false, 0) => false,
+            (false, _) => {
+                let (east, north) = AROUND[index];
+                let away = DVec2::new((east * step) as f64, (north * step) as f64);
+                let run_m = (self.cell() * away).length() as f32;
+                (heights[index] - own).abs() > WALL_SLOPE * run_m
+            }
+        });
+        let [ne, e, se, n, sw, w, nw, s] = std::array::from_fn(|index| {
+            let opposite = (index + 4) % 8;
+            let height = match (is_other[index], is_other[opposite]) {
+                (true, false) => 2.0 * own - heights[opposite],
                 (true, true) if is_land => own,
-                _ => self.height(there),
+                _ => heights[index],
             };
             if height.is_nan() { own } else { height }
-        };
-        let east = (at(1, 1) + 2.0 * at(1, 0) + at(1, -1)) - (at(-1, 1) + 2.0 * at(-1, 0) + at(-1, -1));
-        let north = (at(1, 1) + 2.0 * at(0, 1) + at(-1, 1)) - (at(1, -1) + 2.0 * at(0, -1) + at(-1, -1));
+        });
+        let east = (ne + 2.0 * e + se) - (nw + 2.0 * w + sw);
+        let north = (ne + 2.0 * n + nw) - (se + 2.0 * s + sw);
         let (low, high) = (self.beside(post, -step, -step), self.beside(post, step, step));
         let span = |low: u32, high: u32| 4.0 * (high - low) as f32;
         Vec2::new(
@@ -75,27 +79,59 @@ impl Lattice {
         })
     }
 
-    /// [`Lattice::slopes`] of the posts of a row, many times faster where the lattice is not densified.
+    /// [`Lattice::slopes`] of the posts of a row, many times faster where no pinned post is near.
     pub fn slopes_of_row(&self, row: u32) -> Vec<Vec2> {
         let posts = (0..self.columns()).map(|column| Post { column, row });
-        if self.doublings() > 0 || row == 0 || row + 1 == self.rows() {
+        let (step, columns) = (1usize << self.doublings(), self.columns() as usize);
+        if (row as usize) < step || row as usize + step >= self.rows() as usize || columns <= 2 * step {
             return posts.map(|post| self.slopes(post)).collect();
         }
-        let all = self.heights();
-        let line = |row: u32| &all[row as usize * self.columns() as usize..][..self.columns() as usize];
-        let span = (self.cell().as_vec2() * 8.0).to_array();
-        let windows = line(row - 1).windows(3).zip(line(row).windows(3)).zip(line(row + 1).windows(3));
-        let inner = windows.map(|((south, own), north)| {
-            let east = (north[2] + 2.0 * own[2] + south[2]) - (north[0] + 2.0 * own[0] + south[0]);
-            let up = (north[2] + 2.0 * north[1] + north[0]) - (south[2] + 2.0 * south[1] + south[0]);
+        let line = |row: usize| &self.heights()[row * columns..][..columns];
+        let [south, own, north] = [row as usize - step, row as usize, row as usize + step].map(line);
+        let span = (self.cell().as_vec2() * (8 * step) as f32).to_array();
+        let mut slopes = vec![Vec2::NAN; columns];
+        let (inner, wide) = (columns - 2 * step, 2 * step);
+        let [sw, s, se] = [0, step, wide].map(|from| &south[from..from + inner]);
+        let [w, o, e] = [0, step, wide].map(|from| &own[from..from + inner]);
+        let [nw, n, ne] = [0, step, wide].map(|from| &north[from..from + inner]);
+        for (at, slope) in slopes[step..step + inner].iter_mut().enumerate() {
+            let east = (ne[at] + 2.0 * e[at] + se[at]) - (nw[at] + 2.0 * w[at] + sw[at]);
+            let up = (ne[at] + 2.0 * n[at] + nw[at]) - (se[at] + 2.0 * s[at] + sw[at]);
             // NaN where any of the nine posts has no data.
-            Vec2::new(east / span[0], up / span[1]) + 0.0 * own[1]
-        });
-        let mut slopes: Vec<Vec2> = once(Vec2::NAN).chain(inner).chain(once(Vec2::NAN)).collect();
+            *slope = Vec2::new(east / span[0], up / span[1]) + 0.0 * o[at];
+        }
+        for (column, _) in self.near_pinned(row).iter().enumerate().filter(|(_, is_near)| **is_near) {
+            slopes[column] = Vec2::NAN;
+        }
         for (slopes, post) in slopes.iter_mut().zip(posts).filter(|(slopes, _)| slopes.is_nan()) {
             *slopes = self.slopes(post);
         }
         slopes
+    }
+
+    /// Which posts of a row of a densified lattice a pinned post may lie so near to that it has an effect on their slopes; empty
+    /// where none does.
+    fn near_pinned(&self, row: u32) -> Vec<bool> {
+        if self.doublings() == 0 {
+            return Vec::new();
+        }
+        let (columns, row) = (self.columns() as usize, row as usize);
+        let (reach, step) = (WORKS_STEP as usize, 1usize << self.doublings());
+        let beside = (row.saturating_sub(reach)..=row + reach).chain([row.saturating_sub(step), row + step]);
+        let mut pinned = vec![false; columns];
+        for line in beside.filter(|&beside| beside < self.rows() as usize) {
+            let line = &self.pinned()[line * columns..][..columns];
+            pinned.iter_mut().zip(line).for_each(|(any, is_pinned)| *any |= is_pinned);
+        }
+        let reach = reach.max(step);
+        let (mut near, mut end) = (Vec::new(), 0);
+        for column in (0..columns).filter(|&column| pinned[column]) {
+            near.resize(columns, false);
+            let last = (column + reach).min(columns - 1);
+            near[column.saturating_sub(reach).max(end)..=last].fill(true);
+            end = last;
+        }
+        near
     }
 
     /// The post `east` columns and `north` rows away, or the last one in that direction.
@@ -109,6 +145,7 @@ impl Lattice {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::densify::densify;
     use crate::lattice::tests::plane;
 
     #[test]
@@ -121,14 +158,96 @@ mod tests {
 
     #[test]
     fn slopes_of_a_row_are_those_of_its_posts_to_the_last_bit() {
-        for columns in [2, 3, 9] {
+        for (columns, times) in [(2, 0), (3, 0), (9, 0), (3, 1), (9, 1), (9, 2), (7, 3)] {
             let height =
                 |index: u32| if index % 23 == 7 { f32::NAN } else { (index * 7919 % 101) as f32 / 7.0 };
             let heights = (0..columns * 12).map(height).collect();
             let lattice = Lattice::new(DVec2::ZERO, DVec2::new(9.77, 3.1), columns, heights).expect("sound");
-            for row in 0..12 {
-                let slopes = (0..columns).map(|column| lattice.slopes(Post { column, row }));
-                assert_eq!(lattice.slopes_of_row(row), slopes.collect::<Vec<_>>());
+            let mut lattice = densify(&lattice, times).expect("few posts");
+            for pinned in [0, 1, 5] {
+                for number in 0..pinned {
+                    let post = Post {
+                        column: number * 5 % lattice.columns(),
+                        row: (number * 11 + 3) % lattice.rows(),
+                    };
+                    lattice.pin(post, 4.0 + number as f32);
+                }
+                for row in 0..lattice.rows() {
+                    let slopes = (0..lattice.columns()).map(|column| lattice.slopes(Post { column, row }));
+                    let bits = |slopes: Vec<Vec2>| {
+                        slopes.iter().map(|at| at.to_array().map(f32::to_bits)).collect::<Vec<_>>()
+                    };
+                    assert_eq!(
+                        bits(lattice.slopes_of_row(row)),
+                        bits(slopes.collect()),
+                        "{columns} {times} {row}"
+                    );
+                }
+            }
+        }
+    }
+
+    /// Slopes written as their definition reads, a neighbor after the other.
+    fn defined(lattice: &Lattice, post: Post) -> Vec2 {
+        let own = lattice.height(post);
+        if own.is_nan() {
+            return Vec2::ZERO;
+        }
+        let is_land = lattice.doublings() > 0 && !lattice.is_beside_works(post);
+        let step = match lattice.doublings() {
+            0 => 1,
+            doublings if is_land => 1 << doublings,
+            _ => WORKS_STEP,
+        };
+        let at = |east: i64, north: i64| -> f32 {
+            let (east, north) = (east * step, north * step);
+            let (there, opposite) = (lattice.beside(post, east, north), lattice.beside(post, -east, -north));
+            let is_other = |other: Post| match (is_land, lattice.doublings()) {
+                (true, _) => lattice.is_pinned(other),
+                (false, 0) => false,
+                (false, _) => {
+                    let run_m = (lattice.cell() * DVec2::new(east as f64, north as f64)).length() as f32;
+                    (lattice.height(other) - own).abs() > WALL_SLOPE * run_m
+                }
+            };
+            let height = match (is_other(there), is_other(opposite)) {
+                (true, false) => 2.0 * own - lattice.height(opposite),
+                (true, true) if is_land => own,
+                _ => lattice.height(there),
+            };
+            if height.is_nan() { own } else { height }
+        };
+        let east = (at(1, 1) + 2.0 * at(1, 0) + at(1, -1)) - (at(-1, 1) + 2.0 * at(-1, 0) + at(-1, -1));
+        let north = (at(1, 1) + 2.0 * at(0, 1) + at(-1, 1)) - (at(1, -1) + 2.0 * at(0, -1) + at(-1, -1));
+        let (low, high) = (lattice.beside(post, -step, -step), lattice.beside(post, step, step));
+        let run_m = |low: u32, high: u32, cell: f64| 4.0 * (high - low) as f32 * cell as f32;
+        let cell = lattice.cell();
+        Vec2::new(east / run_m(low.column, high.column, cell.x), north / run_m(low.row, high.row, cell.y))
+    }
+
+    #[test]
+    fn slopes_beside_pinned_posts_and_walls_are_those_of_their_definition() {
+        for times in 0..3 {
+            let height = |index: u32| match index % 31 {
+                7 => f32::NAN,
+                11 => 90.0,
+                _ => (index * 7919 % 101) as f32 / 7.0,
+            };
+            let lattice =
+                Lattice::new(DVec2::ZERO, DVec2::new(9.77, 3.1), 11, (0..121).map(height).collect());
+            let mut lattice = densify(&lattice.expect("sound"), times).expect("few posts");
+            for number in 0..6 {
+                let post =
+                    Post { column: number * 7 % lattice.columns(), row: (number * 5 + 2) % lattice.rows() };
+                lattice.pin(post, 60.0 * number as f32);
+            }
+            for post in lattice.posts() {
+                let (found, wanted) = (lattice.slopes(post), defined(&lattice, post));
+                assert_eq!(
+                    found.to_array().map(f32::to_bits),
+                    wanted.to_array().map(f32::to_bits),
+                    "{times} {post:?}"
+                );
             }
         }
     }

@@ -333,7 +333,7 @@ fn a_model_is_dragged_and_turned_and_a_road_is_widened_and_removed() {
             }
         };
         let index = scene.features.iter().position(is_named).expect("there");
-        sandtable_draw::list::FeatureId(sandtable_draw::list::FeatureId::GROUND.0 + 1 + index as u32)
+        sandtable_draw::list::FeatureId::of_index(index)
     };
     let take = |harness: &mut AppHarness, name: &str| {
         let app = harness.state_mut().as_mut().expect("shown");

@@ -194,7 +194,7 @@ impl ScriptRun {
             ScriptCommand::DiscardAnalysis => app.discard_analysis(),
             ScriptCommand::Visibility { kind, shown } => {
                 if let Some(opened) = &mut app.opened {
-                    let features = (FeatureId::GROUND.0 + 1..).map(FeatureId).zip(&opened.scene.features);
+                    let features = (0..).map(FeatureId::of_index).zip(&opened.scene.features);
                     let meant = features.filter(|(_, feature)| feature.kind.noun(2) == kind);
                     for (id, _) in meant {
                         if shown {

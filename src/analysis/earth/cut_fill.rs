@@ -9,7 +9,7 @@ use crate::outcome::{
     FeatureRole, Figure, Hatching, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, PostValues,
     ValueClass,
 };
-use crate::ring::is_in_area;
+use crate::ring::AreaRow;
 use sandtable_geom::polygon::counter_clockwise;
 use sandtable_terrain::lattice::Post;
 use sandtable_terrain::stop_flag::StopFlag;
@@ -89,9 +89,10 @@ pub(crate) fn differences(
         if stop.is_stopped() {
             return;
         }
+        let start = Post { column: 0, row: row as u32 };
+        let inside = AreaRow::new(area, ground.map_position(start).y);
         for (column, value) in values.iter_mut().enumerate() {
-            let post = Post { column: column as u32, row: row as u32 };
-            if is_in_area(area, ground.map_position(post)) {
+            if inside.holds(ground.map_position(Post { column: column as u32, ..start }).x) {
                 let index = row * columns + column;
                 *value = difference(ground.heights()[index], other.heights()[index]);
             }

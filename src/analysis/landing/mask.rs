@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use glam::DVec2;
 use rayon::prelude::*;
 
+use sandtable_geom::azimuth::heading;
 use sandtable_terrain::lattice::Lattice;
 
 /// The greatest tangent of the rise from each post to the ground in the direction of an azimuth in degrees clockwise from
@@ -53,8 +54,7 @@ struct MaskChains {
 
 impl MaskChains {
     fn new(ground: &Lattice, azimuth_deg: f64) -> Self {
-        let azimuth = azimuth_deg.to_radians();
-        let toward = DVec2::new(libm::sin(azimuth), libm::cos(azimuth)) / ground.cell();
+        let toward = heading(azimuth_deg) / ground.cell();
         let is_by_rows = toward.y.abs() >= toward.x.abs();
         let (columns, rows) = (ground.columns() as usize, ground.rows() as usize);
         let (slant, count, is_rising) = match is_by_rows {

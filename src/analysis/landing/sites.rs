@@ -24,9 +24,10 @@ use crate::observation::sight_land::SightLand;
 use crate::outcome::{
     FeatureRole, Outcome, OutcomeFeature, OutcomeShape, OutcomeTable, PostValues, PropertyValue, TableColumn,
 };
-use crate::ring::is_in_area;
+use crate::ring::AreaRow;
 use sandtable_base::limits::memory::check_memory;
 use sandtable_geom::distance_field::distances_m;
+use sandtable_terrain::lattice::Post;
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::sight::viewshed::{PostVisibility, ViewshedOptions};
 use sandtable_terrain::stop_flag::StopFlag;
@@ -79,14 +80,13 @@ pub(crate) fn sites(
     check_memory(posts as u64 * BYTES_PER_POST, "the analysis", "name a smaller `extent`")?;
     let site = site_ground(land, arguments, &limits, stop)?;
     let area = arguments.points("area");
-    let is_within = |index: usize| is_in_area(area, ground.map_position(ground.post_at(index)));
     let is_near =
         |distances: &Option<Vec<f64>>, index: usize, limit_m: Option<f64>| match (distances, limit_m) {
             (Some(distances), Some(limit_m)) => distances[index] <= limit_m,
             _ => true,
         };
-    let code = |index: usize| {
-        if ground.heights()[index].is_nan() || !is_within(index) {
+    let code = |index: usize, is_within: bool| {
+        if ground.heights()[index].is_nan() || !is_within {
             PostValues::NO_CODE
         } else if site.steepest[index] > limits.slopes.greatest
             || !is_near(&site.water_m, index, limits.water_m)
@@ -99,7 +99,16 @@ pub(crate) fn sites(
             2
         }
     };
-    let codes: Vec<u8> = (0..posts).into_par_iter().map(code).collect();
+    let columns = ground.columns() as usize;
+    let mut codes = vec![PostValues::NO_CODE; posts];
+    codes.par_chunks_mut(columns).enumerate().for_each(|(row, codes)| {
+        let start = Post { column: 0, row: row as u32 };
+        let inside = AreaRow::new(area, ground.map_position(start).y);
+        for (column, place) in codes.iter_mut().enumerate() {
+            let x = ground.map_position(Post { column: column as u32, ..start }).x;
+            *place = code(row * columns + column, inside.holds(x));
+        }
+    });
     if stop.is_stopped() {
         return Err(AnalysisError::Stopped);
     }

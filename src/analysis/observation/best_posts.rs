@@ -17,7 +17,7 @@ use crate::observation::lookout::{
 use crate::observation::sight_land::SightLand;
 use crate::outcome::{Figure, Outcome, OutcomeRaster, OutcomeTable, PostValues, PropertyValue, TableColumn};
 use crate::place::height_under;
-use crate::ring::is_in_area;
+use crate::ring::AreaRow;
 use sandtable_base::limits::memory::check_memory;
 use sandtable_geom::rect::Rect;
 use sandtable_terrain::lattice::{Lattice, Post};
@@ -151,16 +151,16 @@ fn places(
         [rect.width(), rect.height()].into_iter().zip(steps).map(|(posts, step)| (posts - 1) % step / 2);
     let first: Vec<usize> = first.collect();
     let rows = (first[1]..rect.height()).step_by(steps[1]);
-    let posts =
-        rows.flat_map(|row| (first[0]..rect.width()).step_by(steps[0]).map(move |column| (column, row)));
-    let place = |(column, row): (usize, usize)| {
-        let post = rect.first.offset(column as u32, row as u32);
-        let at = ground.map_position(post);
-        let is_within = is_in_area(area, at);
-        let ground_m = is_within.then(|| height_under(ground, "area", at).ok()).flatten()?;
-        Some(Lookout { number: 0, end: SightEnd { at, above_m }, ground_m })
+    let west = first[0];
+    let of_row = |row: usize| {
+        let inside = AreaRow::new(area, ground.map_position(rect.first.offset(0, row as u32)).y);
+        (west..rect.width()).step_by(steps[0]).filter_map(move |column| {
+            let at = ground.map_position(rect.first.offset(column as u32, row as u32));
+            let ground_m = inside.holds(at.x).then(|| height_under(ground, "area", at).ok()).flatten()?;
+            Some(Lookout { number: 0, end: SightEnd { at, above_m }, ground_m })
+        })
     };
-    let places: Vec<Lookout> = posts.filter_map(place).collect();
+    let places: Vec<Lookout> = rows.flat_map(of_row).collect();
     if places.is_empty() {
         let problem =
             "leaves no place with ground in the area to try; state a smaller one, or draw `area` larger";
@@ -176,9 +176,10 @@ impl WatchedGround {
         let words_per_row = rect.width().div_ceil(WORD_BITS);
         let mut bits = vec![0; words_per_row * rect.height()];
         bits.par_chunks_mut(words_per_row).enumerate().for_each(|(row, words)| {
+            let inside = AreaRow::new(ring, ground.map_position(rect.first.offset(0, row as u32)).y);
             for column in 0..rect.width() {
                 let post = rect.first.offset(column as u32, row as u32);
-                let is_watched = !ground.height(post).is_nan() && is_in_area(ring, ground.map_position(post));
+                let is_watched = !ground.height(post).is_nan() && inside.holds(ground.map_position(post).x);
                 words[column / WORD_BITS] |= u64::from(is_watched) << (column % WORD_BITS);
             }
         });

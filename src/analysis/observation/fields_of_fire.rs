@@ -21,6 +21,7 @@ use crate::outcome::{
 use crate::sight_parts::{SightKind, SightValues, run_sight, windows};
 use crate::tally::FigureTally;
 use sandtable_base::limits::memory::check_memory;
+use sandtable_geom::azimuth::toward;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::sight::line::SightEnd;
@@ -216,7 +217,7 @@ fn outline(weapon: &Lookout, fan: FireFan) -> OutcomeFeature {
         let corner = |corner: u32| {
             let turned = sector.width_deg * (1.0 - f64::from(corner) / chords);
             let azimuth = (sector.from_deg + turned) / 360.0 * TAU;
-            weapon.end.at + DVec2::new(libm::sin(azimuth), libm::cos(azimuth)) * radius_m
+            weapon.end.at + toward(azimuth) * radius_m
         };
         (0..corners).map(corner).collect()
     };

@@ -147,8 +147,16 @@ impl<'a> BlockDecoder<'a> {
         stride: usize,
     ) -> Result<(), DemErrorKind> {
         if self.storage.is_written(block.index) {
-            self.unpacker.unpack(file, block, &mut self.unpacked)?;
-            let packed = self.unpacked.chunks_exact(self.storage.row_bytes().max(1));
+            // Alpha reads the rows once more.
+            let stored = self.unpacker.stored(file, block).filter(|_| self.alpha.is_none());
+            let rows = match stored {
+                Some(rows) => rows,
+                None => {
+                    self.unpacker.unpack(file, block, &mut self.unpacked)?;
+                    &self.unpacked
+                }
+            };
+            let packed = rows.chunks_exact(self.storage.row_bytes().max(1));
             for (packed, row) in packed.zip(rows_of(block, out, stride)) {
                 self.rows.decode(packed, &mut self.words, row);
             }

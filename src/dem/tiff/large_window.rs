@@ -1,4 +1,5 @@
-//! A window of a GeoTIFF of which not all blocks can be kept: they are decoded straight into its rows.
+//! A window of a GeoTIFF whose blocks are decoded straight into its rows and not kept: they are too many to be, or as fast to
+//! read again as they are stored in the file, row by row.
 //!
 //! ```text
 //! ┌────┬────┬────┐
@@ -12,6 +13,7 @@
 
 use std::borrow::Cow;
 use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 use std::{io, mem};
 
 use rayon::prelude::*;
@@ -58,9 +60,18 @@ impl<R: FileContent> GeoTiffWindows<R> {
         let mut samples = vec![E::default(); window.samples()];
         let mut bands = bands(window, self.block_height(), &mut samples);
         let most = rayon::current_num_threads() * BANDS_PER_THREAD;
+        // Memory for packed bytes, used again.
+        let spare = Mutex::new(Vec::new());
+        let taken = || spare.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default();
+        let fill = |band: &mut Band<'_, E>| {
+            let mut bytes = taken();
+            let outcome = self.fill(band, &mut bytes);
+            spare.lock().unwrap_or_else(PoisonError::into_inner).push(bytes);
+            outcome
+        };
         for some in bands.chunks_mut(self.bands_at_once(window).clamp(1, most)) {
             self.announce_windows(some.iter().map(|band| band.window));
-            let outcomes: Vec<_> = some.par_iter_mut().with_max_len(1).map(|band| self.fill(band)).collect();
+            let outcomes: Vec<_> = some.par_iter_mut().with_max_len(1).map(fill).collect();
             outcomes.into_iter().collect::<Result<(), _>>()?;
         }
         Ok(E::into_samples(samples))
@@ -68,28 +79,33 @@ impl<R: FileContent> GeoTiffWindows<R> {
 
     /// The file, of which the bytes of a band's blocks are held where they lie one behind the other: strips of single rows
     /// are not read one by one.
-    fn run_of(&self, band: RasterWindow) -> io::Result<RunBytes<impl BlockBytes + use<R>>> {
+    fn run_of<'b>(
+        &self,
+        band: RasterWindow,
+        held: &'b mut Vec<u8>,
+    ) -> io::Result<RunBytes<'b, impl BlockBytes + use<R>>> {
         let mut run: Option<Range<usize>> = None;
         let mut file = self.file();
         for at in self.blocks_meeting(band) {
             let Some(range) = self.packed_range(at) else {
-                return Ok(RunBytes { file, start: 0, held: Vec::new() });
+                return Ok(RunBytes { file, start: 0, held: &[] });
             };
             run = match run {
                 None => Some(range),
                 Some(run) if run.end == range.start && range.end - run.start <= MOST_IN_RUN => {
                     Some(run.start..range.end)
                 }
-                Some(_) => return Ok(RunBytes { file, start: 0, held: Vec::new() }),
+                Some(_) => return Ok(RunBytes { file, start: 0, held: &[] }),
             };
         }
         let run = run.unwrap_or_default();
-        let held = file.bytes(run.clone())?.into_owned();
-        Ok(RunBytes { file, start: run.start, held })
+        let start = run.start;
+        file.read_into(run, held)?;
+        Ok(RunBytes { file, start, held })
     }
 
-    fn fill<E: SampleFloat>(&self, band: &mut Band<'_, E>) -> Result<(), DemErrorKind> {
-        let mut file = self.run_of(band.window).map_err(fault::unread)?;
+    fn fill<E: SampleFloat>(&self, band: &mut Band<'_, E>, bytes: &mut Vec<u8>) -> Result<(), DemErrorKind> {
+        let mut file = self.run_of(band.window, bytes).map_err(fault::unread)?;
         let mut decoder = self.plain_decoder()?;
         let RasterWindow { column, row, width, .. } = band.window;
         for at in self.blocks_meeting(band.window) {
@@ -118,24 +134,27 @@ fn band_rows(window: RasterWindow, block_height: u32) -> u32 {
 }
 
 /// A file of which some bytes are held.
-struct RunBytes<F> {
+struct RunBytes<'b, F> {
     file: F,
     start: usize,
-    held: Vec<u8>,
+    held: &'b [u8],
 }
 
-impl<F: BlockBytes> BlockBytes for RunBytes<F> {
+impl<F: BlockBytes> BlockBytes for RunBytes<'_, F> {
     fn length(&self) -> usize {
         self.file.length()
     }
 
     fn bytes(&mut self, range: Range<usize>) -> io::Result<Cow<'_, [u8]>> {
-        let held =
-            range.start.checked_sub(self.start).and_then(|start| self.held.get(start..start + range.len()));
-        match held {
+        let start = range.start.checked_sub(self.start);
+        match start.and_then(|start| self.held.get(start..start + range.len())) {
             Some(held) => Ok(Cow::Borrowed(held)),
             None => self.file.bytes(range),
         }
+    }
+
+    fn held(&self, range: Range<usize>) -> Option<&[u8]> {
+        self.held.get(range.start.checked_sub(self.start)?..range.end.checked_sub(self.start)?)
     }
 
     fn read_into(&mut self, range: Range<usize>, out: &mut Vec<u8>) -> io::Result<()> {

@@ -1,7 +1,8 @@
 //! Decodes one unpacked row of a TIFF block to elevations: undoes the predictor, takes one band, turns no data to NaN.
 //!
 //! Two passes over a row, both short enough to stay in the processor's nearest memory: bytes to words of a sample's
-//! width, then words to elevations. The first is a chain of sums, the second a loop without a branch.
+//! width, then words to elevations. The first is a chain of sums, the second a loop without a branch. Samples that are stored as
+//! they are take one.
 //!
 //! The floating-point predictor sums *all* bytes of a row in one chain, most significant bytes first:
 //!
@@ -81,6 +82,18 @@ impl RowDecoder {
         out: &mut [T],
         value: impl Fn(W) -> T,
     ) {
+        if self.predictor == Predictor::Plain && self.bands == 1 {
+            let samples = out.iter_mut().zip(row.chunks_exact(size_of::<W>()));
+            match self.order {
+                ByteOrder::Little => {
+                    samples.for_each(|(out, bytes)| *out = value(W::from_bytes(bytes, ByteOrder::Little)));
+                }
+                ByteOrder::Big => {
+                    samples.for_each(|(out, bytes)| *out = value(W::from_bytes(bytes, ByteOrder::Big)));
+                }
+            }
+            return;
+        }
         for (out, &word) in out.iter_mut().zip(words_of(self, row, words)) {
             *out = value(word);
         }

@@ -37,6 +37,11 @@ pub(crate) trait BlockBytes {
     /// The bytes in a range within the file; fewer where the file has shrunk.
     fn bytes(&mut self, range: Range<usize>) -> std::io::Result<Cow<'_, [u8]>>;
 
+    /// The bytes in a range, where they are in memory.
+    fn held(&self, _range: Range<usize>) -> Option<&[u8]> {
+        None
+    }
+
     /// [`BlockBytes::bytes`] into memory that is used again.
     fn read_into(&mut self, range: Range<usize>, out: &mut Vec<u8>) -> std::io::Result<()> {
         out.clear();
@@ -52,6 +57,10 @@ impl BlockBytes for &[u8] {
 
     fn bytes(&mut self, range: Range<usize>) -> std::io::Result<Cow<'_, [u8]>> {
         Ok(Cow::Borrowed(&self[range]))
+    }
+
+    fn held(&self, range: Range<usize>) -> Option<&[u8]> {
+        self.get(range)
     }
 }
 
@@ -95,6 +104,16 @@ impl<'a> Unpacker<'a> {
             Packing::Lerc(LercPacking::Zstd) => Decompressor::Lerc(Some(LercWrapping::Zstd(Box::default()))),
         };
         Self { storage, decompressor: Some(decompressor) }
+    }
+
+    /// The rows of a block that lie in the image, where they are in memory as they are stored.
+    pub fn stored<'f>(&self, file: &'f impl BlockBytes, block: TiffBlock) -> Option<&'f [u8]> {
+        if self.decompressor.is_some() {
+            return None;
+        }
+        let needed = self.storage.row_bytes() * block.window.height as usize;
+        let Range { start, end } = packed_range(self.storage, block, file.length()).ok()?;
+        file.held(start..end.min(start.saturating_add(needed))).filter(|rows| rows.len() == needed)
     }
 
     /// Unpacks the rows of a block that lie in the image into `rows`, which is resized.

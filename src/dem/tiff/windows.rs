@@ -9,7 +9,7 @@
 //! ```
 //!
 //! Blocks that a window needs and that are not kept are decoded on all threads. Those of a window larger than all that is kept
-//! are not kept (`large_window`).
+//! are not kept, nor those of whole rows that are stored unpacked (`large_window`).
 //!
 //! Memory: the window, the blocks that are kept (a bound in bytes), the blocks while they are decoded, some for each
 //! thread, and the file's tables of blocks. A file whose single blocks are too large for that (a picture stored as one strip) is refused.
@@ -30,7 +30,7 @@ use crate::tiff::fault;
 use crate::tiff::header::{self, GeoTiffHeader};
 use crate::tiff::images::{LaterImages, Overview, SharedFile};
 use crate::tiff::mask;
-use crate::tiff::storage::{Storage, TiffBlock};
+use crate::tiff::storage::{Packing, Storage, TiffBlock};
 use crate::tiff::unpack::{BlockBytes, packed_range};
 use sandtable_raster::cache::LruCache;
 use sandtable_raster::content::FileContent;
@@ -199,6 +199,13 @@ impl<R: FileContent> GeoTiffWindows<R> {
         self.heights.block_height
     }
 
+    /// Whether a window of whole rows is stored one block behind the other as the samples are, so that blocks are read from the
+    /// file as fast as they would be copied from the cache.
+    fn is_stored_as(&self, window: RasterWindow) -> bool {
+        let Storage { packing, block_width, width, .. } = self.heights;
+        packing == Packing::Plain && block_width >= width && window.width == width && self.mask.is_none()
+    }
+
     /// Says which bytes of the file are read next, as far as their samples fit the cache.
     pub(super) fn announce_windows(&self, windows: impl Iterator<Item = RasterWindow>) {
         self.announce_blocks(&self.fitting(windows.flat_map(|window| self.blocks_meeting(window))));
@@ -289,7 +296,9 @@ impl<R: FileContent> Windows for GeoTiffWindows<R> {
     fn samples(&mut self, window: RasterWindow) -> Result<Samples, DemErrorKind> {
         window.assert_within(self.size());
         let is_large = window.samples() * self.sample_bytes() > self.cache_bytes;
-        if is_large && self.bands_at_once(window) >= rayon::current_num_threads() {
+        if (is_large || self.is_stored_as(window))
+            && self.bands_at_once(window) >= rayon::current_num_threads()
+        {
             return self.large_window(window);
         }
         // Zeros come from the system as they are needed; blocks cover all of them.

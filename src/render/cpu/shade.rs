@@ -88,21 +88,27 @@ impl<'a> Shader<'a> {
     pub fn shade(&self, face: &ScreenFace, at: [f32; 2]) -> Shaded {
         let item = self.item(face);
         let material = self.material(item);
-        let hit = FacePoint::new(face, self.screen, at);
-        let outer = self.ground.as_ref().filter(|_| material.reads_ground_map());
-        let (finest, map_hit) = outer.map_or((None, hit), |outer| self.finest_ground(outer, hit));
-        let ground = finest.map(|ground| (ground, ground.at(&map_hit, self.most_taps)));
         let vertices = LazyCell::new(|| FaceVertices {
             corners: self.corners(item, face),
             weights: Barycentric::new(face, at),
         });
+        let has_surface = !matches!(material.albedo, Albedo::GroundMap | Albedo::Hatching);
+        let surface = has_surface.then(|| self.surface_color(material, &vertices));
+        if let Some((_, 0.0)) = surface {
+            // Nothing shows of it: most of a tint of the ground that has none there.
+            return Shaded { color: Vec3::ZERO, alpha: 0.0 };
+        }
+        let hit = FacePoint::new(face, self.screen, at);
+        let outer = self.ground.as_ref().filter(|_| material.reads_ground_map());
+        let (finest, map_hit) = outer.map_or((None, hit), |outer| self.finest_ground(outer, hit));
+        let ground = finest.map(|ground| (ground, ground.at(&map_hit, self.most_taps)));
         let (mut albedo, alpha) = match (material.albedo, &ground) {
             (Albedo::GroundMap, Some((ground, point))) => (ground.albedo(point, &map_hit), 1.0),
             (Albedo::Hatching, _) => {
                 let Material { base_color, .. } = material;
                 (base_color.linear(), base_color.alpha() * hatching_cover(at))
             }
-            _ => self.surface_color(material, &vertices),
+            _ => surface.unwrap_or_else(|| self.surface_color(material, &vertices)),
         };
         if let (true, Some((ground, point))) = (material.is_natural, &ground) {
             albedo *= ground.grain(point, &map_hit);

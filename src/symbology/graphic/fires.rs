@@ -6,6 +6,7 @@ use crate::graphic::area::{hatch, inner_text, is_hatched};
 use crate::graphic::drawing::{GraphicDrawing, GraphicInput};
 use crate::graphic::kind::GraphicKind;
 use crate::graphic::plane::{arc, arrowhead, circle, direction};
+use sandtable_geom::azimuth::heading;
 
 /// Half of the bar at the end of a linear target, in text heights.
 const BAR_EM: f64 = 1.04;
@@ -67,10 +68,6 @@ pub fn range_rings(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Grap
 pub fn range_sector(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     let center = input.points[0];
     let fields = input.fields;
-    let heading = |azimuth_deg: f64| {
-        let angle = azimuth_deg.to_radians();
-        DVec2::new(libm::sin(angle), libm::cos(angle))
-    };
     let mut before_m = 0.0;
     for (index, (&radius_m, pair)) in
         fields.distances_m.iter().zip(fields.azimuths_deg.chunks_exact(2)).enumerate()

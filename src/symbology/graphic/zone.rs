@@ -7,6 +7,7 @@ use crate::graphic::corridor::corridor_width_m;
 use crate::graphic::drawing::{FillInk, GraphicDrawing, GraphicInput};
 use crate::graphic::kind::GraphicKind;
 use crate::graphic::plane::{arc, bulge, circle, direction, turned};
+use sandtable_geom::azimuth::heading;
 
 /// Corners of an ellipse.
 const ELLIPSE_CORNERS: u32 = 72;
@@ -26,12 +27,6 @@ fn outlined(kind: &GraphicKind, ring: Vec<DVec2>, drawing: &mut GraphicDrawing) 
         drawing.fill(ring.clone(), FillInk::Ground(color));
     }
     drawing.ring(ring);
-}
-
-/// The direction of an azimuth in degrees.
-fn heading(azimuth_deg: f64) -> DVec2 {
-    let angle = azimuth_deg.to_radians();
-    DVec2::new(libm::sin(angle), libm::cos(angle))
 }
 
 /// The corners of a rectangle: the middles of two sides and the width between the others (RECTANGULAR1).

@@ -5,6 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use glam::{DVec2, DVec3};
 
 use crate::camera::{Camera, CameraError};
+use sandtable_geom::azimuth::toward;
 
 /// The steepest that a view looks up or down, radians: a hair from the vertical, where there would be no north.
 pub const STEEPEST_RAD: f64 = FRAC_PI_2 - 1e-3;
@@ -72,7 +73,7 @@ impl ViewPose {
 
     /// The viewing direction on the level, of length 1.
     pub fn level_forward(&self) -> DVec3 {
-        DVec3::new(libm::sin(self.azimuth_rad), libm::cos(self.azimuth_rad), 0.0)
+        toward(self.azimuth_rad).extend(0.0)
     }
 
     /// The direction to the right, level, of length 1.

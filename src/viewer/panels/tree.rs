@@ -55,7 +55,7 @@ pub fn tree_panel(ui: &mut Ui, panel: &mut TreePanel, features: &[SceneFeature])
         if !wanted.is_empty() && !feature.name.to_lowercase().contains(&wanted) {
             continue;
         }
-        let id = FeatureId(FeatureId::GROUND.0 + 1 + index as u32);
+        let id = FeatureId::of_index(index);
         match kinds.iter_mut().find(|(kind, _)| *kind == feature.kind) {
             Some((_, ids)) => ids.push(id),
             None => kinds.push((feature.kind, vec![id])),

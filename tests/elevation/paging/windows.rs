@@ -246,3 +246,22 @@ fn every_byte_of_a_tiled_file_changed_in_turn_is_an_error_or_a_raster() {
         }
     }
 }
+
+#[test]
+fn whole_rows_that_are_stored_as_they_are_take_no_room_in_the_cache() {
+    // One column of tiles, which is what strips are.
+    for (side, packing, is_kept) in [(704, Packing::Plain, false), (704, Packing::Deflate, true)] {
+        let bytes = file(&[Image::of(700, 900, hilly)], side, packing);
+        let mut whole = read("a.tif", &bytes, &DemHints::default()).expect("sound");
+        let open = || GeoTiffWindows::open("a.tif", Cursor::new(&bytes), &DemHints::default(), 64 << 20);
+        let mut windows = open().expect("sound");
+        let (mut found, mut wanted) = (Vec::new(), Vec::new());
+        for window in RasterWindow::all((700, 900)).bands(333 * 700) {
+            windows.read(window, &mut found).expect("sound");
+            whole.read(window, &mut wanted).expect("in memory");
+            assert!(bits(&found) == bits(&wanted), "{window:?}");
+        }
+        assert_eq!(windows.cached_bytes() > 0, is_kept);
+        assert_windows_match(&mut windows, &mut whole, 5, "in any order");
+    }
+}
