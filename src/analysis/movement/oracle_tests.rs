@@ -67,6 +67,7 @@ fn start(land: &Land) -> usize {
 /// The times with sixteen neighbors and then with eight, as the columns of these tools have them.
 fn check_times(ground: &mut TravelGround<'_>, name: &str, tools: [&str; 2], start: usize) {
     let rows = table(&format!("movement_{name}.csv"));
+    ground.has_triangles = false;
     for (tool, count) in tools.into_iter().zip([16, 8]) {
         ground.steps.truncate(count);
         let times = everywhere(ground, &[start]);
@@ -104,6 +105,7 @@ fn routes_cost_what_those_of_scikit_image_do_and_never_more() {
         let columns = land.ground.columns() as usize;
         let level = level(&land);
         let mut ground = with_paces(&level, &paces(&land));
+        ground.has_triangles = false;
         let of_sixteen = everywhere(&ground, &[start(&land)]);
         ground.steps.truncate(8);
         for row in rows.iter().filter(|row| row[0] == "route") {
