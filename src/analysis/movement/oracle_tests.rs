@@ -122,3 +122,31 @@ fn routes_cost_what_those_of_scikit_image_do_and_never_more() {
         }
     }
 }
+
+/// How much longer ways by steps take than those across triangles: on average, and at most.
+#[test]
+fn on_real_ground_steps_take_longer_than_triangles_by_what_the_catalog_says() {
+    for (name, file) in PLACES {
+        let Some(land) = place(file) else { return };
+        for (vehicle, [bound, bound_most]) in [("foot", [1.025, 1.15]), ("tracked", [1.07, 3.0])] {
+            let vehicle = Vehicle::built_in(vehicle).expect("built in");
+            let mut ground = super::tests::travel(&land, &vehicle);
+            let across = everywhere(&ground, &[start(&land)]);
+            ground.has_triangles = false;
+            let by_steps = everywhere(&ground, &[start(&land)]);
+            let reached = |times: &[f32]| times.iter().filter(|time| time.is_finite()).count();
+            // Some steep ground has a passable direction between those of steps.
+            let only_across = reached(&across) - reached(&by_steps);
+            assert!(only_across <= across.len() / 20, "{name} {only_across}");
+            let far =
+                across.iter().zip(&by_steps).filter(|(across, steps)| **across > 0.0 && steps.is_finite());
+            let ratios: Vec<f64> = far.map(|(&across, &steps)| f64::from(steps / across)).collect();
+            let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
+            let (least, most) = ratios
+                .iter()
+                .fold((2.0_f64, 0.0_f64), |(least, most), &ratio| (least.min(ratio), most.max(ratio)));
+            let is_within = mean > 1.001 && mean < bound && least >= 1.0 && most < bound_most;
+            assert!(is_within, "{name} {}: {mean} {least} {most}", vehicle.name);
+        }
+    }
+}
