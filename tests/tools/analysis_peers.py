@@ -9,6 +9,7 @@ Prints the table of the page on speed, and one of threads.
 """
 
 import argparse
+import math
 import os
 import shutil
 import subprocess
@@ -79,6 +80,38 @@ def run(command, threads=None):
     return seconds, usage.ru_maxrss / 1024
 
 
+ROADS = 12
+
+
+def road_lines(side):
+    """Lines of roads in map coordinates: half from west to east, half from south to north, each with some two thousand bends."""
+    reach_m, lines = (side - 1) * CELL_M, []
+    for number in range(ROADS):
+        across = (number // 2 + 0.5) / (ROADS / 2)
+        stations = [index / 2000 for index in range(2001)]
+        swing = [
+            across + 0.03 * math.sin(9 * at + number) + 0.008 * math.sin(41 * at + 3 * number) for at in stations
+        ]
+        shares = zip(stations, swing) if number % 2 == 0 else zip(swing, stations)
+        west, south = WEST_M + CELL_M / 2, NORTH_M - CELL_M / 2 - reach_m
+        lines.append([(west + east * reach_m, south + north * reach_m) for east, north in shares])
+    return lines
+
+
+def write_roads(folder, side, elevation):
+    """A scene of the elevation with roads, and the same lines for GRASS; the path of the scene. On foot, a meter takes twice as
+    long off the roads, as the friction of `prepare_roads` has it."""
+    scene, ascii = folder / "roads.toml", folder / "roads.txt"
+    lines = road_lines(side)
+    positions = lambda line: ", ".join(f"[{x:.2f}, {y:.2f}]" for x, y in line)
+    road = lambda line: f"[[road]]\nprofile = \"drape\"\nwidth = {CELL_M}\npoints = [{positions(line)}]\n"
+    vehicle = '[vehicle.walker]\nlike = "foot"\nspeed_kmh = 2.5\nroad_speed_kmh = [5, 5, 5, 5, 5]\n'
+    scene.write_text(f'[terrain]\ndem = "{elevation.name}"\n\n{vehicle}\n' + "\n".join(map(road, lines)))
+    bends = lambda line: "".join(f" {x:.2f} {y:.2f}\n" for x, y in line)
+    ascii.write_text("".join(f"L {len(line)}\n{bends(line)}" for line in lines))
+    return scene
+
+
 class Place:
     """Positions on the elevation, as shares of its side from the south-west."""
 
@@ -109,7 +142,11 @@ def comparisons(program, python, elevation, folder, side):
         "f = rd.FillDepressions(d, epsilon=False); a = rd.FlowAccumulation(f, method='D8'); "
         f"numpy.asarray(a).astype('<f4').tofile('{folder}/richdem.raw')"
     )
-    walk = f"r.walk -k elevation=d friction=zero output=cost outdir=dirs start_coordinates={start} --q --o"
+    walk = lambda friction: f"r.walk -k elevation=d friction={friction} output=cost outdir=dirs start_coordinates={start} --q --o"
+    drain = f"r.drain -d input=cost direction=dirs output=way start_coordinates={near} --q --o"
+    route = lambda friction: grass(folder, f"{walk(friction)} stop_coordinates={near}", drain)
+    routed = ["--from", start, "--to", near, "-o", folder / "route.gpkg"]
+    roads = write_roads(folder, side, elevation)
     return [
         (
             "slope",
@@ -132,12 +169,17 @@ def comparisons(program, python, elevation, folder, side):
         (
             "isochrones",
             ours("time", "--from", start, "--vehicle", "foot", "-o", out),
-            {"r.walk": grass(folder, walk)},
+            {"r.walk": grass(folder, walk("zero"))},
         ),
         (
-            "route of 30 km",
-            ours("route", "--from", start, "--to", near, "--vehicle", "foot", "-o", folder / "route.gpkg"),
-            {"r.walk, r.drain": grass(folder, walk + f" stop_coordinates={near}", f"r.drain -d input=cost direction=dirs output=way start_coordinates={near} --q --o")},
+            "route of 30 km, bare ground",
+            ours("route", "--vehicle", "foot", *routed),
+            {"r.walk, r.drain": route("zero")},
+        ),
+        (
+            "route of 30 km with roads",
+            [*analyze, "route", roads, "--vehicle", "walker", "--method", "langmuir", *routed],
+            {"r.walk, r.drain": route("friction")},
         ),
     ]
 
@@ -153,6 +195,7 @@ def threaded(program, elevation, folder, side):
         ("geomorphons", ours("geomorphons", "--radius", "20")),
         ("viewsheds of 4", ours("viewsheds", "--posts", posts)),
         ("masking by 4", ours("masking", "--radars", posts)),
+        ("isochrones", ours("time", "--from", place.at(0.5, 0.5), "--vehicle", "foot")),
     ]
 
 
@@ -171,6 +214,13 @@ def prepare_grass(elevation, folder):
     run(grass(folder, f"r.in.gdal input={elevation} output=d --q", "g.region raster=d", "r.mapcalc 'zero = 0' --q"))
 
 
+def prepare_roads(folder):
+    """What a meter takes beside the slope: nothing on the roads, as long as on the level off them."""
+    lines = f"v.in.ascii -n input={folder / 'roads.txt'} output=roads format=standard --q --o"
+    cells = "v.to.rast input=roads type=line output=roads use=val value=1 --q --o"
+    run(grass(folder, lines, cells, "r.mapcalc 'friction = if(isnull(roads), 0.72, 0)' --q --o"))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program", type=lambda path: Path(path).resolve())
@@ -187,6 +237,7 @@ def main():
     rows = [row for row in rows if is_wanted(row[0])]
     if any(not name.startswith(("gdaldem", "richdem")) for _, _, peers in rows for name in peers):
         prepare_grass(elevation, options.folder)
+        prepare_roads(options.folder)
     run(["gdal_translate", "-q", "-of", "ENVI", elevation, options.folder / "hills.raw"])
     print(f"| what, {options.side}², whole process | ours | MiB | peer | | times |\n|---|---|---|---|---|---|")
     for what, command, peers in rows:

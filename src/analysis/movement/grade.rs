@@ -13,14 +13,16 @@ const VEHICLE_SHARES: [f64; 2] = [0.6, 0.1];
 
 /// How much longer than on the level a way takes, by its grade; infinite beyond the vehicle's limits.
 pub(crate) struct GradeTable {
-    /// From −[`STEEPEST`] to [`STEEPEST`].
-    factors: Vec<f32>,
+    /// From −[`STEEPEST`] to [`STEEPEST`]: the factor, and how much the next one is greater.
+    factors: Vec<[f32; 2]>,
     /// The steepest grade downhill (below 0) and uphill that is passed.
     limits: [f32; 2],
     /// The steepest grade that a way counts with, downhill and uphill.
     way_limits: [f32; 2],
     /// Slopes across the way: free up to the first, not passed above the second. `None` on foot.
     across: Option<[f32; 2]>,
+    /// The grade whose factor is the least.
+    best_grade: f32,
 }
 
 impl GradeTable {
@@ -42,22 +44,31 @@ impl GradeTable {
         };
         let is_foot = vehicle.drive == Drive::Foot;
         Self {
-            factors: (0..=count).map(|index| factor(grade(index)) as f32).collect(),
+            factors: (0..=count)
+                .map(|index| [factor(grade(index)), factor(grade(index + 1))].map(|factor| factor as f32))
+                .map(|[factor, next]| [factor, next - factor])
+                .collect(),
             limits: limit(1),
             way_limits: if is_foot { limit(1) } else { limit(0) },
             across: (!is_foot).then(|| vehicle.slope_across_percent.map(|percent| percent as f32 / 100.0)),
+            best_grade: match vehicle.drive {
+                // Steeper, Langmuir's rule leaps to more than thrice as long.
+                Drive::Foot if is_langmuir => -0.2124,
+                Drive::Foot => -0.05,
+                Drive::Wheels | Drive::Tracks => 0.0,
+            },
         }
     }
 
     /// The factor on open ground.
-    #[inline]
+    #[inline(always)]
     pub fn open(&self, grade: f32) -> f32 {
         if grade < self.limits[0] || grade > self.limits[1] { f32::INFINITY } else { self.factor(grade) }
     }
 
     /// The factor on roads and bridges. They are passable as they are: a model of the ground shows the slope across which a
     /// road was cut, so a vehicle's grade there counts at most as the steepest that it goes freely.
-    #[inline]
+    #[inline(always)]
     pub fn on_way(&self, grade: f32) -> f32 {
         self.factor(grade.clamp(self.way_limits[0], self.way_limits[1]))
     }
@@ -67,8 +78,25 @@ impl GradeTable {
         self.across.is_some()
     }
 
-    /// The factor of a slope across the way, from 1 where it is free to 2 at the limit.
+    /// The grade whose factor is the least.
+    pub fn best_grade(&self) -> f32 {
+        self.best_grade
+    }
+
+    /// Whether a slope, given by its square, slows a vehicle that goes across it.
     #[inline]
+    pub fn is_slowed_across(&self, slope2: f32) -> bool {
+        self.across.is_some_and(|[free, _]| slope2 > free * free)
+    }
+
+    /// The greatest slope across the way that is passed, a ten-thousandth less for rounding; infinite on foot.
+    #[inline]
+    pub fn across_limit(&self) -> f32 {
+        self.across.map_or(f32::INFINITY, |[_, limit]| limit * 0.9999)
+    }
+
+    /// The factor of a slope across the way, from 1 where it is free to 2 at the limit.
+    #[inline(always)]
     pub fn across(&self, slope: f32) -> f32 {
         match self.across {
             Some([_, limit]) if slope > limit => f32::INFINITY,
@@ -79,20 +107,21 @@ impl GradeTable {
 
     /// The greatest finite factor on open ground, slopes across included.
     pub fn greatest(&self) -> f32 {
-        self.factors.iter().fold(1.0f32, |greatest, &factor| greatest.max(factor)) * 2.0
+        self.factors.iter().fold(1.0f32, |greatest, &[factor, _]| greatest.max(factor)) * 2.0
     }
 
     /// The least factor.
     pub fn least(&self) -> f32 {
-        self.factors.iter().fold(1.0f32, |least, &factor| least.min(factor))
+        self.factors.iter().fold(1.0f32, |least, &[factor, _]| least.min(factor))
     }
 
-    #[inline]
+    #[inline(always)]
     fn factor(&self, grade: f32) -> f32 {
         let at = (grade.clamp(-STEEPEST, STEEPEST) + STEEPEST) * STEPS;
-        let index = (at as usize).min(self.factors.len() - 2);
-        let part = at - index as f32;
-        self.factors[index] + (self.factors[index + 1] - self.factors[index]) * part
+        // A grade without a value has the first.
+        let index = (at as i32 as usize).min(self.factors.len() - 1);
+        let [factor, rise] = self.factors[index];
+        factor + rise * (at - index as f32)
     }
 }
 

@@ -1,4 +1,4 @@
-//! How far times over sixteen neighbors are from those over all directions: on planes the quickest way is known.
+//! How far times across the triangles are from those over all directions: on planes the quickest way is known.
 
 use super::tests::{everywhere, travel};
 use super::*;
@@ -32,23 +32,28 @@ fn least_seconds(costs: &[f64], toward: f64) -> f64 {
     least
 }
 
-/// The greatest and the least of found over least times on a plane that rises eastward by `slope`.
-fn ratios(slope: f64, vehicle: &Vehicle) -> (f64, f64) {
-    let land = shaped(65, 65, 10.0, |column, _| column as f32 * (slope * 10.0) as f32);
-    let ground = travel(&land, vehicle);
-    let times = everywhere(&ground, &[32 * 65 + 32]);
+/// The greatest of found over least times, and the least, on a plane that rises by `slope` toward `azimuth`, over posts on the
+/// border of a square of `radius` posts around the start.
+fn ratios(slope: f64, azimuth: f64, vehicle: &Vehicle, is_langmuir: bool, radius: u32) -> (f64, f64) {
+    let [east, north] = [azimuth.cos(), azimuth.sin()].map(|part| part * slope * 10.0);
+    let side = radius * 2 + 1;
+    let land =
+        shaped(side, side, 10.0, |column, row| (f64::from(column) * east + f64::from(row) * north) as f32);
+    let going = Going::new(&land, vehicle).expect("memory");
+    let ground = TravelGround::new(&land, going, vehicle, is_langmuir).expect("memory");
+    let times = everywhere(&ground, &[(radius * side + radius) as usize]);
     let cost = |index: usize| {
-        let angle = index as f64 * std::f64::consts::TAU / DIRECTIONS as f64;
+        let angle = index as f64 * std::f64::consts::TAU / DIRECTIONS as f64 - azimuth;
         let across = ground.grades.across((slope * angle.sin()).abs() as f32);
         f64::from(ground.grades.open((slope * angle.cos()) as f32) * across) * 3.6 / vehicle.speed_kmh
     };
     let costs: Vec<f64> = (0..DIRECTIONS).map(cost).collect();
     let (mut greatest, mut least) = (0.0_f64, f64::INFINITY);
-    for post in 0..32 {
-        for (column, row) in [(64, 32 + post), (32 + post, 64), (32 - post, 64), (0, 32 + post)] {
-            let (east, north) = ((column as f64 - 32.0) * 10.0, (row as f64 - 32.0) * 10.0);
+    for at in (0..side).step_by(2) {
+        for (column, row) in [(side - 1, at), (0, at), (at, side - 1), (at, 0)] {
+            let [east, north] = [column, row].map(|at| (f64::from(at) - f64::from(radius)) * 10.0);
             let wanted = least_seconds(&costs, north.atan2(east)) * east.hypot(north);
-            let ratio = f64::from(times[row * 65 + column]) / wanted;
+            let ratio = f64::from(times[(row * side + column) as usize]) / wanted;
             (greatest, least) = (greatest.max(ratio), least.min(ratio));
         }
     }
@@ -59,22 +64,33 @@ fn ratios(slope: f64, vehicle: &Vehicle) -> (f64, f64) {
 fn on_planes_times_are_too_long_by_no_more_than_the_catalog_says() {
     let foot = Vehicle::built_in("foot").expect("built in");
     let tracked = Vehicle::built_in("tracked").expect("built in");
+    let truck = Vehicle::built_in("truck").expect("built in");
     let bounds = [
-        (0.0, &foot, 1.0276),
-        (0.1, &foot, 1.04),
-        (0.2, &foot, 1.20),
-        (0.4, &foot, 1.33),
-        (0.7, &foot, 1.42),
-        (0.1, &tracked, 1.028),
-        (0.18, &tracked, 1.03),
-        (0.4, &tracked, 1.15),
+        (0.0, &foot, false, 1.007),
+        (0.1, &foot, false, 1.018),
+        (0.2, &foot, false, 1.045),
+        (0.4, &foot, false, 1.072),
+        (0.7, &foot, false, 1.13),
+        (0.1, &truck, false, 1.016),
+        (0.15, &truck, false, 1.024),
+        (0.25, &truck, false, 1.04),
+        (0.18, &tracked, false, 1.017),
+        (0.3, &tracked, false, 1.036),
+        (0.4, &tracked, false, 1.088),
+        (0.2, &foot, true, 1.039),
+        (0.4, &foot, true, 1.088),
+        (0.7, &foot, true, 1.22),
     ];
-    for (slope, vehicle, bound) in bounds {
-        let (greatest, least) = ratios(slope, vehicle);
-        // The brute force turns by half degrees.
-        let is_within = greatest < bound && greatest > 1.0 + (bound - 1.0) * 0.8 && least > 0.99;
-        assert!(is_within, "{} {slope}: {greatest} {least}", vehicle.name);
+    for (slope, vehicle, is_langmuir, bound) in bounds {
+        let found = [0.0, 0.4].map(|azimuth| ratios(slope, azimuth, vehicle, is_langmuir, 32));
+        let greatest = found[0].0.max(found[1].0);
+        let least = found[0].1.min(found[1].1);
+        // The brute force turns by half degrees and misses the best of Langmuir's directions, beyond which times leap.
+        let is_within = greatest < bound && greatest > 1.0 + (bound - 1.0) * 0.8 && least > 0.95;
+        assert!(is_within, "{} {slope} {is_langmuir}: {greatest} {least}", vehicle.name);
     }
+    let (far, _) = ratios(0.0, 0.0, &foot, false, 96);
+    assert!(far < 1.005, "{far}");
 }
 
 #[test]
@@ -90,6 +106,7 @@ fn toward_a_goal_times_are_those_of_looking_everywhere() {
         let mut ground = travel(&land, &Vehicle::built_in(name).expect("built in"));
         ground.slow_down(1000..1100, 3.0);
         for start in [0, 61 * 20 + 7, 61 * 47 - 1] {
+            ground.has_triangles = false;
             let all = everywhere(&ground, &[start]);
             for ends in [vec![61 * 30 + 50], vec![5, 6, 7, 70], vec![61 * 46, 61 * 46 + 60], vec![start]] {
                 let times = ground.times(&[start], TravelGoal::any_of(&ends), &StopFlag::default());

@@ -6,11 +6,13 @@ mod gaps;
 mod going;
 mod grade;
 mod isochrones;
+mod neighbors;
 pub(crate) mod obstacles;
 mod queue;
 mod route;
 mod search;
 mod travel;
+mod triangles;
 pub mod vehicle;
 
 use crate::run::KindFunction;

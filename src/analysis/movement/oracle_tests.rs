@@ -67,6 +67,7 @@ fn start(land: &Land) -> usize {
 /// The times with sixteen neighbors and then with eight, as the columns of these tools have them.
 fn check_times(ground: &mut TravelGround<'_>, name: &str, tools: [&str; 2], start: usize) {
     let rows = table(&format!("movement_{name}.csv"));
+    ground.has_triangles = false;
     for (tool, count) in tools.into_iter().zip([16, 8]) {
         ground.steps.truncate(count);
         let times = everywhere(ground, &[start]);
@@ -104,6 +105,7 @@ fn routes_cost_what_those_of_scikit_image_do_and_never_more() {
         let columns = land.ground.columns() as usize;
         let level = level(&land);
         let mut ground = with_paces(&level, &paces(&land));
+        ground.has_triangles = false;
         let of_sixteen = everywhere(&ground, &[start(&land)]);
         ground.steps.truncate(8);
         for row in rows.iter().filter(|row| row[0] == "route") {
@@ -117,6 +119,34 @@ fn routes_cost_what_those_of_scikit_image_do_and_never_more() {
             // With knight's moves, a route is at most as long, and at least as long as the straight bound of eight.
             let short = f64::from(of_sixteen[end]) / wanted;
             assert!((1.0 / 1.0824..=1.0001).contains(&short), "{name} {row:?}: {short}");
+        }
+    }
+}
+
+/// How much longer ways by steps take than those across triangles: on average, and at most.
+#[test]
+fn on_real_ground_steps_take_longer_than_triangles_by_what_the_catalog_says() {
+    for (name, file) in PLACES {
+        let Some(land) = place(file) else { return };
+        for (vehicle, [bound, bound_most]) in [("foot", [1.025, 1.15]), ("tracked", [1.07, 3.0])] {
+            let vehicle = Vehicle::built_in(vehicle).expect("built in");
+            let mut ground = super::tests::travel(&land, &vehicle);
+            let across = everywhere(&ground, &[start(&land)]);
+            ground.has_triangles = false;
+            let by_steps = everywhere(&ground, &[start(&land)]);
+            let reached = |times: &[f32]| times.iter().filter(|time| time.is_finite()).count();
+            // Some steep ground has a passable direction between those of steps.
+            let only_across = reached(&across) - reached(&by_steps);
+            assert!(only_across <= across.len() / 20, "{name} {only_across}");
+            let far =
+                across.iter().zip(&by_steps).filter(|(across, steps)| **across > 0.0 && steps.is_finite());
+            let ratios: Vec<f64> = far.map(|(&across, &steps)| f64::from(steps / across)).collect();
+            let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
+            let (least, most) = ratios
+                .iter()
+                .fold((2.0_f64, 0.0_f64), |(least, most), &ratio| (least.min(ratio), most.max(ratio)));
+            let is_within = mean > 1.001 && mean < bound && least >= 1.0 && most < bound_most;
+            assert!(is_within, "{name} {}: {mean} {least} {most}", vehicle.name);
         }
     }
 }

@@ -1,8 +1,8 @@
 //! A queue of posts by time: buckets in a ring (Dial 1969), each as wide as the shortest step takes.
 //!
-//! Within such a bucket no post can better another, so that the order within it has no effect. Where the longest step
-//! would need more than [`MOST_BUCKETS`], buckets are wider; a post whose time falls is then queued again, and the times
-//! are the same. An entry is stale where its time is not its post's any more.
+//! Within such a bucket hardly a post betters another, and the order within it has no effect. Where the longest step would
+//! need more than [`MOST_BUCKETS`], buckets are wider; a post whose time falls is then queued again, and the times are the
+//! same. A post is queued once a bucket: an entry is stale where its post was queued in another one since.
 
 /// The most buckets of a ring; each has 24 bytes.
 const MOST_BUCKETS: usize = 1 << 16;
@@ -21,6 +21,8 @@ pub(crate) struct BucketQueue {
     /// The bucket that is emptied, counted from time 0.
     current: u64,
     entries: usize,
+    /// Whether a post was put into a bucket before its own, since that lay beyond the ring.
+    has_early: bool,
     /// An empty bucket, for its memory.
     spare: Vec<QueuedPost>,
 }
@@ -32,33 +34,63 @@ impl BucketQueue {
         let width = shortest_s.max(longest_s / (MOST_BUCKETS - 3) as f64);
         let count = ((longest_s / width) as usize).min(MOST_BUCKETS - 3) + 3;
         let buckets = vec![Vec::new(); count];
-        Self { buckets, per_second: 1.0 / width, current: 0, entries: 0, spare: Vec::new() }
+        Self { buckets, per_second: 1.0 / width, current: 0, entries: 0, has_early: false, spare: Vec::new() }
     }
 
-    /// Puts a post into the queue, in the order of when it is expected at the goal; without one, of its time.
+    /// The bucket of a time, counted from time 0; never one that was emptied, nor one beyond the ring.
     #[inline]
-    pub fn push(&mut self, post: QueuedPost, expected_s: f32) {
-        let count = self.buckets.len() as u64;
+    fn bucket_of(&self, expected_s: f32) -> u64 {
         let bucket = (f64::from(expected_s) * self.per_second) as u64;
-        let bucket = bucket.clamp(self.current, self.current + count - 1);
+        bucket.clamp(self.current, self.current + self.buckets.len() as u64 - 1)
+    }
+
+    /// Puts a post into the queue, in the order of when it is expected at the goal; without one, of its time. `before_s` is
+    /// when it was expected before, infinite where it was not.
+    #[inline]
+    pub fn push(&mut self, post: QueuedPost, expected_s: f32, before_s: f32) {
+        let count = self.buckets.len() as u64;
+        let bucket = self.bucket_of(expected_s);
+        self.has_early |= bucket == self.current + count - 1;
+        // It may lie in its bucket already; in the one that is emptied, it may have been taken.
+        let is_queued = before_s.is_finite() && self.bucket_of(before_s) == bucket;
+        if is_queued && bucket != self.current && !self.has_early {
+            return;
+        }
         self.buckets[(bucket % count) as usize].push(post);
         self.entries += 1;
     }
 
-    /// Takes the posts of the first bucket that has any; posts that are pushed into it later are taken next.
-    pub fn take_bucket(&mut self) -> Option<Vec<QueuedPost>> {
-        if self.entries == 0 {
-            return None;
-        }
+    /// Whether an entry of the bucket that is emptied holds: its post, now expected at `expected_s`, was queued in no other.
+    #[inline]
+    pub fn holds(&self, entry: QueuedPost, time_s: f32, expected_s: f32) -> bool {
+        entry.time_s == time_s || (f64::from(expected_s) * self.per_second) as u64 == self.current
+    }
+
+    /// A time, seconds, up to which all posts are in the bucket that is emptied or were in earlier ones.
+    pub fn emptied_to_s(&self) -> f32 {
+        ((self.current + 1) as f64 / self.per_second) as f32 * (1.0 + 1e-6)
+    }
+
+    /// The first bucket from the one that is emptied on that has posts.
+    pub fn first_bucket(&self) -> Option<u64> {
         let count = self.buckets.len() as u64;
-        loop {
-            let bucket = &mut self.buckets[(self.current % count) as usize];
-            if !bucket.is_empty() {
-                self.entries -= bucket.len();
-                return Some(std::mem::replace(bucket, std::mem::take(&mut self.spare)));
-            }
-            self.current += 1;
-        }
+        let has_posts = |bucket: &u64| !self.buckets[(bucket % count) as usize].is_empty();
+        if self.entries == 0 { None } else { (self.current..self.current + count).find(has_posts) }
+    }
+
+    /// Takes the posts of a bucket, no earlier than any that was taken and no later than the first that has posts; posts that
+    /// are pushed into it later are taken next.
+    pub fn take_bucket(&mut self, bucket: u64) -> Vec<QueuedPost> {
+        self.current = bucket;
+        let count = self.buckets.len() as u64;
+        let posts = &mut self.buckets[(bucket % count) as usize];
+        self.entries -= posts.len();
+        std::mem::replace(posts, std::mem::take(&mut self.spare))
+    }
+
+    /// How many posts a bucket has.
+    pub fn posts_in(&self, bucket: u64) -> usize {
+        self.buckets[(bucket % self.buckets.len() as u64) as usize].len()
     }
 
     /// Gives back what was taken, for its memory.

@@ -1,16 +1,38 @@
-//! The time that a vehicle takes from places to every post, or to a goal: shortest ways over the steps of the ground.
+//! The time that a vehicle takes from places to every post, or to a goal: shortest ways over the ground.
+//!
+//! To all posts, ways lead by steps and across triangles; toward a goal by steps alone, so that the posts of a way are known
+//! from the times alone, ties by the order of neighbors.
 //!
 //! Times are sums of f32. Such a sum never falls as a summand rises, so the least time of each post is one number, whatever
-//! the order in which posts are reached. The way back is found from the times alone, ties by the order of neighbors.
-//!
-//! One thread does it: sharing the posts of a bucket between two gained nothing when it was measured.
+//! the order in which posts are reached. Threads share the posts in blocks of rows, each with a queue for its own, and go
+//! through the buckets together: what one reaches in a block of another, it hands over before the next bucket.
 
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use rayon::prelude::*;
+
+use crate::movement::neighbors::{RING, RingTriangle, SIDES, TravelStep};
 use crate::movement::queue::{BucketQueue, QueuedPost};
-use crate::movement::travel::{TravelGround, is_on};
+use crate::movement::travel::TravelGround;
+use crate::movement::triangles::TravelTriangle;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// The posts taken from the queue between two looks at the stop flag.
 const POSTS_PER_LOOK: usize = 1 << 16;
+
+/// Fewer posts than this are searched by one thread: buckets are then too small to share.
+const LEAST_SHARED: usize = 1 << 20;
+
+/// The most threads: blocks and buckets become too small for more.
+const MOST_LANES: usize = 8;
+
+/// The most rows of a block, and how many blocks each lane has at least: fewer rows share the work more evenly, more have
+/// fewer posts at the edges of blocks.
+const ROWS_PER_BLOCK: usize = 96;
+const BLOCKS_PER_LANE: usize = 8;
+
+/// A bucket with fewer posts is emptied by one thread: waking another takes as long.
+const LEAST_SHARED_BUCKET: usize = 512;
 
 /// What a journey ends at.
 #[derive(Clone, Copy)]
@@ -69,64 +91,214 @@ impl OnwardTime {
     }
 }
 
-/// A post that was reached, with when it is expected at the goal.
-type ReachedPost = (QueuedPost, f32);
+/// The part of a thread in a search: the posts of some blocks.
+struct SearchLane {
+    number: usize,
+    queue: BucketQueue,
+    /// Posts of other lanes that were reached, by lane.
+    outboxes: Vec<Vec<QueuedPost>>,
+    /// The time of the first of the goal's posts that was taken from the queue.
+    ends_s: f32,
+    looks: usize,
+}
 
-/// A search over the ground.
+/// A search over the ground; indices are those with the border.
 struct TravelFront<'a, 'b> {
     ground: &'a TravelGround<'b>,
-    times: Vec<f32>,
+    /// Seconds, by their bits. A thread writes those of its own blocks alone, and reads all.
+    times: Vec<AtomicU32>,
     onward: Option<OnwardTime>,
-    goal: TravelGoal<'a>,
+    /// The goal's posts, which rise.
+    goals: Vec<usize>,
     ends_s: f32,
+    /// A block has two to the power of this many posts.
+    block_bits: u32,
+    lanes: usize,
+    has_triangles: bool,
 }
 
 impl TravelFront<'_, '_> {
-    /// Whether the search ends at this post: it then goes no further than posts that are as near.
-    fn ends_at(&mut self, post: QueuedPost) -> bool {
-        let Some(goals) = self.goal.any_of else { return false };
-        let is_end = self.times[post.index as usize] == post.time_s
-            && goals.binary_search(&(post.index as usize)).is_ok();
-        if is_end {
-            self.ends_s = self.ends_s.min(post.time_s);
+    #[inline]
+    fn time_s(&self, post: usize) -> f32 {
+        f32::from_bits(self.times[post].load(Ordering::Relaxed))
+    }
+
+    #[inline]
+    fn lane_of(&self, post: usize) -> usize {
+        (post >> self.block_bits) & (self.lanes - 1)
+    }
+
+    #[inline]
+    fn onward_s(&self, post: usize) -> f32 {
+        self.onward.map_or(0.0, |onward| {
+            let [column, row] = self.ground.column_and_row(post);
+            onward.seconds(column, row)
+        })
+    }
+
+    /// Empties the bucket of a lane; posts of the lane that are pushed into it meanwhile are left there.
+    fn empty_bucket(&self, lane: &mut SearchLane, bucket: u64) {
+        let posts = lane.queue.take_bucket(bucket);
+        lane.looks += posts.len();
+        for &post in &posts {
+            self.go_on(post, lane);
         }
-        is_end
+        lane.queue.give_back(posts);
     }
 
+    /// A post is reached at a time: where that is sooner than before, it goes into the queue of its lane.
     #[inline]
-    fn onward_s(&self, column: i32, row: i32) -> f32 {
-        self.onward.map_or(0.0, |onward| onward.seconds(column, row))
-    }
-
-    /// Goes on from a post to its neighbors; what is reached sooner than before is added to `reached`.
-    #[inline]
-    fn go_on(&mut self, post: QueuedPost, reached: &mut Vec<ReachedPost>) {
-        let ground = self.ground;
-        let (columns, rows) = (ground.ground.columns(), ground.ground.rows());
-        let (from, time_s) = (post.index as usize, post.time_s);
-        let (column, row) = ((post.index % columns) as i32, (post.index / columns) as i32);
-        if self.times[from] != time_s || time_s + self.onward_s(column, row) > self.ends_s {
+    fn reach(&self, to: usize, time_s: f32, lane: &mut SearchLane) {
+        let before_s = self.time_s(to);
+        if time_s >= before_s || time_s.is_nan() {
             return;
         }
-        let is_inner = column >= 2 && row >= 2 && column + 2 < columns as i32 && row + 2 < rows as i32;
-        for step in &ground.steps {
-            if !is_inner && !is_on(columns, rows, column + step.columns, row + step.rows) {
-                continue;
-            }
+        let onward_s = self.onward_s(to);
+        if time_s + onward_s > self.ends_s {
+            return;
+        }
+        let post = QueuedPost { index: to as u32, time_s };
+        let owner = self.lane_of(to);
+        if owner == lane.number {
+            self.times[to].store(time_s.to_bits(), Ordering::Relaxed);
+            lane.queue.push(post, time_s + onward_s, before_s + onward_s);
+        } else {
+            lane.outboxes[owner].push(post);
+        }
+    }
+
+    /// Goes on from a post to its neighbors.
+    #[inline]
+    fn go_on(&self, entry: QueuedPost, lane: &mut SearchLane) {
+        let from = entry.index as usize;
+        let time_s = self.time_s(from);
+        let expected_s = time_s + self.onward_s(from);
+        if !lane.queue.holds(entry, time_s, expected_s) || expected_s > self.ends_s {
+            return;
+        }
+        if self.goals.binary_search(&from).is_ok() {
+            // The search goes no further than posts that are as near.
+            lane.ends_s = lane.ends_s.min(time_s);
+            return;
+        }
+        match (self.ground.is_alike(from), self.ground.grades.has_across()) {
+            (true, false) => self.go_on_over::<true, false>(from, time_s, lane),
+            (true, true) => self.go_on_over::<true, true>(from, time_s, lane),
+            (false, _) => self.go_on_over::<false, false>(from, time_s, lane),
+        }
+    }
+
+    /// Goes on from a post; `ALIKE` where the ground has one pace all around it, with `ACROSS` where slopes across slow the
+    /// vehicle.
+    #[inline]
+    fn go_on_over<const ALIKE: bool, const ACROSS: bool>(
+        &self,
+        from: usize,
+        time_s: f32,
+        lane: &mut SearchLane,
+    ) {
+        let ground = self.ground;
+        let pace = ground.pace(from);
+        let least_pace = if ALIKE { pace } else { ground.least_pace };
+        // No step is quicker than its least time.
+        let least_s = |step: &TravelStep| time_s + step.least_per_pace_s * least_pace;
+        let arrival_s = |step: &TravelStep| match ALIKE {
+            true => time_s + ground.open_seconds::<ACROSS>(from, pace, step),
+            false => time_s + ground.seconds(from, step),
+        };
+        let (ring, knights) = ground.steps.split_at(RING);
+        for step in knights {
             let to = from.wrapping_add_signed(step.offset);
-            let before_s = self.times[to];
-            // No step is quicker than its least time.
-            if before_s <= time_s + step.least_s {
-                continue;
+            if least_s(step) < self.time_s(to) {
+                self.reach(to, arrival_s(step), lane);
             }
-            let arrival_s = time_s + ground.seconds(from, column, row, step);
-            if arrival_s >= before_s {
-                continue;
+        }
+        let mut before_s = [f32::INFINITY; RING];
+        let mut posts = [0usize; RING];
+        for (index, step) in ring.iter().enumerate() {
+            posts[index] = from.wrapping_add_signed(step.offset);
+            before_s[index] = self.time_s(posts[index]);
+        }
+        let mut reached_s = before_s;
+        for (step, reached_s) in ring.iter().zip(&mut reached_s) {
+            if least_s(step) < *reached_s {
+                *reached_s = reached_s.min(arrival_s(step));
             }
-            let expected_s = arrival_s + self.onward_s(column + step.columns, row + step.rows);
-            if expected_s <= self.ends_s {
-                self.times[to] = arrival_s;
-                reached.push((QueuedPost { index: to as u32, time_s: arrival_s }, expected_s));
+        }
+        if self.has_triangles {
+            let paces = [pace; 2];
+            let mut heights_m = [0.0; RING];
+            if ALIKE {
+                for index in 0..RING {
+                    heights_m[index] = ground.height(posts[index]);
+                }
+            }
+            let own_m = ground.height(from);
+            // Of a side, the post that is taken later leads on across its triangles.
+            let emptied_to_s = lane.queue.emptied_to_s();
+            for (side, triangles) in SIDES.iter().enumerate() {
+                if before_s[side] >= emptied_to_s {
+                    continue;
+                }
+                let first_s = before_s[side].min(time_s);
+                for &RingTriangle { to, is_from_straight, axis } in triangles {
+                    if first_s + ring[axis].least_per_pace_s * least_pace >= reached_s[to] {
+                        continue;
+                    }
+                    let (times_s, corners) = match is_from_straight {
+                        true => ([time_s, before_s[side]], [from, posts[side]]),
+                        false => ([before_s[side], time_s], [posts[side], from]),
+                    };
+                    let arrival_s = if ALIKE {
+                        let [height_a, height_b] = match is_from_straight {
+                            true => [own_m, heights_m[side]],
+                            false => [heights_m[side], own_m],
+                        };
+                        let heights_m = [height_a, height_b, heights_m[to]];
+                        let triangle = TravelTriangle { times_s, heights_m, paces, is_way: false };
+                        ground.triangles.arrival_s::<ACROSS>(&triangle, axis, &ground.grades)
+                    } else {
+                        let triangle = ground.triangle([corners[0], corners[1], posts[to]], times_s);
+                        triangle.map_or(f32::INFINITY, |triangle| ground.arrival_s(&triangle, axis))
+                    };
+                    reached_s[to] = reached_s[to].min(arrival_s);
+                }
+            }
+        }
+        for index in 0..RING {
+            if reached_s[index] < before_s[index] {
+                self.reach(posts[index], reached_s[index], lane);
+            }
+        }
+    }
+
+    /// Goes on until nothing is reached any more.
+    fn run(&mut self, lanes: &mut [SearchLane], stop: &StopFlag) {
+        while let Some(bucket) = lanes.iter().filter_map(|lane| lane.queue.first_bucket()).min() {
+            let front = &*self;
+            let posts: usize = lanes.iter().map(|lane| lane.queue.posts_in(bucket)).sum();
+            if posts < LEAST_SHARED_BUCKET || lanes.len() == 1 {
+                lanes.iter_mut().for_each(|lane| front.empty_bucket(lane, bucket));
+            } else {
+                lanes.par_iter_mut().for_each(|lane| front.empty_bucket(lane, bucket));
+            }
+            for lane in 0..lanes.len() {
+                for other in 0..lanes.len() {
+                    let mut posts = std::mem::take(&mut lanes[other].outboxes[lane]);
+                    for post in posts.drain(..) {
+                        front.reach(post.index as usize, post.time_s, &mut lanes[lane]);
+                    }
+                    lanes[other].outboxes[lane] = posts;
+                }
+            }
+            self.ends_s = lanes.iter().map(|lane| lane.ends_s).fold(self.ends_s, f32::min);
+            let looks = lanes.iter().map(|lane| lane.looks).sum::<usize>();
+            if looks >= POSTS_PER_LOOK {
+                stop.did(looks);
+                lanes.iter_mut().for_each(|lane| lane.looks = 0);
+                if stop.is_stopped() {
+                    break;
+                }
             }
         }
     }
@@ -134,42 +306,63 @@ impl TravelFront<'_, '_> {
 
 impl TravelGround<'_> {
     /// Seconds from the nearest in time of the starts to each post; infinite where none is reached. With a goal, the posts on
-    /// the quickest way to the nearest of its posts have their times, and others may have later ones: the search looks first
-    /// where the least time on to the goal is the least (Hart, Nilsson and Raphael 1968).
+    /// the quickest way by steps to the nearest of its posts have their times, and others may have later ones: the search
+    /// looks first where the least time on to the goal is the least (Hart, Nilsson and Raphael 1968).
     pub fn times(&self, starts: &[usize], goal: TravelGoal<'_>, stop: &StopFlag) -> Vec<f32> {
+        let lanes = match self.framed_count() {
+            ..LEAST_SHARED => 1,
+            _ => rayon::current_num_threads().min(MOST_LANES),
+        };
+        // Rounded down to a power of two.
+        self.times_in_lanes(starts, goal, stop, 1 << lanes.max(1).ilog2())
+    }
+
+    /// [`TravelGround::times`] by so many threads, a power of two.
+    pub(super) fn times_in_lanes(
+        &self,
+        starts: &[usize],
+        goal: TravelGoal<'_>,
+        stop: &StopFlag,
+        lanes: usize,
+    ) -> Vec<f32> {
         if !self.least_pace.is_finite() {
-            return vec![f32::INFINITY; self.posts.len()];
+            return vec![f32::INFINITY; self.ground.heights().len()];
         }
-        let onward = goal.any_of.and_then(|posts| OnwardTime::new(self, posts));
-        let mut queue = self.queue(onward.is_some());
-        let times = vec![f32::INFINITY; self.posts.len()];
-        let mut front = TravelFront { ground: self, times, onward, goal, ends_s: goal.most_s };
+        let rows = self.ground.rows() as usize / (BLOCKS_PER_LANE * lanes);
+        let unreached = || AtomicU32::new(f32::INFINITY.to_bits());
+        let mut front = TravelFront {
+            ground: self,
+            times: (0..self.framed_count()).into_par_iter().map(|_| unreached()).collect(),
+            onward: goal.any_of.and_then(|posts| OnwardTime::new(self, posts)),
+            goals: goal.any_of.iter().copied().flatten().map(|&post| self.framed(post)).collect(),
+            ends_s: goal.most_s,
+            block_bits: (self.width * rows.clamp(1, ROWS_PER_BLOCK)).ilog2(),
+            lanes,
+            has_triangles: goal.any_of.is_none() && self.has_triangles,
+        };
+        let lane = |number| SearchLane {
+            number,
+            queue: self.queue(front.onward.is_some()),
+            outboxes: vec![Vec::new(); lanes],
+            ends_s: f32::INFINITY,
+            looks: 0,
+        };
+        let mut lanes: Vec<SearchLane> = (0..lanes).map(lane).collect();
         for &start in starts.iter().filter(|&&start| self.is_open(start)) {
-            if front.times[start] > 0.0 {
-                front.times[start] = 0.0;
-                queue.push(QueuedPost { index: start as u32, time_s: 0.0 }, 0.0);
-            }
+            let post = self.framed(start);
+            let lane = front.lane_of(post);
+            front.reach(post, 0.0, &mut lanes[lane]);
         }
-        let mut reached = Vec::new();
-        let mut looks = 0usize;
-        while let Some(bucket) = queue.take_bucket() {
-            looks += bucket.len();
-            if looks >= POSTS_PER_LOOK {
-                stop.did(looks);
-                looks = 0;
-                if stop.is_stopped() {
-                    break;
-                }
-            }
-            for &post in &bucket {
-                if !front.ends_at(post) {
-                    front.go_on(post, &mut reached);
-                }
-            }
-            reached.drain(..).for_each(|(post, expected_s)| queue.push(post, expected_s));
-            queue.give_back(bucket);
-        }
-        front.times
+        // Within the pool, threads wait for each other without going to sleep.
+        rayon::scope(|_| front.run(&mut lanes, stop));
+        let mut times = vec![f32::INFINITY; self.ground.heights().len()];
+        times.par_chunks_mut(self.ground.columns() as usize).enumerate().for_each(|(row, times)| {
+            let found = &front.times[self.framed_row(row)];
+            times.iter_mut().zip(found).for_each(|(time, found)| {
+                *time = f32::from_bits(found.load(Ordering::Relaxed));
+            });
+        });
+        times
     }
 
     /// A queue for the steps on this ground.
