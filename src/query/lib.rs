@@ -26,4 +26,5 @@ pub mod profile;
 pub mod service;
 pub mod sight;
 pub mod viewshed;
+mod water_bands;
 pub mod windowed_elevation;
