@@ -26,7 +26,7 @@ use sandtable_export::features::FeatureFormat;
 use sandtable_export::features::analysis_json::outcome_json;
 use sandtable_export::features::outcome::{OutcomeFrame, export_outcome};
 use sandtable_files::{disk, raster_file};
-use sandtable_query::analysis::{AnalyzeError, Analyzed, WrittenArgument, analyze, bare_land, ground_raster};
+use sandtable_query::analysis::{Analyzed, WrittenArgument, analyze, bare_land, ground_raster};
 use sandtable_query::analysis_bands::{AnalysisBands, OutcomeWindows, analysis_bands};
 use sandtable_scene::analysis_map::{MapTexts, ground_map, scene_map};
 use sandtable_scene::land::land_of_drawn;
@@ -263,10 +263,10 @@ fn write_bands(
 ) -> Result<Outcome, CliError> {
     let written = raster_file::write_windows(&mut bands, format, path, &command.dataset.file);
     match bands.problem() {
-        Some(problem) => Err(AnalyzeError::from(problem).into()),
+        Some(problem) => Err(problem.into()),
         None => {
             written?;
-            Ok(bands.outcome().clone())
+            Ok(bands.outcome())
         }
     }
 }

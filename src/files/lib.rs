@@ -2,6 +2,7 @@
 //!
 //! ```text
 //!  path ─► disk, addressed ─► bytes, or a file to be read in parts
+//!  values for a while ─► scratch_file
 //!  content ─► part_file ─► output_files ─► one file, or several that appear together (set_record)
 //! ```
 
@@ -15,5 +16,6 @@ pub mod part_file;
 mod part_name;
 pub mod png;
 pub mod raster_file;
+pub mod scratch_file;
 mod set_record;
 pub mod synced_file;

@@ -21,6 +21,7 @@ use sandtable_catalog::kind::AnalysisKind;
 use sandtable_catalog::parameter::{
     AnalysisParameter, EXTENT, PHASE_PREFIX, ParameterDefault, ParameterForm, SOURCE_GROUND,
 };
+use sandtable_files::scratch_file::ScratchError;
 use sandtable_geom::crs::{Crs, CrsError};
 use sandtable_raster::raster::{Raster, Samples};
 use sandtable_scene::analyses::ground_at_posts;
@@ -54,6 +55,9 @@ pub enum AnalyzeError {
     Other { name: String, source: Box<OpenError> },
     #[error(transparent)]
     Analysis(#[from] AnalysisError),
+    /// There is no disk for what is known meanwhile.
+    #[error(transparent)]
+    Scratch(#[from] ScratchError),
     /// A kind that reaches everywhere cannot be cut into parts.
     #[error(
         "{kind} cannot be cut into parts: land from everywhere has an effect on its values; run `analyze {kind}`, where \
@@ -87,7 +91,7 @@ impl AnalyzeError {
             Self::Argument { name, .. } | Self::Other { name, .. } => Some(name),
             Self::Analysis(error) => error.key(),
             Self::Unlimited { key, .. } => Some(key),
-            Self::Query(_) | Self::Ground(_) | Self::Whole { .. } => None,
+            Self::Query(_) | Self::Ground(_) | Self::Scratch(_) | Self::Whole { .. } => None,
         }
     }
 

@@ -11,6 +11,8 @@
 //!  │····halo····│   │            │
 //!  └────────────┘   └────────────┘
 //! ```
+//!
+//! Depressions and flow depend on all of the land; [`water_bands`](crate::water_bands) makes them.
 
 use std::hint::black_box;
 use std::ops::Range;
@@ -23,12 +25,13 @@ use crate::analysis::{AnalyzeError, WrittenArgument, read};
 use crate::dataset::Dataset;
 use crate::ground::GroundError;
 use crate::post_raster::{node_header, part_header};
+use crate::water_bands::{MOST_IN_MEMORY, WaterBands};
 use crate::windowed_elevation::WindowedElevation;
 use sandtable_analysis::arguments::AnalysisArguments;
-use sandtable_analysis::error::AnalysisError;
 use sandtable_analysis::land::Land;
 use sandtable_analysis::outcome::{Outcome, OutcomeRaster, PostValues};
 use sandtable_analysis::run::run;
+use sandtable_analysis::water::banded::BandedWater;
 use sandtable_catalog::kind::{AnalysisKind, AnalysisYield};
 use sandtable_catalog::parameter::EXTENT;
 use sandtable_geom::crs::Crs;
@@ -56,17 +59,20 @@ pub struct AnalysisBands<'a> {
     elevation: &'a WindowedElevation,
     arguments: AnalysisArguments,
     reach: u32,
+    /// Of a kind of water, whose values depend on all of the land.
+    water: Option<WaterBands<'a>>,
     crs: Crs,
     header: Raster,
     stop: &'a StopFlag,
     /// What the analysis says besides its raster.
     outcome: Outcome,
     /// Why a band could not be analyzed.
-    problem: Option<AnalysisError>,
+    problem: Option<AnalyzeError>,
 }
 
 /// The raster of an analysis of a dataset, to be made band by band; `None` where the elevation is kept in memory, or the kind
-/// looks farther than some posts, at what lies on the ground, or gives more than a raster.
+/// looks farther than some posts, at what lies on the ground, or gives more than a raster. Depressions and flow of so much
+/// elevation that they need half a gigabyte of memory are prepared here and made in bands; smaller ones are faster in memory.
 ///
 /// # Errors
 /// As [`analyze`](crate::analysis::analyze).
@@ -77,8 +83,18 @@ pub fn analysis_bands<'a>(
     stop: &'a StopFlag,
 ) -> Result<Option<AnalysisBands<'a>>, AnalyzeError> {
     let Some(elevation) = dataset.windowed() else { return Ok(None) };
+    made_in_bands((dataset, elevation), (kind, written), crs, (MOST_IN_MEMORY, stop))
+}
+
+/// [`analysis_bands`], with kinds of water in bands of more posts than `most_in_memory`.
+fn made_in_bands<'a>(
+    (dataset, elevation): (&'a Dataset, &'a WindowedElevation),
+    (kind, written): (&'static AnalysisKind, &[WrittenArgument]),
+    crs: &Crs,
+    (most_in_memory, stop): (u64, &'a StopFlag),
+) -> Result<Option<AnalysisBands<'a>>, AnalyzeError> {
     let is_part = written.iter().any(|argument| argument.name == EXTENT.name);
-    if is_part || !kind.layers.is_empty() || kind.yields != AnalysisYield::Raster {
+    if is_part || kind.yields != AnalysisYield::Raster {
         return Ok(None);
     }
     let failed = |error| AnalyzeError::from(dataset.without_ground(error));
@@ -86,7 +102,12 @@ pub fn analysis_bands<'a>(
     let arguments = read(kind, written, crs, &ground_crs)?;
     let header = elevation.plan().map_err(failed)?.header();
     let (origin, cell) = Lattice::frame(header).map_err(|error| failed(Arc::new(error.into())))?;
-    let Some(reach) = arguments.reach_posts(cell) else { return Ok(None) };
+    let size = (header.width, header.height);
+    let is_water = BandedWater::makes(&arguments) && u64::from(size.0) * u64::from(size.1) > most_in_memory;
+    if !is_water && !kind.layers.is_empty() {
+        return Ok(None);
+    }
+    let Some(reach) = arguments.reach_posts(cell).or(is_water.then_some(0)) else { return Ok(None) };
     // A few posts say what the raster is, and what is wrong with the arguments.
     let last =
         Post { column: (2 * reach + 2).min(header.width - 1), row: (2 * reach + 2).min(header.height - 1) };
@@ -94,13 +115,17 @@ pub fn analysis_bands<'a>(
     let ground = Arc::new(elevation.ground_cut(corner).map_err(failed)?);
     let mut outcome = run(&Land::bare(ground, ground_crs.clone()), &arguments, stop)?;
     let raster = outcome.raster.take();
+    if is_water {
+        outcome.figures.clear();
+    }
     let Some(raster) = raster
         .filter(|_| outcome.figures.is_empty() && outcome.tables.is_empty() && outcome.features.is_empty())
     else {
         return Ok(None);
     };
+    let make_water = || WaterBands::new((dataset, elevation), &arguments, (cell, size), stop);
+    let water = is_water.then(make_water).transpose()?;
     let north_west = origin + DVec2::new(0.0, f64::from(header.height - 1)) * cell;
-    let size = (header.width, header.height);
     let (data_type, nodata) = described(&raster.values);
     keep_freed_memory();
     let header = node_header((north_west, cell), size, &ground_crs, (raster.name, data_type, nodata));
@@ -108,6 +133,7 @@ pub fn analysis_bands<'a>(
         elevation,
         arguments,
         reach,
+        water,
         crs: ground_crs,
         header,
         stop,
@@ -152,18 +178,42 @@ fn described(values: &PostValues) -> (&'static str, f64) {
 }
 
 impl AnalysisBands<'_> {
-    /// What the analysis says besides its raster.
-    pub fn outcome(&self) -> &Outcome {
-        &self.outcome
+    /// What the analysis says besides its raster. Figures are those of the windows that were read.
+    pub fn outcome(&self) -> Outcome {
+        let mut outcome = self.outcome.clone();
+        outcome.figures.extend(self.water.iter().flat_map(WaterBands::figures));
+        outcome
     }
 
     /// Why the last window could not be analyzed, where it could be read.
-    pub fn problem(&mut self) -> Option<AnalysisError> {
+    pub fn problem(&mut self) -> Option<AnalyzeError> {
         self.problem.take()
     }
 
+    /// The values of the posts of a window, of a kind of water.
+    fn water_values(
+        water: &mut WaterBands,
+        header: &Raster,
+        window: RasterWindow,
+    ) -> Result<Vec<f32>, AnalyzeError> {
+        let columns = window.column as usize..(window.column + window.width) as usize;
+        let (south, mut north) = (header.height - window.row - window.height, header.height - window.row);
+        let mut values = Vec::new();
+        while north > south {
+            let (rows, band) = water.band_of_row(north as usize - 1)?;
+            let first = (south as usize).max(rows.start);
+            let held = (first - rows.start) as u32..north - rows.start as u32;
+            values.extend(from_north(band, header.width as usize, columns.clone(), held.rev()));
+            north = first as u32;
+        }
+        Ok(values)
+    }
+
     /// The values of the posts of a window.
-    fn values(&self, window: RasterWindow) -> Result<Result<Vec<f32>, AnalysisError>, DemErrorKind> {
+    fn values(&mut self, window: RasterWindow) -> Result<Result<Vec<f32>, AnalyzeError>, DemErrorKind> {
+        if let Some(water) = &mut self.water {
+            return Ok(Self::water_values(water, &self.header, window));
+        }
         let (width, height) = (self.header.width, self.header.height);
         // Rows of the raster run from the north, those of posts from the south.
         let (first, last) = (height - window.row - window.height, height - 1 - window.row);
@@ -183,7 +233,7 @@ impl AnalysisBands<'_> {
         self.stop.part(share(window.row)..share(window.row + window.height));
         let outcome = match run(&land, &self.arguments, self.stop) {
             Ok(outcome) => outcome,
-            Err(error) => return Ok(Err(error)),
+            Err(error) => return Ok(Err(error.into())),
         };
         let Some(raster) = outcome.raster else { return Err(DemErrorKind::Changed) };
         let columns = window.column as usize..(window.column + window.width) as usize;
@@ -229,6 +279,9 @@ impl Windows for AnalysisBands<'_> {
     }
 
     fn computed_rows(&self) -> Option<u32> {
+        if let Some(water) = &self.water {
+            return Some(water.band_rows());
+        }
         let most = (MOST_POSTS / self.header.width).saturating_sub(2 * self.reach);
         let wanted = (band_posts() / self.header.width).max(ROWS_PER_HALO * self.reach);
         Some(wanted.min(most).max(1))
@@ -330,6 +383,33 @@ mod tests {
             assert!(whole.outcome.figures.is_empty() && whole.outcome.notes == bands.outcome().notes);
         }
         assert!(kinds >= 5, "{kinds} kinds");
+    }
+
+    #[test]
+    fn water_in_bands_gives_the_bytes_and_figures_of_the_whole() {
+        let (on_disk, kept) = (dataset(0), dataset(u64::MAX));
+        let elevation = on_disk.windowed().expect("on disk");
+        let stop = StopFlag::default();
+        for (kind, show) in
+            [("fill", "depth"), ("fill", "filled"), ("flow", "direction"), ("flow", "accumulation")]
+        {
+            let kind = sandtable_catalog::kind(kind).expect("a kind");
+            let written = [WrittenArgument { name: "show".into(), text: show.into() }];
+            let crs = on_disk.crs();
+            let bands = made_in_bands((&on_disk, elevation), (kind, &written), &crs, (0, &stop));
+            let mut bands = bands.expect("prepared").expect("bands");
+            let land = bare_land(&kept, (kind, &written), &kept.crs()).expect("ground");
+            let whole = analyze(&kept, land, (kind, &written), &kept.crs(), &stop).expect(kind.name);
+            let raster = whole.outcome.raster.as_ref().expect(kind.name);
+            let mut of_whole = OutcomeWindows::new(raster, &whole.ground, &whole.crs);
+            assert!(file_of(&mut bands) == file_of(&mut of_whole), "{show}");
+            let outcome = bands.outcome();
+            assert_eq!((outcome.figures, outcome.notes), (whole.outcome.figures, whole.outcome.notes));
+        }
+        let breach = [WrittenArgument { name: "depressions".into(), text: "breach".into() }];
+        let kind = sandtable_catalog::kind("flow").expect("a kind");
+        let bands = made_in_bands((&on_disk, elevation), (kind, &breach), &on_disk.crs(), (0, &stop));
+        assert!(bands.expect("no error").is_none(), "ways out of pits are sought in memory");
     }
 
     #[test]

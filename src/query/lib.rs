@@ -27,4 +27,5 @@ pub mod profile;
 pub mod service;
 pub mod sight;
 pub mod viewshed;
+mod water_bands;
 pub mod windowed_elevation;

@@ -22,13 +22,13 @@ pub(crate) const OFF: u8 = 0;
 pub(crate) const NO_DIRECTION: u8 = 255;
 
 /// A post in a flat, until its direction is found.
-const FLAT: u8 = 254;
+pub(super) const FLAT: u8 = 254;
 
 /// Added to masks, so that none is below 0; a mask without it is no farther from 0 than twice the posts of the land.
 const MASK_ZERO: i64 = 1 << 32;
 
 /// Posts that a thread takes at a time.
-const SHARE: usize = 1 << 12;
+pub(super) const SHARE: usize = 1 << 12;
 
 /// The distances from one post to its neighbors in meters, in the order of [`STEPS`].
 pub(super) fn runs_m(cell: DVec2) -> [f64; 8] {
@@ -61,7 +61,7 @@ pub(crate) fn directions(
 }
 
 /// The directions of posts with a lower neighbor, and of those that drain off the land; the others are told.
-fn fall_lines(cell: DVec2, heights: &[f32], columns: usize, codes: &mut [u8]) -> Vec<u32> {
+pub(super) fn fall_lines(cell: DVec2, heights: &[f32], columns: usize, codes: &mut [u8]) -> Vec<u32> {
     let rows = heights.len() / columns;
     let per_m = runs_m(cell).map(|run_m| 1.0 / run_m);
     let of_row = |(row, codes): (usize, &mut [u8])| {
@@ -153,8 +153,7 @@ fn across_flats(
     };
     // Numbers of posts to higher ground, from 1 on; 0 where a flat has none.
     let mut away = vec![0_u32; heights.len()];
-    let beside_higher = |index| around(index).any(|(_, other)| heights[other] > heights[index as usize]);
-    let edge = picked(&beside_higher);
+    let edge = picked(&|index| around(index).any(|(_, other)| heights[other] > heights[index as usize]));
     spread(edge, stop, |index, distance, next| {
         if away[index as usize] != 0 {
             return;
@@ -177,7 +176,7 @@ fn across_flats(
         }
         is_masked[index as usize] = true;
         let mask = &mut masks[index as usize];
-        *mask = distance.wrapping_mul(2).wrapping_sub(*mask);
+        *mask = flat_mask(distance, *mask);
         next.extend(
             around(index)
                 .filter(|&(_, other)| codes[other] == FLAT && !is_masked[other])
@@ -185,18 +184,44 @@ fn across_flats(
         );
     })?;
     let direction = |&index: &u32| {
-        let value = |other: usize| match codes[other] {
-            FLAT => Some(MASK_ZERO + i64::from(masks[other].cast_signed())),
-            _ => is_outlet(index, other).then_some(0),
+        let rated = |other: usize| match codes[other] {
+            FLAT => Some(FlatRank::Flat(masks[other])),
+            _ => is_outlet(index, other).then_some(FlatRank::Outlet),
         };
-        let rated = around(index).filter_map(|(step, other)| Some((value(other)?, step % 2, step)));
-        rated.min().map_or(OFF, |(_, _, step)| step as u8 + 1)
+        direction_on_flat(around(index), rated)
     };
     let found: Vec<u8> = flats.par_iter().with_min_len(SHARE).map(direction).collect();
     for (&index, code) in flats.iter().zip(found) {
         codes[index as usize] = code;
     }
     Ok(())
+}
+
+/// What a neighbor of a post in a flat is.
+pub(super) enum FlatRank {
+    /// An outlet of the flat.
+    Outlet,
+    /// A post of the flat, with its mask.
+    Flat(u32),
+}
+
+/// The mask of a post of a flat: where it is least, water goes. `toward` is the number of posts to the nearest outlet, `away`
+/// that to the nearest higher ground, 0 where there is none.
+pub(super) fn flat_mask(toward: u32, away: u32) -> u32 {
+    toward.wrapping_mul(2).wrapping_sub(away)
+}
+
+/// The direction of a post of a flat, by the ranks of its neighbors; those without one are no way.
+pub(super) fn direction_on_flat(
+    around: impl Iterator<Item = (usize, usize)>,
+    rank: impl Fn(usize) -> Option<FlatRank>,
+) -> u8 {
+    let value = |rank| match rank {
+        FlatRank::Outlet => 0,
+        FlatRank::Flat(mask) => MASK_ZERO + i64::from(mask.cast_signed()),
+    };
+    let rated = around.filter_map(|(step, other)| Some((value(rank(other)?), step % 2, step)));
+    rated.min().map_or(OFF, |(_, _, step)| step as u8 + 1)
 }
 
 /// Spreads from the posts of an edge, at distance 1, one step after another; `reach` tells a post's neighbors.

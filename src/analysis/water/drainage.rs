@@ -32,21 +32,91 @@ pub(crate) fn drain(ground: &Lattice, heights: &[f32], stop: &StopFlag) -> Resul
     let columns = ground.columns() as usize;
     let filled_m = filled(heights, columns, stop)?;
     let codes = directions(ground, &filled_m, stop)?;
+    Ok(Drainage { filled_m, codes, columns, strides: strides(columns) })
+}
+
+/// What is added to a post's number by direction.
+fn strides(columns: usize) -> [isize; 9] {
     let mut strides = [0; 9];
     for (stride, (east, north)) in strides[1..].iter_mut().zip(STEPS) {
         *stride = north as isize * columns as isize + east as isize;
     }
-    Ok(Drainage { filled_m, codes, columns, strides })
+    strides
+}
+
+/// The post that a post with a direction drains to; `None` where it drains off the land or has no data.
+#[inline]
+fn drained_to(index: usize, code: u8, strides: &[isize; 9]) -> Option<usize> {
+    match code {
+        OFF | NO_DIRECTION => None,
+        code => Some(index.wrapping_add_signed(strides[usize::from(code)])),
+    }
+}
+
+/// The number of neighbors that drain to each post, by the directions of all.
+fn entering(all_codes: &[u8], columns: usize) -> Vec<u8> {
+    let count = |(row, counts): (usize, &mut [u8])| {
+        // A neighbor at step n drains here where its direction is the opposite of n.
+        for (step, (east, north)) in STEPS.into_iter().enumerate() {
+            let wanted = ((step + 4) % 8 + 1) as u8;
+            let Some(row) = row.checked_add_signed(north as isize) else { continue };
+            let Some(codes) = all_codes.get(row * columns..(row + 1) * columns) else { continue };
+            let (here, there) = match east {
+                1 => (&mut counts[..columns - 1], &codes[1..]),
+                0 => (&mut counts[..], codes),
+                _ => (&mut counts[1..], &codes[..columns - 1]),
+            };
+            for (count, &code) in here.iter_mut().zip(there) {
+                *count += u8::from(code == wanted);
+            }
+        }
+    };
+    let mut counts = vec![0; all_codes.len()];
+    counts.par_chunks_mut(columns).enumerate().for_each(count);
+    counts
+}
+
+/// The number of posts that drain through each, itself among them, and of those that come to it and others above it from
+/// elsewhere, `inflow`; 0 without data. No direction leads out of the rows.
+pub(super) fn accumulated(codes: &[u8], columns: usize, inflow: Vec<u32>) -> Vec<u32> {
+    let strides = strides(columns);
+    // One more than the neighbors that have not told yet; 0 where nothing enters.
+    let awaited: Vec<AtomicU8> = {
+        let entering = entering(codes, columns);
+        entering.into_iter().map(|count| AtomicU8::new(if count == 0 { 0 } else { count + 1 })).collect()
+    };
+    let counts: Vec<AtomicU32> = inflow.into_iter().map(AtomicU32::new).collect();
+    let follow = |start: usize| {
+        let (mut at, mut carried) = (start, counts[start].load(Ordering::Relaxed) + 1);
+        loop {
+            counts[at].store(carried, Ordering::Relaxed);
+            let Some(to) = drained_to(at, codes[at], &strides) else { return };
+            if awaited[to].load(Ordering::Acquire) == 2 {
+                carried += counts[to].load(Ordering::Relaxed) + 1;
+            } else {
+                counts[to].fetch_add(carried, Ordering::Relaxed);
+                // Whoever tells last goes on.
+                if awaited[to].fetch_sub(1, Ordering::AcqRel) != 2 {
+                    return;
+                }
+                carried = counts[to].load(Ordering::Relaxed) + 1;
+            }
+            at = to;
+        }
+    };
+    (0..codes.len()).into_par_iter().with_min_len(1 << 14).for_each(|index| {
+        if codes[index] != NO_DIRECTION && awaited[index].load(Ordering::Relaxed) == 0 {
+            follow(index);
+        }
+    });
+    counts.into_iter().map(AtomicU32::into_inner).collect()
 }
 
 impl Drainage {
     /// The post that a post drains to; `None` where it drains off the land or has no data.
     #[inline]
     pub fn to(&self, index: usize) -> Option<usize> {
-        match self.codes[index] {
-            OFF | NO_DIRECTION => None,
-            code => Some(index.wrapping_add_signed(self.strides[usize::from(code)])),
-        }
+        drained_to(index, self.codes[index], &self.strides)
     }
 
     /// Whether a post has data.
@@ -56,61 +126,12 @@ impl Drainage {
 
     /// The number of neighbors that drain to each post.
     pub fn entering(&self) -> Vec<u8> {
-        let columns = self.columns;
-        let count = |(row, counts): (usize, &mut [u8])| {
-            // A neighbor at step n drains here where its direction is the opposite of n.
-            for (step, (east, north)) in STEPS.into_iter().enumerate() {
-                let wanted = ((step + 4) % 8 + 1) as u8;
-                let Some(row) = row.checked_add_signed(north as isize) else { continue };
-                let Some(codes) = self.codes.get(row * columns..(row + 1) * columns) else { continue };
-                let (here, there) = match east {
-                    1 => (&mut counts[..columns - 1], &codes[1..]),
-                    0 => (&mut counts[..], codes),
-                    _ => (&mut counts[1..], &codes[..columns - 1]),
-                };
-                for (count, &code) in here.iter_mut().zip(there) {
-                    *count += u8::from(code == wanted);
-                }
-            }
-        };
-        let mut counts = vec![0; self.codes.len()];
-        counts.par_chunks_mut(columns).enumerate().for_each(count);
-        counts
+        entering(&self.codes, self.columns)
     }
 
     /// The number of posts that drain through each, itself among them; 0 without data.
     pub fn accumulation(&self) -> Vec<u32> {
-        // One more than the neighbors that have not told yet; 0 where nothing enters.
-        let awaited: Vec<AtomicU8> = {
-            let entering = self.entering();
-            entering.into_iter().map(|count| AtomicU8::new(if count == 0 { 0 } else { count + 1 })).collect()
-        };
-        let counts: Vec<AtomicU32> =
-            (0..self.codes.len()).into_par_iter().map(|_| AtomicU32::new(0)).collect();
-        let follow = |start: usize| {
-            let (mut at, mut carried) = (start, 1);
-            loop {
-                counts[at].store(carried, Ordering::Relaxed);
-                let Some(to) = self.to(at) else { return };
-                if awaited[to].load(Ordering::Acquire) == 2 {
-                    carried += counts[to].load(Ordering::Relaxed) + 1;
-                } else {
-                    counts[to].fetch_add(carried, Ordering::Relaxed);
-                    // Whoever tells last goes on.
-                    if awaited[to].fetch_sub(1, Ordering::AcqRel) != 2 {
-                        return;
-                    }
-                    carried = counts[to].load(Ordering::Relaxed) + 1;
-                }
-                at = to;
-            }
-        };
-        (0..self.codes.len()).into_par_iter().with_min_len(1 << 14).for_each(|index| {
-            if self.has_data(index) && awaited[index].load(Ordering::Relaxed) == 0 {
-                follow(index);
-            }
-        });
-        counts.into_iter().map(AtomicU32::into_inner).collect()
+        accumulated(&self.codes, self.columns, vec![0; self.codes.len()])
     }
 
     /// The posts with data, each before the one that it drains to.

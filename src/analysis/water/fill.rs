@@ -5,23 +5,32 @@
 //! upwards (Kruskal 1956), a basin is filled to the height at which it joins the outside, and a post to that height or its
 //! own: the surface of Priority-Flood (Barnes, Lehman and Mulla 2014), which is unique, without its queue of posts; basins
 //! joined in this way are those of Cordonnier, Bovy and Braun (2019).
+//!
+//! Rows of the land that end where other land goes on are filled alike: each post of such an open row is the end of walks and a
+//! way out of its own, so that a post is filled to the way out that it comes to lowest. What these are filled to is found from
+//! the passes between them, as tiles are by Barnes (2016); see [`band_fill`](super::band_fill).
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use rayon::prelude::*;
 
 use crate::error::AnalysisError;
+use sandtable_base::disjoint_sets::root;
 use sandtable_base::limits::memory::check_memory;
+use sandtable_terrain::neighbors::neighbors;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// A value of a post is the number of its basin, not the post to which the walk goes on.
-const BASIN: u32 = 1 << 31;
+pub(super) const BASIN: u32 = 1 << 31;
 
 /// The basin of all posts without data.
 const NOTHING: u32 = u32::MAX;
 
 /// The outside, as a basin.
-const OUTSIDE: u32 = BASIN;
+pub(super) const OUTSIDE: u32 = BASIN;
+
+/// No way out, as long as none is known.
+const NO_WAY: u32 = u32::MAX;
 
 /// Rows that one thread searches for meetings at a time.
 const BAND_ROWS: usize = 64;
@@ -30,7 +39,27 @@ const BAND_ROWS: usize = 64;
 const LATELY: usize = 1 << 12;
 
 /// A place where two basins meet: its height as a number that sorts alike, and the basins.
-type BasinMeeting = (u32, u32, u32);
+pub(super) type BasinMeeting = (u32, u32, u32);
+
+/// Rows of land, and the basin of each of their posts.
+pub(super) struct Basins<'a> {
+    heights: &'a [f32],
+    columns: usize,
+    /// The basin of each post.
+    of_post: Vec<u32>,
+    /// The post in which each basin ends, from basin 1 on, row by row: a pit, or a post of an open row.
+    pub ends: Vec<u32>,
+}
+
+/// To what basins are filled, and by which ways out.
+pub(super) struct BasinFlood {
+    /// The height to which each basin is filled before the water comes to its way out; of a way out none.
+    pub levels: Vec<f32>,
+    /// The way out of each basin, a basin.
+    pub ways: Vec<u32>,
+    /// Where ways out meet: of all meetings as many of the lowest as join them.
+    pub passes: Vec<BasinMeeting>,
+}
 
 /// A height as a number that sorts alike.
 pub(super) fn sortable(height_m: f32) -> u32 {
@@ -58,31 +87,78 @@ pub(super) fn check_posts(posts: usize, bytes_each: u64) -> Result<(), AnalysisE
 /// [`AnalysisError::Memory`] and [`AnalysisError::Stopped`].
 pub(crate) fn filled(heights: &[f32], columns: usize, stop: &StopFlag) -> Result<Vec<f32>, AnalysisError> {
     check_posts(heights.len(), 12)?;
-    let go_on = || if stop.is_stopped() { Err(AnalysisError::Stopped) } else { Ok(()) };
-    let (basins, pits) = walks(heights, columns);
-    go_on()?;
-    basins.par_chunks(columns).enumerate().for_each(|(row, posts)| {
-        (row * columns..row * columns + posts.len()).for_each(|index| end_walk(&basins, index));
-    });
-    go_on()?;
-    let basins: Vec<u32> = basins.into_iter().map(AtomicU32::into_inner).collect();
-    let levels = levels(meetings(heights, &basins, columns), pits);
-    go_on()?;
-    let fill = |(&height, &basin): (&f32, &u32)| match basin {
-        NOTHING => f32::NAN,
-        _ => {
-            let level = levels[(basin & !BASIN) as usize];
-            if level > height { level } else { height }
-        }
-    };
-    Ok(heights.par_iter().zip(&basins).with_min_len(1 << 14).map(fill).collect())
+    let basins = Basins::of(heights, columns, [false, false], stop)?;
+    let mut is_way_out = vec![false; basins.ends.len() + 1];
+    is_way_out[0] = true;
+    let flood = basins.flood(&is_way_out);
+    if stop.is_stopped() {
+        return Err(AnalysisError::Stopped);
+    }
+    Ok(basins.filled(&flood))
 }
 
-/// Where the walk from each post goes next, or the basin in which it ends, and the number of pits.
-fn walks(heights: &[f32], columns: usize) -> (Vec<AtomicU32>, u32) {
+impl<'a> Basins<'a> {
+    /// The basins of rows of land, of which the first and the last may be open: other land goes on beyond.
+    ///
+    /// # Errors
+    /// [`AnalysisError::Stopped`].
+    pub fn of(
+        heights: &'a [f32],
+        columns: usize,
+        is_open: [bool; 2],
+        stop: &StopFlag,
+    ) -> Result<Self, AnalysisError> {
+        let go_on = || if stop.is_stopped() { Err(AnalysisError::Stopped) } else { Ok(()) };
+        let (basins, ends) = walks(heights, columns, is_open);
+        go_on()?;
+        basins.par_chunks(columns).enumerate().for_each(|(row, posts)| {
+            (row * columns..row * columns + posts.len()).for_each(|index| end_walk(&basins, index));
+        });
+        go_on()?;
+        let of_post = basins.into_iter().map(AtomicU32::into_inner).collect();
+        Ok(Self { heights, columns, of_post, ends })
+    }
+
+    /// To what they are filled, where some basins are ways out.
+    pub fn flood(&self, is_way_out: &[bool]) -> BasinFlood {
+        flooded(meetings(self.heights, &self.of_post, self.columns), is_way_out)
+    }
+
+    /// The heights, filled on the way to the ways out.
+    pub fn filled(&self, flood: &BasinFlood) -> Vec<f32> {
+        let fill = |(&height, &basin): (&f32, &u32)| match basin {
+            NOTHING => f32::NAN,
+            _ => raised(height, flood.levels[(basin & !BASIN) as usize]),
+        };
+        self.heights.par_iter().zip(&self.of_post).with_min_len(1 << 14).map(fill).collect()
+    }
+
+    /// Whether the walk from a post ends outside.
+    pub fn ends_outside(&self, index: usize) -> bool {
+        self.of_post[index] == OUTSIDE
+    }
+
+    /// Something known of each basin, for each post; `nothing` without data.
+    pub fn spread<T: Copy + Send + Sync>(&self, of_basin: &[T], nothing: T) -> Vec<T> {
+        let of_post = |&basin: &u32| match basin {
+            NOTHING => nothing,
+            _ => of_basin[(basin & !BASIN) as usize],
+        };
+        self.of_post.par_iter().with_min_len(1 << 14).map(of_post).collect()
+    }
+}
+
+/// A height that is filled to a level, if that is above it.
+#[inline]
+pub(super) fn raised(height: f32, level: f32) -> f32 {
+    if level > height { level } else { height }
+}
+
+/// Where the walk from each post goes next, or the basin in which it ends, and the post of each basin.
+fn walks(heights: &[f32], columns: usize, is_open: [bool; 2]) -> (Vec<AtomicU32>, Vec<u32>) {
     let rows = heights.len() / columns;
     let next: Vec<AtomicU32> = (0..heights.len()).into_par_iter().map(|_| AtomicU32::new(OUTSIDE)).collect();
-    let pits: Vec<Vec<u32>> = (0..rows)
+    let ends: Vec<Vec<u32>> = (0..rows)
         .into_par_iter()
         .map(|row| {
             let first = row * columns;
@@ -93,12 +169,24 @@ fn walks(heights: &[f32], columns: usize) -> (Vec<AtomicU32>, u32) {
                     next[column].store(NOTHING, Ordering::Relaxed);
                 }
             }
-            let mut pits = Vec::new();
+            let mut ends = Vec::new();
             if row == 0 || row == rows - 1 {
                 for (next, _) in next.iter().zip(own).filter(|(_, height)| height.is_nan()) {
                     next.store(NOTHING, Ordering::Relaxed);
                 }
-                return pits;
+                if is_open[usize::from(row != 0)] {
+                    let is_inner = |&index: &usize| {
+                        neighbors(index, columns, rows).all(|(_, other)| !heights[other].is_nan())
+                    };
+                    let inner = first + 1..first + columns - 1;
+                    ends.extend(
+                        inner
+                            .filter(|&index| !heights[index].is_nan())
+                            .filter(is_inner)
+                            .map(|index| index as u32),
+                    );
+                }
+                return ends;
             }
             let (south, north) = (&heights[first - columns..first], &heights[first + columns..][..columns]);
             for column in 1..columns - 1 {
@@ -139,22 +227,21 @@ fn walks(heights: &[f32], columns: usize) -> (Vec<AtomicU32>, u32) {
                     };
                     next[column].store(to as u32, Ordering::Relaxed);
                 } else {
-                    pits.push(index as u32);
+                    ends.push(index as u32);
                 }
             }
-            pits
+            ends
         })
         .collect();
-    let mut count = 0;
-    for pit in pits.into_iter().flatten() {
-        count += 1;
-        next[pit as usize].store(BASIN | count, Ordering::Relaxed);
+    let ends = ends.concat();
+    for (end, basin) in ends.iter().zip(1..) {
+        next[*end as usize].store(BASIN | basin, Ordering::Relaxed);
     }
-    (next, count)
+    (next, ends)
 }
 
 /// Finds the basin of a post, and of all on its walk. Threads that meet write the same.
-fn end_walk(basins: &[AtomicU32], start: usize) {
+pub(super) fn end_walk(basins: &[AtomicU32], start: usize) {
     let get = |at: usize| basins[at].load(Ordering::Relaxed);
     let first = get(start);
     if first & BASIN != 0 {
@@ -219,36 +306,41 @@ fn meetings(heights: &[f32], basins: &[u32], columns: usize) -> Vec<BasinMeeting
     bands.par_iter().map(of_band).collect::<Vec<_>>().concat()
 }
 
-/// The height to which each basin is filled, the outside first, which is filled to none.
-fn levels(mut meetings: Vec<BasinMeeting>, pits: u32) -> Vec<f32> {
+/// To what basins are filled that meet so, where some are ways out, the outside among them: each to the lowest height at which
+/// it is joined to one.
+pub(super) fn flooded(mut meetings: Vec<BasinMeeting>, is_way_out: &[bool]) -> BasinFlood {
     meetings.par_sort_unstable();
-    let mut levels = vec![f32::NEG_INFINITY; pits as usize + 1];
-    let mut parents: Vec<u32> = (0..=pits).collect();
-    let mut is_outside = vec![false; pits as usize + 1];
-    is_outside[0] = true;
-    let mut root = |mut at: u32, joined: Option<u32>| {
-        while parents[at as usize] != at {
-            parents[at as usize] = parents[parents[at as usize] as usize];
-            at = parents[at as usize];
-        }
-        if let Some(to) = joined {
-            parents[at as usize] = to;
-        }
-        at
-    };
+    let count = is_way_out.len() as u32;
+    let mut levels = vec![f32::NEG_INFINITY; is_way_out.len()];
+    let way = |basin: u32| if is_way_out[basin as usize] { basin } else { NO_WAY };
+    let mut ways: Vec<u32> = (0..count).map(way).collect();
+    // Basins without a way out that were joined; and ways out that meet.
+    let mut parents: Vec<u32> = (0..count).collect();
+    let mut joined = parents.clone();
+    let mut passes = Vec::new();
     for (height, a, b) in meetings {
-        let (a, b) = (root(a & !BASIN, None), root(b & !BASIN, None));
-        match (is_outside[a as usize], is_outside[b as usize]) {
-            (true, true) => {}
-            // Basins that are outside are not joined to each other: each joined basin below one has its level.
-            (true, false) => (is_outside[b as usize], levels[b as usize]) = (true, height_of(height)),
-            (false, true) => (is_outside[a as usize], levels[a as usize]) = (true, height_of(height)),
-            (false, false) => {
-                root(a, Some(b));
+        let (a, b) = (root(&mut parents, a & !BASIN), root(&mut parents, b & !BASIN));
+        match (ways[a as usize], ways[b as usize]) {
+            (NO_WAY, NO_WAY) => parents[a as usize] = b,
+            // Basins with a way out are not joined to each other: each joined basin below one has its level.
+            (NO_WAY, way) => (ways[a as usize], levels[a as usize]) = (way, height_of(height)),
+            (way, NO_WAY) => (ways[b as usize], levels[b as usize]) = (way, height_of(height)),
+            (one, other) if one == other => {}
+            (one, other) => {
+                let (first, second) = (root(&mut joined, one), root(&mut joined, other));
+                if first != second {
+                    joined[first as usize] = second;
+                    passes.push((height, one, other));
+                }
             }
         }
     }
-    (0..=pits).map(|basin| levels[root(basin, None) as usize]).collect()
+    let roots: Vec<u32> = (0..count).map(|basin| root(&mut parents, basin)).collect();
+    BasinFlood {
+        levels: roots.iter().map(|&basin| levels[basin as usize]).collect(),
+        ways: roots.iter().map(|&basin| ways[basin as usize]).collect(),
+        passes,
+    }
 }
 
 #[cfg(test)]

@@ -5,7 +5,6 @@ use rayon::prelude::*;
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
-use crate::measures::area_km2;
 use crate::outcome::{Figure, Hatching, Outcome, OutcomeRaster, PostValues, ValueClass};
 use crate::water::infinity::InfiniteFlow;
 use crate::water::prepared::WaterGround;
@@ -29,29 +28,65 @@ pub(crate) fn fill(
     stop: &StopFlag,
 ) -> Result<Outcome, AnalysisError> {
     let water = WaterGround::of(land, arguments, stop)?;
-    let filled_m = water.filled(stop)?;
+    let mut filled_m = water.filled(stop)?;
     // Breaches are told too: as depths below 0.
-    let heights = land.ground.heights();
-    let changed = || filled_m.iter().zip(heights).map(|(filled, height)| filled - height);
-    let of = |sign: f32| {
-        let part = changed().map(|depth| depth * sign).filter(|depth| *depth > 0.0);
-        part.fold((0, 0.0), |(posts, sum), depth| (posts + 1, sum + f64::from(depth)))
-    };
-    let (filled, cut) = (of(1.0), of(-1.0));
-    let mut figures = vec![
-        Figure::new("area of depressions", area_km2(&land.ground, filled.0), "km²"),
-        Figure::new("volume of depressions", filled.1 * land.ground.cell_m2(), "m³"),
-    ];
-    if cut.0 > 0 {
-        figures.push(Figure::new("area of cuts", area_km2(&land.ground, cut.0), "km²"));
-        figures.push(Figure::new("volume of cuts", cut.1 * land.ground.cell_m2(), "m³"));
-    }
+    let (heights, columns) = (land.ground.heights(), land.ground.columns() as usize);
+    let rows: Vec<DepressionRow> = filled_m
+        .par_chunks(columns)
+        .zip(heights.par_chunks(columns))
+        .map(|(filled, heights)| DepressionRow::of(filled, heights))
+        .collect();
+    let figures = depression_figures(&rows, land.ground.cell_m2());
     let notes = water.notes;
     let raster = match arguments.word("show").as_str() {
         "filled" => numbers("filled", "m", filled_m, Vec::new()),
-        _ => numbers("depth", "m", changed().collect(), ValueClass::of_rows(DEPTHS)),
+        _ => {
+            filled_m.par_iter_mut().zip(heights).for_each(|(filled, height)| *filled -= height);
+            numbers("depth", "m", filled_m, ValueClass::of_rows(DEPTHS))
+        }
     };
     Ok(Outcome { raster: Some(raster), figures, notes, ..Outcome::default() })
+}
+
+/// What is filled and cut of a row of posts: how many, and the sum of depths in meters.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct DepressionRow {
+    filled: (usize, f64),
+    cut: (usize, f64),
+}
+
+impl DepressionRow {
+    /// Of heights before and after.
+    pub fn of(filled: &[f32], heights: &[f32]) -> Self {
+        let of = |sign: f32| {
+            let changed = filled.iter().zip(heights).map(|(filled, height)| (filled - height) * sign);
+            let part = changed.filter(|depth| *depth > 0.0);
+            part.fold((0, 0.0), |(posts, sum), depth| (posts + 1, sum + f64::from(depth)))
+        };
+        Self { filled: of(1.0), cut: of(-1.0) }
+    }
+}
+
+/// The figures of depressions, from all rows of the land in their order; a post has `cell_m2` of area.
+pub(super) fn depression_figures(rows: &[DepressionRow], cell_m2: f64) -> Vec<Figure> {
+    let sum = |of: fn(&DepressionRow) -> (usize, f64)| {
+        rows.iter().map(of).fold((0, 0.0), |(posts, depths), row| (posts + row.0, depths + row.1))
+    };
+    let (filled, cut) = (sum(|row| row.filled), sum(|row| row.cut));
+    let mut figures = vec![
+        Figure::new("area of depressions", filled.0 as f64 * cell_m2 / 1e6, "km²"),
+        Figure::new("volume of depressions", filled.1 * cell_m2, "m³"),
+    ];
+    if cut.0 > 0 {
+        figures.push(Figure::new("area of cuts", cut.0 as f64 * cell_m2 / 1e6, "km²"));
+        figures.push(Figure::new("volume of cuts", cut.1 * cell_m2, "m³"));
+    }
+    figures
+}
+
+/// The area of so many posts, each of `cell_m2`, in m²; NaN of none.
+pub(super) fn drained_area(posts: f64, cell_m2: f64) -> f32 {
+    if posts > 0.0 { (posts * cell_m2) as f32 } else { f32::NAN }
 }
 
 /// Where water flows: the area that drains through each post, or the direction in which it drains.
@@ -66,10 +101,7 @@ pub(crate) fn flow(
     let water = WaterGround::of(land, arguments, stop)?;
     let drainage = water.drained(stop)?;
     let cell_m2 = land.ground.cell_m2();
-    let area = |(index, posts): (usize, f64)| match drainage.has_data(index) {
-        true => (posts * cell_m2) as f32,
-        false => f32::NAN,
-    };
+    let area = |posts: f64| drained_area(posts, cell_m2);
     let shows_direction = arguments.word("show") == "direction";
     let raster = match arguments.word("method").as_str() {
         "dinf" => {
@@ -79,8 +111,8 @@ pub(crate) fn flow(
                 let posts = (0..drainage.codes.len()).into_par_iter().with_min_len(1 << 12);
                 numbers("direction", "°", posts.map(degrees).collect(), Vec::new())
             } else {
-                let amounts = flow.accumulation(stop)?.into_iter();
-                numbers("drained area", "m²", amounts.enumerate().map(area).collect(), Vec::new())
+                let amounts = flow.accumulation(stop)?.into_par_iter().with_min_len(1 << 14);
+                numbers("drained area", "m²", amounts.map(area).collect(), Vec::new())
             }
         }
         _ if shows_direction => {
@@ -88,8 +120,8 @@ pub(crate) fn flow(
             OutcomeRaster { name: "direction", unit: "", values, classes: Vec::new() }
         }
         _ => {
-            let counts = drainage.accumulation().into_iter().map(f64::from);
-            numbers("drained area", "m²", counts.enumerate().map(area).collect(), Vec::new())
+            let counts = drainage.accumulation().into_par_iter().with_min_len(1 << 14);
+            numbers("drained area", "m²", counts.map(|posts| area(posts.into())).collect(), Vec::new())
         }
     };
     Ok(Outcome { raster: Some(raster), notes: water.notes, ..Outcome::default() })

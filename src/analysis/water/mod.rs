@@ -1,5 +1,12 @@
 //! Water on the land.
 
+mod band_fill;
+mod band_flats;
+mod band_flow;
+#[cfg(test)]
+mod band_tests;
+pub mod banded;
+pub mod bands;
 mod basins;
 mod breach;
 mod carve;
