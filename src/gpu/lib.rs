@@ -29,11 +29,12 @@ mod materials;
 mod memory;
 mod merged_vertex;
 mod parts;
+pub mod pass_timer;
 mod passes;
 mod pipeline_key;
 mod pipelines;
 mod plan;
-mod readback;
+pub mod readback;
 mod shadow;
 mod uniforms;
 mod windows;
@@ -118,13 +119,15 @@ pub fn render_on(gpu: &Gpu, list: &DrawList, camera: &Camera) -> Result<Renderin
             color: if is_multisampled { &samples } else { &resolved },
             resolved: is_multisampled.then_some(&resolved),
             depth: &sample_depth,
+            timer: None,
         };
         let mut pass = ScenePass::new(colors.begin(&mut encoder, &frame.group), &color, &materials);
         pass.sky();
         pass.draw(&geometry, plan.color.iter().chain(plan.transparent(camera)), parts);
         drop(pass);
         let stage = PassStage::Whole;
-        let features = PassViews { stage, label: "features", color: &seen, resolved: None, depth: &depth };
+        let features =
+            PassViews { stage, label: "features", color: &seen, resolved: None, depth: &depth, timer: None };
         let mut pass = ScenePass::new(features.begin(&mut encoder, &frame.group), &feature, &materials);
         pass.draw(&geometry, &plan.features, parts);
         drop(pass);

@@ -20,7 +20,7 @@ use sandtable_render::picture::Rendering;
 const TIMEOUT: Duration = Duration::from_secs(600);
 
 #[derive(Debug)]
-pub struct Targets {
+pub(crate) struct Targets {
     /// Several samples per pixel; drawn to and resolved where the adapter can, else unused.
     pub samples: wgpu::Texture,
     pub sample_depth: wgpu::Texture,
@@ -31,7 +31,7 @@ pub struct Targets {
     pub depth: wgpu::Texture,
 }
 
-pub struct TextureCopy {
+pub(crate) struct TextureCopy {
     buffer: wgpu::Buffer,
     /// Bytes from row to row, with padding.
     bytes_per_row: u32,
@@ -79,8 +79,27 @@ impl Targets {
     }
 }
 
+/// The pixels of a texture of four bytes a pixel, red first, that can be copied from; waits for the commands before.
+///
+/// # Errors
+/// See [`GpuError`].
+pub fn read_pixels(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Pixels, GpuError> {
+    gpu.guarded("reading a frame back", || {
+        let mut encoder = gpu.encoder("copy of a frame");
+        let copy = TextureCopy::record(gpu, &mut encoder, texture)?;
+        gpu.queue.submit([encoder.finish()]);
+        let read = || -> Result<Pixels, DriverError> {
+            wait(gpu, &[&copy])?;
+            let colors = copy.texels::<4>()?.into_iter();
+            let colors = colors.map(|[red, green, blue, _]| Srgba::opaque(red, green, blue)).collect();
+            Pixels::from_data(texture.width(), texture.height(), colors).ok_or(DriverError::TooFewPixels)
+        };
+        read().map_err(|error| gpu.driver_error("reading a frame back", error))
+    })
+}
+
 /// Waits until the processor can read `copies`.
-pub fn wait(gpu: &Gpu, copies: &[&TextureCopy]) -> Result<(), DriverError> {
+pub(crate) fn wait(gpu: &Gpu, copies: &[&TextureCopy]) -> Result<(), DriverError> {
     let (sender, mapped) = mpsc::channel();
     for copy in copies {
         let sender = sender.clone();
@@ -132,7 +151,7 @@ impl TextureCopy {
 }
 
 /// The content of a texel of the feature texture; a depth of 0 is infinite.
-pub fn feature_and_depth([a, b, c, d, e, f, g, h]: [u8; 8]) -> (FeatureId, f32) {
+pub(crate) fn feature_and_depth([a, b, c, d, e, f, g, h]: [u8; 8]) -> (FeatureId, f32) {
     let depth_m = f32::from_ne_bytes([e, f, g, h]);
     let feature = FeatureId(u32::from_ne_bytes([a, b, c, d]));
     (feature, if depth_m > 0.0 { depth_m } else { f32::INFINITY })
