@@ -5,8 +5,8 @@
 
 use crate::geometry::GpuGeometry;
 use crate::materials::{ArrayId, GpuMaterials};
-use crate::pass_timer::PassTimer;
 use crate::parts::ShaderParts;
+use crate::pass_timer::PassTimer;
 use crate::pipeline_key::PipelineKey;
 use crate::pipelines::Pipelines;
 use crate::plan::DrawCall;

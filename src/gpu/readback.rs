@@ -61,19 +61,36 @@ impl Targets {
         })
     }
 
-    pub fn read(&self, gpu: &Gpu, mut encoder: wgpu::CommandEncoder) -> Result<Rendering, GpuError> {
+    /// Color samples, colors, depths of samples, features and depths.
+    pub fn all(&self) -> [&wgpu::Texture; 5] {
+        [&self.samples, &self.color, &self.sample_depth, &self.feature, &self.depth]
+    }
+
+    /// The size of the picture, pixels.
+    pub fn size(&self) -> (u32, u32) {
+        (self.color.width(), self.color.height())
+    }
+
+    /// Submits commands that draw to the textures, and reads what they drew.
+    pub fn read(
+        &self,
+        gpu: &Gpu,
+        mut encoder: wgpu::CommandEncoder,
+        progress: &dyn Fn(&'static str),
+    ) -> Result<Rendering, GpuError> {
         let color = TextureCopy::record(gpu, &mut encoder, &self.color)?;
         let feature = TextureCopy::record(gpu, &mut encoder, &self.feature)?;
         gpu.queue.submit([encoder.finish()]);
-        let picture = wait(gpu, &[&color, &feature]).and_then(|()| self.picture(&color, &feature));
-        picture.map_err(|error| gpu.driver_error("reading the picture back", error))
+        let picture = || {
+            wait(gpu, &[&color, &feature])?;
+            progress("reading the picture back");
+            self.picture(&color, &feature)
+        };
+        picture().map_err(|error| gpu.driver_error("reading the picture back", error))
     }
 
     fn picture(&self, color: &TextureCopy, feature: &TextureCopy) -> Result<Rendering, DriverError> {
-        let colors = color.texels::<4>()?.into_iter();
-        let colors = colors.map(|[red, green, blue, _]| Srgba::opaque(red, green, blue)).collect();
-        let pixels = Pixels::from_data(self.color.width(), self.color.height(), colors)
-            .ok_or(DriverError::TooFewPixels)?;
+        let pixels = color.pixels(self.size())?;
         let (features, depth_m) = feature.texels::<8>()?.into_iter().map(feature_and_depth).unzip();
         Ok(Rendering { pixels, depth_m, features })
     }
@@ -90,9 +107,7 @@ pub fn read_pixels(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Pixels, GpuErro
         gpu.queue.submit([encoder.finish()]);
         let read = || -> Result<Pixels, DriverError> {
             wait(gpu, &[&copy])?;
-            let colors = copy.texels::<4>()?.into_iter();
-            let colors = colors.map(|[red, green, blue, _]| Srgba::opaque(red, green, blue)).collect();
-            Pixels::from_data(texture.width(), texture.height(), colors).ok_or(DriverError::TooFewPixels)
+            copy.pixels((texture.width(), texture.height()))
         };
         read().map_err(|error| gpu.driver_error("reading a frame back", error))
     })
@@ -140,6 +155,13 @@ impl TextureCopy {
         let to = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
         encoder.copy_texture_to_buffer(texture.as_image_copy(), to, texture.size());
         Ok(Self { buffer, bytes_per_row, row_bytes })
+    }
+
+    /// Opaque pixels of texels of four bytes, red first.
+    fn pixels(&self, (width, height): (u32, u32)) -> Result<Pixels, DriverError> {
+        let colors = self.texels::<4>()?.into_iter();
+        let colors = colors.map(|[red, green, blue, _]| Srgba::opaque(red, green, blue)).collect();
+        Pixels::from_data(width, height, colors).ok_or(DriverError::TooFewPixels)
     }
 
     /// The texels, of `N` bytes each, without padding.

@@ -18,7 +18,9 @@ pub enum ViewerError {
     NoAdapter(String),
     #[error("no graphics adapter can draw frames here ({0}); draw a picture with `sandtable render` instead")]
     NoFrames(String),
-    #[error("frames of {width}×{height} pixels exceed the {longest} a side that the graphics adapter draws; state a smaller --size")]
+    #[error(
+        "frames of {width}×{height} pixels exceed the {longest} a side that the graphics adapter draws; state a smaller --size"
+    )]
     FrameSize { width: u32, height: u32, longest: u32 },
     #[error("the graphics adapter failed while {doing} ({cause}); `sandtable render` draws without one")]
     Adapter { doing: &'static str, cause: String },

@@ -52,13 +52,13 @@ pub fn run(options: &ViewerOptions, size: (u32, u32), script: &Path) -> Result<(
     let target = FrameTarget::new(&frames, size)?;
     let mut view = OffscreenView { app, script, context, frames, timer, target, before: None, shown: 0 };
     while !view.draw()? {}
+    if view.app.stage() == ViewerStage::Failed {
+        return Err(ViewerError::File(view.app.failure_text().to_owned()));
+    }
     if options.reports {
         view.script.print_report(&view.app.adapter);
     }
-    match view.app.stage() {
-        ViewerStage::Failed => Err(ViewerError::File(view.app.failure_text().to_owned())),
-        _ => Ok(()),
-    }
+    Ok(())
 }
 
 /// A script and the texture that it draws on.
@@ -118,9 +118,8 @@ impl OffscreenView {
         let mut encoder = self.frames.gpu().device().create_command_encoder(&label);
         let requests = self.app.take_requests();
         let mut frame = self.app.scene_frame();
-        let drawn = frame
-            .as_mut()
-            .and_then(|frame| self.frames.draw_scene(&mut encoder, frame, &mut self.app));
+        let drawn =
+            frame.as_mut().and_then(|frame| self.frames.draw_scene(&mut encoder, frame, &mut self.app));
         let painting = Instant::now();
         let (textures, pixels_per_point) = (output.textures_delta, output.pixels_per_point);
         let submitted =

@@ -132,8 +132,11 @@ impl ScriptRun {
         self.bytes += load.bytes;
     }
 
-    /// Notes the times of the passes of a frame.
+    /// Notes the times of the passes of a frame; of one without a scene, which has its panels alone, none.
     pub fn note_passes(&mut self, passes: &[PassTime]) {
+        if passes.len() < 2 {
+            return;
+        }
         for pass in passes {
             self.passes.entry(pass.label).or_default().push(pass.ms);
         }

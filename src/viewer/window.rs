@@ -51,7 +51,8 @@ impl From<egui_winit::accesskit_winit::Event> for WindowNews {
 /// See [`ViewerError`].
 pub fn run(options: &ViewerOptions) -> Result<(), ViewerError> {
     let started = Instant::now();
-    let script = options.script.as_deref().map(|path| ScriptRun::read(path, options.frames, started)).transpose()?;
+    let script =
+        options.script.as_deref().map(|path| ScriptRun::read(path, options.frames, started)).transpose()?;
     let no_display = |error: EventLoopError| ViewerError::NoDisplay(reason(&error));
     let event_loop = EventLoop::<WindowNews>::with_user_event().build().map_err(no_display)?;
     let context = Context::default();
@@ -287,7 +288,9 @@ impl ViewerWindow {
                 }
                 WindowRequest::Picture(path) => {
                     let name = path.display();
-                    let text = format!("{name}: a window does not write its frames; add --offscreen, or draw a `snapshot`");
+                    let text = format!(
+                        "{name}: a window does not write its frames; add --offscreen, or draw a `snapshot`"
+                    );
                     self.app.warn(text);
                 }
                 WindowRequest::Close => event_loop.exit(),
