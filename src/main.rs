@@ -18,7 +18,8 @@ const VIEW: Option<ViewProgram> = Some(|options| Ok(sandtable_viewer::run(option
 const VIEW: Option<ViewProgram> = None;
 
 #[cfg(feature = "gpu")]
-const GPU: Option<OtherRenderer> = Some(|list, camera| Ok(sandtable_gpu::render(list, camera)?));
+const GPU: Option<OtherRenderer> =
+    Some(|list, camera, progress| Ok(sandtable_gpu::render(list, camera, progress)?));
 
 #[cfg(not(feature = "gpu"))]
 const GPU: Option<OtherRenderer> = None;

@@ -42,6 +42,10 @@ impl BackendName {
 )]
 struct NoGpuRenderer;
 
-fn not_built_in(_: &DrawList, _: &Camera) -> Result<Rendering, Box<dyn Error + Send + Sync>> {
+fn not_built_in(
+    _: &DrawList,
+    _: &Camera,
+    _: &dyn Fn(&'static str),
+) -> Result<Rendering, Box<dyn Error + Send + Sync>> {
     Err(NoGpuRenderer.into())
 }

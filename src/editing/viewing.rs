@@ -16,6 +16,8 @@ pub struct ViewerOptions {
     pub script: Option<PathBuf>,
     /// The number of frames after which a script ends; `None` for when its commands end.
     pub frames: Option<u32>,
+    /// The size in pixels of frames that are drawn without a window, by a script; `None` for a window.
+    pub offscreen: Option<(u32, u32)>,
     /// Whether the window says what it did and how long its frames took, as JSON on standard output, when it closes.
     pub reports: bool,
 }

@@ -25,6 +25,16 @@ impl<'a> Loader<'a> {
         Self { gpu, taken: Cell::new(0), sent: Cell::new(0) }
     }
 
+    /// Counts `bytes` that stay on the device from before, for `what`.
+    pub fn keep(&self, what: &str, bytes: u64) -> Result<(), GpuError> {
+        self.take(what, bytes)
+    }
+
+    /// The bytes of all that was made and kept.
+    pub fn taken(&self) -> u64 {
+        self.taken.get()
+    }
+
     /// A buffer of `bytes` bytes, which must be a multiple of four.
     pub fn buffer(
         &self,

@@ -6,6 +6,7 @@
 use crate::geometry::GpuGeometry;
 use crate::materials::{ArrayId, GpuMaterials};
 use crate::parts::ShaderParts;
+use crate::pass_timer::PassTimer;
 use crate::pipeline_key::PipelineKey;
 use crate::pipelines::Pipelines;
 use crate::plan::DrawCall;
@@ -32,6 +33,8 @@ pub struct PassViews<'a> {
     /// Where the samples of `color` are averaged, if it has several.
     pub resolved: Option<&'a wgpu::TextureView>,
     pub depth: &'a wgpu::TextureView,
+    /// What times it.
+    pub timer: Option<&'a PassTimer>,
 }
 
 /// A pass that draws scenes: remembers what is set.
@@ -78,6 +81,7 @@ impl PassViews<'_> {
             label: Some(self.label),
             color_attachments: if self.stage == PassStage::Depths { &[] } else { &colors },
             depth_stencil_attachment: Some(depth),
+            timestamp_writes: self.timer.and_then(|timer| timer.writes(self.label)),
             ..Default::default()
         });
         pass.set_bind_group(0, frame, &[]);

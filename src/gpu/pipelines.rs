@@ -129,6 +129,11 @@ impl Pipelines {
         }
     }
 
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.by_key.len()
+    }
+
     /// Takes over pipelines that were made elsewhere for the same target.
     pub fn adopt(&mut self, made: Self) {
         self.by_key.extend(made.by_key);

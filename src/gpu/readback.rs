@@ -20,7 +20,7 @@ use sandtable_render::picture::Rendering;
 const TIMEOUT: Duration = Duration::from_secs(600);
 
 #[derive(Debug)]
-pub struct Targets {
+pub(crate) struct Targets {
     /// Several samples per pixel; drawn to and resolved where the adapter can, else unused.
     pub samples: wgpu::Texture,
     pub sample_depth: wgpu::Texture,
@@ -31,7 +31,7 @@ pub struct Targets {
     pub depth: wgpu::Texture,
 }
 
-pub struct TextureCopy {
+pub(crate) struct TextureCopy {
     buffer: wgpu::Buffer,
     /// Bytes from row to row, with padding.
     bytes_per_row: u32,
@@ -61,26 +61,60 @@ impl Targets {
         })
     }
 
-    pub fn read(&self, gpu: &Gpu, mut encoder: wgpu::CommandEncoder) -> Result<Rendering, GpuError> {
+    /// Color samples, colors, depths of samples, features and depths.
+    pub fn all(&self) -> [&wgpu::Texture; 5] {
+        [&self.samples, &self.color, &self.sample_depth, &self.feature, &self.depth]
+    }
+
+    /// The size of the picture, pixels.
+    pub fn size(&self) -> (u32, u32) {
+        (self.color.width(), self.color.height())
+    }
+
+    /// Submits commands that draw to the textures, and reads what they drew.
+    pub fn read(
+        &self,
+        gpu: &Gpu,
+        mut encoder: wgpu::CommandEncoder,
+        progress: &dyn Fn(&'static str),
+    ) -> Result<Rendering, GpuError> {
         let color = TextureCopy::record(gpu, &mut encoder, &self.color)?;
         let feature = TextureCopy::record(gpu, &mut encoder, &self.feature)?;
         gpu.queue.submit([encoder.finish()]);
-        let picture = wait(gpu, &[&color, &feature]).and_then(|()| self.picture(&color, &feature));
-        picture.map_err(|error| gpu.driver_error("reading the picture back", error))
+        let picture = || {
+            wait(gpu, &[&color, &feature])?;
+            progress("reading the picture back");
+            self.picture(&color, &feature)
+        };
+        picture().map_err(|error| gpu.driver_error("reading the picture back", error))
     }
 
     fn picture(&self, color: &TextureCopy, feature: &TextureCopy) -> Result<Rendering, DriverError> {
-        let colors = color.texels::<4>()?.into_iter();
-        let colors = colors.map(|[red, green, blue, _]| Srgba::opaque(red, green, blue)).collect();
-        let pixels = Pixels::from_data(self.color.width(), self.color.height(), colors)
-            .ok_or(DriverError::TooFewPixels)?;
+        let pixels = color.pixels(self.size())?;
         let (features, depth_m) = feature.texels::<8>()?.into_iter().map(feature_and_depth).unzip();
         Ok(Rendering { pixels, depth_m, features })
     }
 }
 
+/// The pixels of a texture of four bytes a pixel, red first, that can be copied from; waits for the commands before.
+///
+/// # Errors
+/// See [`GpuError`].
+pub fn read_pixels(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Pixels, GpuError> {
+    gpu.guarded("reading a frame back", || {
+        let mut encoder = gpu.encoder("copy of a frame");
+        let copy = TextureCopy::record(gpu, &mut encoder, texture)?;
+        gpu.queue.submit([encoder.finish()]);
+        let read = || -> Result<Pixels, DriverError> {
+            wait(gpu, &[&copy])?;
+            copy.pixels((texture.width(), texture.height()))
+        };
+        read().map_err(|error| gpu.driver_error("reading a frame back", error))
+    })
+}
+
 /// Waits until the processor can read `copies`.
-pub fn wait(gpu: &Gpu, copies: &[&TextureCopy]) -> Result<(), DriverError> {
+pub(crate) fn wait(gpu: &Gpu, copies: &[&TextureCopy]) -> Result<(), DriverError> {
     let (sender, mapped) = mpsc::channel();
     for copy in copies {
         let sender = sender.clone();
@@ -123,6 +157,13 @@ impl TextureCopy {
         Ok(Self { buffer, bytes_per_row, row_bytes })
     }
 
+    /// Opaque pixels of texels of four bytes, red first.
+    fn pixels(&self, (width, height): (u32, u32)) -> Result<Pixels, DriverError> {
+        let colors = self.texels::<4>()?.into_iter();
+        let colors = colors.map(|[red, green, blue, _]| Srgba::opaque(red, green, blue)).collect();
+        Pixels::from_data(width, height, colors).ok_or(DriverError::TooFewPixels)
+    }
+
     /// The texels, of `N` bytes each, without padding.
     pub fn texels<const N: usize>(&self) -> Result<Vec<[u8; N]>, wgpu::MapRangeError> {
         let view = self.buffer.get_mapped_range(..)?;
@@ -132,7 +173,7 @@ impl TextureCopy {
 }
 
 /// The content of a texel of the feature texture; a depth of 0 is infinite.
-pub fn feature_and_depth([a, b, c, d, e, f, g, h]: [u8; 8]) -> (FeatureId, f32) {
+pub(crate) fn feature_and_depth([a, b, c, d, e, f, g, h]: [u8; 8]) -> (FeatureId, f32) {
     let depth_m = f32::from_ne_bytes([e, f, g, h]);
     let feature = FeatureId(u32::from_ne_bytes([a, b, c, d]));
     (feature, if depth_m > 0.0 { depth_m } else { f32::INFINITY })

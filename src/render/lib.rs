@@ -16,8 +16,10 @@ use crate::picture::Rendering;
 use sandtable_draw::list::DrawList;
 use sandtable_view::camera::Camera;
 
-/// Draws a list elsewhere than on the processor: the same picture up to rounding.
-pub type OtherRenderer = fn(&DrawList, &Camera) -> Result<Rendering, Box<dyn Error + Send + Sync>>;
+/// Draws a list elsewhere than on the processor: the same picture up to rounding. It is told what to call with the name of each
+/// step as it begins.
+pub type OtherRenderer =
+    fn(&DrawList, &Camera, &dyn Fn(&'static str)) -> Result<Rendering, Box<dyn Error + Send + Sync>>;
 
 /// The renderer to draw with.
 #[derive(Clone, Copy, Debug, Default)]
@@ -40,13 +42,19 @@ pub enum RenderError {
     Gpu(Box<dyn Error + Send + Sync>),
 }
 
-/// The picture of `list` as `camera` sees it, by the chosen renderer at its default quality.
+/// The picture of `list` as `camera` sees it, by the chosen renderer at its default quality. `progress` is called with the name
+/// of each step as it begins.
 ///
 /// # Errors
 /// See [`RenderError`].
-pub fn render(list: &DrawList, camera: &Camera, backend: RenderBackend) -> Result<Rendering, RenderError> {
+pub fn render(
+    list: &DrawList,
+    camera: &Camera,
+    backend: RenderBackend,
+    progress: &dyn Fn(&'static str),
+) -> Result<Rendering, RenderError> {
     match backend {
         RenderBackend::Cpu => Ok(cpu::render(list, camera, &RenderQuality::default())?),
-        RenderBackend::Gpu(render) => render(list, camera).map_err(RenderError::Gpu),
+        RenderBackend::Gpu(render) => render(list, camera, progress).map_err(RenderError::Gpu),
     }
 }

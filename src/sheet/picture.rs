@@ -114,7 +114,7 @@ pub fn draw_view(
     };
     drop(nested);
     progress("drawing");
-    let mut picture = render(&drawn.list, &camera, backend)?;
+    let mut picture = render(&drawn.list, &camera, backend, progress)?;
     apply_look(scene, &drawn.list, &camera, &mut picture);
     Ok(DrawnView { camera, picture, drawn, frame })
 }

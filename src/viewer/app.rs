@@ -50,6 +50,8 @@ pub enum WindowRequest {
     FullScreen,
     /// Takes this size, in pixels.
     Resize(u32, u32),
+    /// Writes the next frame into this file.
+    Picture(PathBuf),
     /// Closes.
     Close,
 }
@@ -128,7 +130,9 @@ pub struct ViewerApp {
 impl ViewerApp {
     /// The state of a window that begins with the file of `options`.
     pub fn new(options: &ViewerOptions, context: &Context) -> Self {
-        Self::with_recent(options, context, RecentFiles::of_user())
+        let is_offscreen = options.offscreen.is_some();
+        let recent = if is_offscreen { RecentFiles::default() } else { RecentFiles::of_user() };
+        Self::with_recent(options, context, recent)
     }
 
     /// The same with a list of files opened last.
@@ -145,7 +149,7 @@ impl ViewerApp {
             open_panel: OpenPanel::at(folder),
             shows_open: options.file.is_none(),
             shows_help: false,
-            shows_panels: true,
+            shows_panels: options.offscreen.is_none(),
             loading: None,
             opened: None,
             failure: None,
@@ -307,14 +311,22 @@ impl ViewerApp {
             let commands = ui.input_mut(pressed);
             commands.into_iter().for_each(|command| self.run(command));
         }
-        self.show_menu(ui);
-        self.show_status(ui);
-        self.show_sides(ui);
+        // Without a window, a frame is the scene alone until its panels are wanted.
+        let has_panels = self.shows_panels || self.options.offscreen.is_none();
+        if has_panels {
+            self.show_menu(ui);
+            self.show_status(ui);
+            self.show_sides(ui);
+        }
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
             self.show_middle(ui, texture);
-            self.notices.show(ui);
+            if has_panels {
+                self.notices.show(ui);
+            }
         });
-        self.show_windows(ui.ctx());
+        if has_panels {
+            self.show_windows(ui.ctx());
+        }
         self.follow_title();
     }
 

@@ -16,12 +16,14 @@ pub struct FrameTime {
     pub draw_ms: f32,
     /// Laying out the panels and the labels.
     pub panels_ms: f32,
+    /// Waiting for the adapter, where frames are drawn without a window.
+    pub wait_ms: f32,
 }
 
 impl FrameTime {
     /// All of it.
     pub fn total_ms(&self) -> f32 {
-        self.update_ms + self.upload_ms + self.draw_ms + self.panels_ms
+        self.update_ms + self.upload_ms + self.draw_ms + self.panels_ms + self.wait_ms
     }
 }
 

@@ -1,44 +1,27 @@
-//! The window's surface: the scene in a picture of its own, and the panels over it.
-//!
-//! The scene is drawn into a texture that `egui` shows like any other, so that it is as large as the room between the
-//! panels, and the pointer's place on it is a pixel of its camera.
+//! The window's surface, and the presenting of frames on it.
 
 use std::sync::Arc;
 
-use egui::{ClippedPrimitive, TextureId, TexturesDelta};
-use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
 use winit::event_loop::ActiveEventLoop;
 use winit::window::Window;
 
 use crate::error::ViewerError;
+use crate::frame_graphics::{FrameGraphics, PaintedPanels, PanelTarget};
+use sandtable_gpu::adapter::Gpu;
 
 /// How often in turn a surface may fail to fit its window before that is an error: more than a second of frames.
 const MOST_FAILED_CONFIGURATIONS: u32 = 1000;
 
-/// The device, the surface and what paints the panels.
+/// The surface, and what draws the frames on it.
 pub struct WindowGraphics {
     window: Arc<Window>,
     instance: wgpu::Instance,
-    adapter: wgpu::Adapter,
-    /// The device, for the renderer of scenes.
-    pub device: wgpu::Device,
-    /// Its queue.
-    pub queue: wgpu::Queue,
+    /// What draws frames.
+    pub frames: FrameGraphics,
     surface: wgpu::Surface<'static>,
     configuration: wgpu::SurfaceConfiguration,
     /// How often in turn the surface could not be made as it is to be.
     failed_configurations: u32,
-    painter: Renderer,
-}
-
-/// The input for painting the panels of one frame.
-pub struct PaintedPanels<'a> {
-    /// Their triangles.
-    pub primitives: &'a [ClippedPrimitive],
-    /// Textures that are new or not needed any more.
-    pub textures: TexturesDelta,
-    /// Pixels per point.
-    pub pixels_per_point: f32,
 }
 
 /// The outcome of presenting a frame.
@@ -87,37 +70,8 @@ impl WindowGraphics {
         let format = formats.iter().copied().find(|format| !format.is_srgb()).unwrap_or(configuration.format);
         let configuration = wgpu::SurfaceConfiguration { format, ..configuration };
         surface.configure(&device, &configuration);
-        // The scene's picture among the panels is shown as it is.
-        let options = RendererOptions { dithering: false, ..RendererOptions::default() };
-        let painter = Renderer::new(&device, format, options);
-        let failed_configurations = 0;
-        Ok(Self {
-            window,
-            instance,
-            adapter,
-            device,
-            queue,
-            surface,
-            configuration,
-            failed_configurations,
-            painter,
-        })
-    }
-
-    /// The adapter's name and interface.
-    pub fn name(&self) -> String {
-        let info = self.adapter.get_info();
-        format!("{} ({})", info.name, info.backend)
-    }
-
-    /// The adapter.
-    pub fn adapter(&self) -> &wgpu::Adapter {
-        &self.adapter
-    }
-
-    /// The longest side of a texture, in pixels.
-    pub fn longest_side(&self) -> u32 {
-        self.device.limits().max_texture_dimension_2d
+        let frames = FrameGraphics::new(Gpu::from_parts(&adapter, device, queue), format);
+        Ok(Self { window, instance, frames, surface, configuration, failed_configurations: 0 })
     }
 
     /// Follows the window's size; of a minimized window, whose size is 0, it keeps the last.
@@ -125,7 +79,7 @@ impl WindowGraphics {
         if width == 0 || height == 0 {
             return;
         }
-        let longest = self.longest_side();
+        let longest = self.frames.longest_side();
         self.configuration.width = width.min(longest);
         self.configuration.height = height.min(longest);
         // What fails now is done by the next frame.
@@ -141,8 +95,9 @@ impl WindowGraphics {
     /// Makes the surface as it is to be. That fails while another thread sends to the device; the surface then stays as it was,
     /// and a frame that does not fit it does this again.
     fn configure(&mut self) -> Result<(), ViewerError> {
-        let scope = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
-        self.surface.configure(&self.device, &self.configuration);
+        let device = self.frames.gpu().device();
+        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+        self.surface.configure(device, &self.configuration);
         let Some(error) = pollster::block_on(scope.pop()) else {
             self.failed_configurations = 0;
             return Ok(());
@@ -157,18 +112,6 @@ impl WindowGraphics {
         }
     }
 
-    /// Shows a texture of the device as `known`, or as a new texture of the panels.
-    pub fn show_texture(&mut self, known: Option<TextureId>, view: &wgpu::TextureView) -> TextureId {
-        let filter = wgpu::FilterMode::Nearest;
-        match known {
-            Some(id) => {
-                self.painter.update_egui_texture_from_wgpu_texture(&self.device, view, filter, id);
-                id
-            }
-            None => self.painter.register_native_texture(&self.device, view, filter),
-        }
-    }
-
     /// Paints the panels on the surface, after the commands of `before`, and presents it.
     ///
     /// # Errors
@@ -178,22 +121,15 @@ impl WindowGraphics {
         mut before: wgpu::CommandEncoder,
         mut panels: PaintedPanels<'_>,
     ) -> Result<FramePresented, ViewerError> {
-        for (id, deltas) in &panels.textures.set {
-            for delta in deltas {
-                self.painter.update_texture(&self.device, &self.queue, *id, delta);
-            }
-        }
+        self.frames.take_textures(&panels);
         let presented = self.paint(&mut before, &panels);
-        for id in &panels.textures.free {
-            self.painter.free_texture(id);
-        }
-        // The deltas insist on being taken.
-        panels.textures.clear();
+        self.frames.free_textures(&mut panels);
         let (presented, frame, commands) = presented?;
-        self.queue.submit(commands.into_iter().chain([before.finish()]));
+        let queue = self.frames.gpu().queue();
+        queue.submit(commands.into_iter().chain([before.finish()]));
         if let Some(frame) = frame {
             self.window.pre_present_notify();
-            self.queue.present(frame);
+            queue.present(frame);
         }
         Ok(presented)
     }
@@ -228,27 +164,9 @@ impl WindowGraphics {
                 return Ok((FramePresented::Again, None, Vec::new()));
             }
         };
-        let screen = ScreenDescriptor {
-            size_in_pixels: [self.configuration.width, self.configuration.height],
-            pixels_per_point: panels.pixels_per_point,
-        };
-        let commands =
-            self.painter.update_buffers(&self.device, &self.queue, encoder, panels.primitives, &screen);
+        let size = (self.configuration.width, self.configuration.height);
         let view = frame.texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("panels"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                    store: wgpu::StoreOp::Store,
-                },
-            })],
-            ..wgpu::RenderPassDescriptor::default()
-        });
-        self.painter.render(&mut pass.forget_lifetime(), panels.primitives, &screen);
+        let commands = self.frames.paint(encoder, panels, PanelTarget { view: &view, size });
         Ok((presented, Some(frame), commands))
     }
 }

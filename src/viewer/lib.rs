@@ -12,7 +12,7 @@
 //! ```
 //!
 //! `app` is all of the window but its surface: `show` draws panels and takes input, `advance` moves the camera and asks the
-//! walk what changed. `window` lends it a surface and the clock.
+//! walk what changed. `window` lends it a surface and the clock; `offscreen` lends it a texture, and the clock of a script.
 
 mod active_tool;
 mod analysis_listing;
@@ -29,6 +29,7 @@ mod drawing_job;
 pub mod error;
 mod finer_ground;
 mod following;
+mod frame_graphics;
 mod frame_times;
 mod ghost;
 mod graphics;
@@ -43,6 +44,7 @@ mod measuring;
 mod moving;
 mod name_lines;
 mod notices;
+mod offscreen;
 mod opened;
 mod paging;
 #[cfg(test)]
@@ -77,11 +79,14 @@ mod worker;
 use crate::error::ViewerError;
 use sandtable_editing::viewing::ViewerOptions;
 
-/// Opens a window on what `options` name; returns when it is closed.
+/// Opens a window on what `options` name, or draws its frames without one; returns when it is closed.
 ///
 /// # Errors
-/// [`ViewerError`]: no window or no graphics adapter can be had here. A file that cannot be opened is not an error: the
-/// window says so.
+/// [`ViewerError`]: no window or no graphics adapter can be had here. A file that cannot be opened is not an error of a window,
+/// which says so.
 pub fn run(options: &ViewerOptions) -> Result<(), ViewerError> {
-    window::run(options)
+    match (options.offscreen, options.script.as_deref()) {
+        (Some(size), Some(script)) => offscreen::run(options, size, script),
+        _ => window::run(options),
+    }
 }

@@ -2,18 +2,20 @@
 //!
 //! It is as large as the room between the panels, so that the pointer's place on it is a pixel of its camera.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use egui::TextureId;
 
+use crate::frame_graphics::FrameGraphics;
 use crate::frame_times::{FrameLoad, FrameTime};
-use crate::graphics::WindowGraphics;
 use crate::opened::SceneFrame;
 use crate::scene_load::SceneLoad;
 use sandtable_gpu::adapter::Gpu;
 use sandtable_gpu::error::GpuError;
 use sandtable_gpu::live::prepared::LiveLoader;
 use sandtable_gpu::live::{LiveOptions, LiveRenderer};
+use sandtable_gpu::pass_timer::PassTimer;
 
 /// What the panels blend: colors as they are shown.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -34,17 +36,23 @@ struct ScenePicture {
 }
 
 impl SceneGraphics {
-    /// A renderer on the window's device.
+    /// A renderer on a device, whose failures from before are forgotten; `timer` times its passes.
     ///
     /// # Errors
     /// See [`GpuError`].
-    pub fn new(graphics: &WindowGraphics) -> Result<Self, GpuError> {
-        let (device, queue) = (graphics.device.clone(), graphics.queue.clone());
-        let gpu = Gpu::from_parts(graphics.adapter(), device, queue);
-        let flags = graphics.adapter().get_downlevel_capabilities().flags;
+    pub fn new(gpu: &Gpu, timer: Option<Arc<PassTimer>>) -> Result<Self, GpuError> {
+        let gpu = Gpu::from_parts(gpu.adapter(), gpu.device().clone(), gpu.queue().clone());
+        let flags = gpu.adapter().get_downlevel_capabilities().flags;
         let has_views = flags.contains(wgpu::DownlevelFlags::VIEW_FORMATS);
         let drawn = if has_views { FORMAT.add_srgb_suffix() } else { FORMAT };
-        Ok(Self { renderer: LiveRenderer::new(&gpu, drawn)?, drawn, picture: None, texture: None })
+        let mut renderer = LiveRenderer::new(&gpu, drawn)?;
+        renderer.set_timer(timer);
+        Ok(Self { renderer, drawn, picture: None, texture: None })
+    }
+
+    /// How many pipelines the renderer has made.
+    pub fn pipelines(&self) -> usize {
+        self.renderer.pipelines()
     }
 
     /// The loader that prepares scenes for this renderer on other threads.
@@ -58,7 +66,7 @@ impl SceneGraphics {
     /// See [`GpuError`].
     pub fn draw(
         &mut self,
-        graphics: &mut WindowGraphics,
+        graphics: &mut FrameGraphics,
         encoder: &mut wgpu::CommandEncoder,
         frame: &mut SceneFrame,
         options: &LiveOptions,
@@ -87,7 +95,7 @@ impl SceneGraphics {
             update_ms: frame.update_ms,
             upload_ms,
             draw_ms: milliseconds(drawing),
-            panels_ms: 0.0,
+            ..FrameTime::default()
         };
         let load = FrameLoad {
             ground_triangles: frame.statistics.triangles,
@@ -100,11 +108,11 @@ impl SceneGraphics {
         Ok((time, load))
     }
 
-    fn target(&mut self, graphics: &mut WindowGraphics, size: (u32, u32)) -> wgpu::TextureView {
+    fn target(&mut self, graphics: &mut FrameGraphics, size: (u32, u32)) -> wgpu::TextureView {
         if let Some(picture) = self.picture.as_ref().filter(|picture| picture.size == size) {
             return picture.view.clone();
         }
-        let texture = graphics.device.create_texture(&wgpu::TextureDescriptor {
+        let texture = graphics.gpu().device().create_texture(&wgpu::TextureDescriptor {
             label: Some("picture of the scene"),
             size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
             mip_level_count: 1,

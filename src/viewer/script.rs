@@ -18,8 +18,11 @@
 //! | `analyze KIND KEY=VALUE …` | makes an analysis and shows it; a value may have spaces |
 //! | `keep`, `discard` | writes that analysis into the scene, or takes it away |
 //! | `undo`, `redo`, `save`, `snapshot` | as the keys do |
+//! | `snapshot FILE.png` | writes a frame as it is shown; without a window alone |
 //! | `quit` | closes the window, without edits that are not saved: a moved sun is one |
 //! | `resize WxH` | gives the window a size in pixels |
+
+use std::path::{Path, PathBuf};
 
 use glam::{DVec2, DVec3};
 
@@ -83,6 +86,8 @@ pub enum ScriptCommand {
     DiscardAnalysis,
     /// Gives the window a size.
     Resize(u32, u32),
+    /// Writes a frame into a file.
+    Picture(PathBuf),
 }
 
 /// A line of a script that says nothing.
@@ -95,7 +100,7 @@ pub struct ScriptError {
 }
 
 const EXPECTED: &str = "wait N, key NAME, fly X,Y,Z X,Y,Z N, camera NAME, pick X,Y, sun AZIMUTH,ALTITUDE, heights FACTOR, \
-                        hide KIND, show KIND, viewshed X,Y, edit crater X,Y RADIUS, analyze KIND KEY=VALUE, keep, discard, undo, redo, save, snapshot, resize WxH or quit";
+                        hide KIND, show KIND, viewshed X,Y, edit crater X,Y RADIUS, analyze KIND KEY=VALUE, keep, discard, undo, redo, save, snapshot, snapshot FILE.png, resize WxH or quit";
 
 /// The commands of a script, each with its line as it is written.
 ///
@@ -145,6 +150,10 @@ fn command(words: &[&str]) -> Option<ScriptCommand> {
         ["redo"] => ScriptCommand::Run(ViewCommand::Redo),
         ["save"] => ScriptCommand::Run(ViewCommand::Save),
         ["snapshot"] => ScriptCommand::Run(ViewCommand::Snapshot),
+        ["snapshot", _, ..] => {
+            let path = PathBuf::from(words[1..].join(" "));
+            ScriptCommand::Picture(Some(path).filter(|path| is_png(path))?)
+        }
         ["quit"] => ScriptCommand::Run(ViewCommand::Quit),
         _ => return None,
     })
@@ -164,6 +173,10 @@ fn arguments(words: &[&str]) -> Option<Vec<(String, String)>> {
         }
     }
     Some(arguments)
+}
+
+fn is_png(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
 }
 
 fn frames(text: &str) -> Option<u32> {
@@ -203,14 +216,15 @@ mod tests {
     fn every_command_is_read() {
         let text = "# a comment\n\nwait 3\nkey Ctrl+Shift+Z\nfly 1,2,3 4,5,6 60\ncamera from the south\npick 10,20\n\
                     edit crater 7,8 30\nresize 640x480\nundo\nsun 120,30\nheights 2\nhide tactical graphics\nshow roads\nquit\n\
-                    analyze time from=16S GF 49000 17500 vehicle=foot\nkeep\ndiscard\n";
+                    analyze time from=16S GF 49000 17500 vehicle=foot\nkeep\ndiscard\nsnapshot a frame.png\n";
         let commands: Vec<ScriptCommand> =
             parse_script(text).expect("sound").into_iter().map(|(_, command)| command).collect();
-        assert_eq!(commands.len(), 16);
+        assert_eq!(commands.len(), 17);
         let argument = |name: &str, text: &str| (name.to_owned(), text.to_owned());
         let arguments = vec![argument("from", "16S GF 49000 17500"), argument("vehicle", "foot")];
         assert_eq!(commands[13], ScriptCommand::Analyze { kind: "time".to_owned(), arguments });
-        assert_eq!(commands[14..], [ScriptCommand::KeepAnalysis, ScriptCommand::DiscardAnalysis]);
+        assert_eq!(commands[14..16], [ScriptCommand::KeepAnalysis, ScriptCommand::DiscardAnalysis]);
+        assert_eq!(commands[16], ScriptCommand::Picture("a frame.png".into()));
         assert_eq!(commands[1], ScriptCommand::Run(ViewCommand::Redo));
         let (eye, target) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, 5.0, 6.0));
         assert_eq!(commands[2], ScriptCommand::Fly { eye, target, frames: 60 });
@@ -238,6 +252,7 @@ mod tests {
             "analyze",
             "analyze slope degrees",
             "keep all",
+            "snapshot frame.jpg",
         ] {
             let error = parse_script(&format!("wait 1\n{line}\n")).expect_err(line).to_string();
             assert!(error.starts_with(&format!("line 2: '{line}' is not a command")), "{error}");

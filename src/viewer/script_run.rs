@@ -1,16 +1,21 @@
 //! A script at work: its commands frame by frame, and the report of what they did.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
+use std::io::Write;
+use std::path::Path;
 use std::time::Instant;
 
 use serde_json::{Value, json};
 
 use crate::app::{ViewerApp, ViewerStage, WindowRequest};
 use crate::commands::ViewCommand;
+use crate::error::ViewerError;
 use crate::frame_times::{FrameLoad, FrameTime, percentile};
-use crate::script::ScriptCommand;
+use crate::script::{ScriptCommand, parse_script};
 use sandtable_draw::list::FeatureId;
 use sandtable_editing::edit::{EarthworkDraft, SceneEdit};
+use sandtable_files::disk;
+use sandtable_gpu::pass_timer::PassTime;
 use sandtable_view::navigation::pose::ViewPose;
 
 /// The time that each frame of a script counts, in seconds: the same on every machine.
@@ -28,6 +33,13 @@ pub struct ScriptRun {
     waits: u32,
     frames: u32,
     times: Vec<FrameTime>,
+    /// What the passes of each frame took on the adapter, by their names, milliseconds.
+    passes: BTreeMap<&'static str, Vec<f32>>,
+    /// What all passes of a frame took, milliseconds.
+    device: Vec<f32>,
+    /// Calls of the adapter in each frame.
+    calls: Vec<f32>,
+    pipelines: usize,
     triangles: usize,
     bytes: u64,
     done: Vec<Value>,
@@ -51,8 +63,23 @@ struct LongestFrame {
 }
 
 impl ScriptRun {
-    /// A script that begins when its file is open.
-    pub fn new(commands: Vec<(String, ScriptCommand)>, most_frames: Option<u32>, started: Instant) -> Self {
+    /// The script of a file, which begins when the scene is open.
+    ///
+    /// # Errors
+    /// [`ViewerError::Script`] and [`ViewerError::Read`].
+    pub fn read(path: &Path, most_frames: Option<u32>, started: Instant) -> Result<Self, ViewerError> {
+        let commands = parse_script(&disk::read_text(path)?)
+            .map_err(|error| ViewerError::Script { path: path.to_owned(), error })?;
+        Ok(Self::new(commands, most_frames, started))
+    }
+
+    /// Prints the report of what the script did; who asked for it and does not read it gets none.
+    pub fn print_report(&self, adapter: &str) {
+        let _ = writeln!(std::io::stdout(), "{:#}", self.report(adapter));
+    }
+
+    /// Commands that begin when the scene is open.
+    fn new(commands: Vec<(String, ScriptCommand)>, most_frames: Option<u32>, started: Instant) -> Self {
         Self {
             commands: commands.into(),
             most_frames,
@@ -62,6 +89,10 @@ impl ScriptRun {
             waits: 0,
             frames: 0,
             times: Vec::new(),
+            passes: BTreeMap::new(),
+            device: Vec::new(),
+            calls: Vec::new(),
+            pipelines: 0,
             triangles: 0,
             bytes: 0,
             done: Vec::new(),
@@ -96,8 +127,25 @@ impl ScriptRun {
         self.first_picture_s.get_or_insert(self.started.elapsed().as_secs_f64());
         self.frames += 1;
         self.times.push(time);
+        self.calls.push(load.calls as f32);
         self.triangles = load.ground_triangles;
         self.bytes += load.bytes;
+    }
+
+    /// Notes the times of the passes of a frame; of one without a scene, which has its panels alone, none.
+    pub fn note_passes(&mut self, passes: &[PassTime]) {
+        if passes.len() < 2 {
+            return;
+        }
+        for pass in passes {
+            self.passes.entry(pass.label).or_default().push(pass.ms);
+        }
+        self.device.push(passes.iter().map(|pass| pass.ms).sum());
+    }
+
+    /// Notes how many pipelines there are.
+    pub fn note_pipelines(&mut self, count: usize) {
+        self.pipelines = count;
     }
 
     /// Carries out what is due before the next frame.
@@ -214,6 +262,10 @@ impl ScriptRun {
                 self.done.push(json!({ "command": line, "made": is_made, "moved": moved }));
                 return;
             }
+            ScriptCommand::Picture(path) => {
+                app.requests.push(WindowRequest::Picture(path));
+                self.waits = 1;
+            }
             ScriptCommand::Resize(width, height) => {
                 app.requests.push(WindowRequest::Resize(width, height));
                 self.waits = 10;
@@ -224,15 +276,9 @@ impl ScriptRun {
 
     /// The report of what the script did and of the times of its frames.
     pub fn report(&self, adapter: &str) -> Value {
-        let part = |part: fn(&FrameTime) -> f32| {
-            let values: Vec<f32> = self.times.iter().map(part).collect();
-            let longest = values.iter().copied().fold(0.0, f32::max);
-            json!({
-                "median": percentile(values.clone(), 0.5),
-                "p99": percentile(values, 0.99),
-                "longest": longest,
-            })
-        };
+        let part = |part: fn(&FrameTime) -> f32| spread(self.times.iter().map(part).collect());
+        let passes = self.passes.iter().map(|(label, times)| ((*label).to_owned(), spread(times.clone())));
+        let passes: serde_json::Map<String, Value> = passes.collect();
         let dropped = self.times.iter().filter(|time| time.total_ms() > DROPPED_MS).count();
         json!({
             "adapter": adapter,
@@ -249,9 +295,23 @@ impl ScriptRun {
                 "upload": part(|time| time.upload_ms),
                 "draw": part(|time| time.draw_ms),
                 "panels": part(|time| time.panels_ms),
+                "wait": part(|time| time.wait_ms),
+                "device": spread(self.device.clone()),
             },
+            "passes": passes,
+            "calls": percentile(self.calls.clone(), 0.5),
+            "pipelines": self.pipelines,
             "ground_triangles": self.triangles,
             "bytes_sent": self.bytes,
         })
     }
+}
+
+/// The spread of times of frames in milliseconds; null of none.
+fn spread(times: Vec<f32>) -> Value {
+    if times.is_empty() {
+        return Value::Null;
+    }
+    let longest = times.iter().copied().fold(0.0, f32::max);
+    json!({ "median": percentile(times.clone(), 0.5), "p99": percentile(times, 0.99), "longest": longest })
 }

@@ -3,8 +3,6 @@
 //! It sleeps until an event, or until the panels ask for a frame; what happens on threads wakes it through `egui`'s request
 //! for a repaint.
 
-use std::io::Write;
-use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -18,16 +16,12 @@ use winit::window::{Fullscreen, Window, WindowId};
 
 use crate::app::{ViewerApp, WindowRequest};
 use crate::error::ViewerError;
-use crate::frame_times::{FrameLoad, FrameTime};
-use crate::graphics::{FramePresented, PaintedPanels, WindowGraphics};
-use crate::opened::SceneFrame;
-use crate::scene_graphics::{SceneGraphics, milliseconds};
-use crate::script::parse_script;
+use crate::frame_graphics::PaintedPanels;
+use crate::frame_times::FrameTime;
+use crate::graphics::{FramePresented, WindowGraphics};
+use crate::scene_graphics::milliseconds;
 use crate::script_run::{FRAME_S, ScriptRun};
-use sandtable_base::message::chain::error_text;
 use sandtable_editing::viewing::ViewerOptions;
-use sandtable_files::disk;
-use sandtable_gpu::live::LiveOptions;
 
 /// The window's first size, in points; what fits on small screens.
 const FIRST_SIZE: LogicalSize<f64> = LogicalSize::new(1280.0, 800.0);
@@ -57,7 +51,8 @@ impl From<egui_winit::accesskit_winit::Event> for WindowNews {
 /// See [`ViewerError`].
 pub fn run(options: &ViewerOptions) -> Result<(), ViewerError> {
     let started = Instant::now();
-    let script = options.script.as_deref().map(|path| read_script(path, options, started)).transpose()?;
+    let script =
+        options.script.as_deref().map(|path| ScriptRun::read(path, options.frames, started)).transpose()?;
     let no_display = |error: EventLoopError| ViewerError::NoDisplay(reason(&error));
     let event_loop = EventLoop::<WindowNews>::with_user_event().build().map_err(no_display)?;
     let context = Context::default();
@@ -80,17 +75,10 @@ pub fn run(options: &ViewerOptions) -> Result<(), ViewerError> {
         window.app.keep_step(FRAME_S);
     }
     event_loop.run_app(&mut window).map_err(no_display)?;
-    if let (Some(script), true) = (&window.script, options.reports) {
-        // Who asked for the report and does not read it gets none.
-        let _ = writeln!(std::io::stdout(), "{:#}", script.report(&window.app.adapter));
+    if let Some(script) = window.script.as_ref().filter(|_| options.reports) {
+        script.print_report(&window.app.adapter);
     }
     window.failure.map_or(Ok(()), Err)
-}
-
-fn read_script(path: &Path, options: &ViewerOptions, started: Instant) -> Result<ScriptRun, ViewerError> {
-    let commands = parse_script(&disk::read_text(path)?)
-        .map_err(|error| ViewerError::Script { path: path.to_owned(), error })?;
-    Ok(ScriptRun::new(commands, options.frames, started))
 }
 
 /// What the system says, without the place in the source of `winit` that its errors begin with.
@@ -123,8 +111,6 @@ struct ViewerWindow {
 struct ShownWindow {
     window: Arc<Window>,
     graphics: WindowGraphics,
-    /// `None` until there is a scene, and after its renderer failed.
-    scene: Option<SceneGraphics>,
     input: egui_winit::State,
 }
 
@@ -153,52 +139,8 @@ impl ShownWindow {
         input.init_accesskit(event_loop, &window, proxy.clone());
         window.set_visible(true);
         let graphics = WindowGraphics::open(event_loop, Arc::clone(&window))?;
-        input.set_max_texture_side(graphics.longest_side() as usize);
-        Ok(Self { window, graphics, scene: None, input })
-    }
-}
-
-impl ShownWindow {
-    /// Makes the renderer of scenes. What fails is said in the window, which stays.
-    fn open_scene(&mut self, app: &mut ViewerApp) {
-        match SceneGraphics::new(&self.graphics) {
-            Ok(scene) => {
-                app.slot.fill(scene.loader());
-                self.scene = Some(scene);
-            }
-            Err(error) => app.warn(error_text(&error)),
-        }
-    }
-
-    /// Records the scene's picture. What fails is said in the window, which stays.
-    fn draw_scene(
-        &mut self,
-        encoder: &mut wgpu::CommandEncoder,
-        frame: &mut SceneFrame,
-        app: &mut ViewerApp,
-    ) -> Option<(FrameTime, FrameLoad)> {
-        if self.scene.is_none() {
-            self.open_scene(app);
-        }
-        let mut scene = self.scene.take()?;
-        let options = LiveOptions { wireframe: app.shows_edges() };
-        let is_loaded = frame.load.is_some();
-        let drawn = scene.draw(&mut self.graphics, encoder, frame, &options);
-        match drawn {
-            Ok(drawn) => {
-                if is_loaded {
-                    app.slot.fill(scene.loader());
-                }
-                self.scene = Some(scene);
-                Some(drawn)
-            }
-            Err(error) => {
-                // A renderer that failed is made anew, and takes over the scene again.
-                app.warn(error_text(&error));
-                app.reload_scene();
-                None
-            }
-        }
+        input.set_max_texture_side(graphics.frames.longest_side() as usize);
+        Ok(Self { window, graphics, input })
     }
 }
 
@@ -209,8 +151,8 @@ impl ApplicationHandler<WindowNews> for ViewerWindow {
         }
         match ShownWindow::open(event_loop, &self.context, &self.proxy) {
             Ok(mut shown) => {
-                self.app.adapter = shown.graphics.name();
-                shown.open_scene(&mut self.app);
+                self.app.adapter = shown.graphics.frames.name();
+                shown.graphics.frames.open_scene(&mut self.app);
                 shown.window.request_redraw();
                 self.shown = Some(shown);
             }
@@ -299,16 +241,18 @@ impl ViewerWindow {
         }
         let laying_out = Instant::now();
         let input = shown.input.take_egui_input(&shown.window);
-        let texture = shown.scene.as_ref().and_then(|scene| scene.texture);
+        let texture = shown.graphics.frames.texture();
         let output = self.context.run_ui(input, |ui| self.app.show(ui, texture));
         shown.input.handle_platform_output(&shown.window, output.platform_output);
         let primitives = self.context.tessellate(output.shapes, output.pixels_per_point);
         let panels_ms = milliseconds(laying_out);
         let label = wgpu::CommandEncoderDescriptor { label: Some("frame") };
-        let mut encoder = shown.graphics.device.create_command_encoder(&label);
+        let mut encoder = shown.graphics.frames.gpu().device().create_command_encoder(&label);
         let requests = self.app.take_requests();
         let mut frame = self.app.scene_frame();
-        let drawn = frame.as_mut().and_then(|frame| shown.draw_scene(&mut encoder, frame, &mut self.app));
+        let drawn = frame
+            .as_mut()
+            .and_then(|frame| shown.graphics.frames.draw_scene(&mut encoder, frame, &mut self.app));
         let panels = PaintedPanels {
             primitives: &primitives,
             textures: output.textures_delta,
@@ -328,7 +272,7 @@ impl ViewerWindow {
         if let Some(script) = &mut self.script {
             script.note_window(own_ms);
         }
-        if shown.scene.as_ref().and_then(|scene| scene.texture) != texture {
+        if shown.graphics.frames.texture() != texture {
             self.context.request_repaint();
         }
         for request in requests {
@@ -341,6 +285,13 @@ impl ViewerWindow {
                 WindowRequest::Resize(width, height) => {
                     // What the system grants arrives as an event.
                     let _ = shown.window.request_inner_size(PhysicalSize::new(width, height));
+                }
+                WindowRequest::Picture(path) => {
+                    let name = path.display();
+                    let text = format!(
+                        "{name}: a window does not write its frames; add --offscreen, or draw a `snapshot`"
+                    );
+                    self.app.warn(text);
                 }
                 WindowRequest::Close => event_loop.exit(),
             }

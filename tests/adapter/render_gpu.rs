@@ -15,6 +15,7 @@ use sandtable_draw::list::{DepthLayer, DrawList, FeatureId};
 use sandtable_draw::pixels::Pixels;
 use sandtable_gpu::adapter::Gpu;
 use sandtable_gpu::error::GpuError;
+use sandtable_gpu::picture_renderer::PictureRenderer;
 use sandtable_gpu::{render, render_on};
 use sandtable_render::picture::Rendering;
 use sandtable_view::camera::Camera;
@@ -317,11 +318,28 @@ fn hostile_numbers_leave_the_rest_of_the_picture_alone() {
 }
 
 #[test]
+fn a_renderer_that_stays_draws_each_picture_as_a_new_one_does() {
+    let (mut other, small) = (scene_with_contours(), camera(160, 120));
+    other.lighting.sun *= 0.5;
+    let lists = [scene(), other];
+    for gpu in gpus() {
+        let mut renderer = PictureRenderer::new(gpu).unwrap_or_else(|error| panic!("{error}"));
+        for (list, camera) in [(0, small), (0, camera(96, 200)), (1, small), (1, small), (0, small)] {
+            let kept = renderer.render(&lists[list], &camera, &|_| ());
+            let kept = kept.unwrap_or_else(|error| panic!("{error}"));
+            let fresh = drawn(gpu, &lists[list], &camera);
+            assert!(kept.pixels == fresh.pixels && kept.features == fresh.features);
+            assert!(kept.depth_m == fresh.depth_m);
+        }
+    }
+}
+
+#[test]
 fn without_an_adapter_the_error_names_the_way_out() {
     let error = Gpu::open(&[]).expect_err("nothing was tried");
     let text = error.to_string();
     assert!(text.contains("no GPU adapter") && text.contains("--backend cpu"), "{text}");
-    match render(&scene(), &camera(64, 48)) {
+    match render(&scene(), &camera(64, 48), &|_| ()) {
         Ok(picture) => assert_eq!(picture.depth_m.len(), 64 * 48),
         Err(error) => assert!(error.to_string().contains("--backend cpu"), "{error}"),
     }

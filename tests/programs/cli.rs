@@ -9,6 +9,7 @@ mod export_features;
 #[cfg(unix)]
 mod faults;
 mod fly;
+mod frames;
 mod grid;
 mod heights;
 mod hostile_data;

@@ -2,6 +2,7 @@
 
 use crate::adapter::Gpu;
 use crate::memory::bind;
+use crate::pass_timer::PassTimer;
 
 pub const ENCODE_SHADER: &str =
     concat!(include_str!("../whole_picture.wgsl"), "\n", include_str!("../encode.wgsl"));
@@ -63,17 +64,19 @@ impl Encoder {
         Self { layout, pipeline }
     }
 
-    /// Records the encoding of `linear` to `target`, of the same size.
+    /// Records the encoding of a texture of linear colors to another one of the same size.
     pub fn record(
         &self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
-        linear: &wgpu::TextureView,
-        target: &wgpu::TextureView,
+        (linear, target): (&wgpu::TextureView, &wgpu::TextureView),
+        timer: Option<&PassTimer>,
     ) {
-        let group = bind(gpu, "encode colors", &self.layout, [wgpu::BindingResource::TextureView(linear)]);
+        let label = "encode colors";
+        let group = bind(gpu, label, &self.layout, [wgpu::BindingResource::TextureView(linear)]);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("encode colors"),
+            label: Some(label),
+            timestamp_writes: timer.and_then(|timer| timer.writes(label)),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view: target,
                 depth_slice: None,

@@ -46,6 +46,7 @@ use crate::live::targets::{LiveFormat, LiveTargets};
 use crate::materials::GpuMaterials;
 use crate::memory::Loader;
 use crate::parts::ShaderParts;
+use crate::pass_timer::PassTimer;
 use crate::passes::{PassStage, PassViews, ScenePass};
 use crate::pipeline_key::PipelineKey;
 use crate::pipelines::{GpuPass, PassTarget, Pipelines, shader};
@@ -113,6 +114,7 @@ pub struct LiveRenderer {
     encoder: Option<Encoder>,
     targets: Option<LiveTargets>,
     scene: Option<LoadedScene>,
+    timer: Option<Arc<PassTimer>>,
 }
 
 /// The treatment of the patches that are shown when another list is loaded.
@@ -215,7 +217,17 @@ impl LiveRenderer {
         });
         let (layouts, colors, encoder) = made?;
         format.shade_pixels = colors.shade_pixels(&gpu);
-        Ok(Self { gpu, format, layouts, colors, encoder, targets: None, scene: None })
+        Ok(Self { gpu, format, layouts, colors, encoder, targets: None, scene: None, timer: None })
+    }
+
+    /// Lets `timer`, which is of the same device, time the passes of the frames that follow.
+    pub fn set_timer(&mut self, timer: Option<Arc<PassTimer>>) {
+        self.timer = timer;
+    }
+
+    /// How many pipelines it has made.
+    pub fn pipelines(&self) -> usize {
+        self.colors.count() + usize::from(self.encoder.is_some())
     }
 
     /// The device that it draws with.
@@ -364,6 +376,7 @@ impl LiveRenderer {
                 color: targets.samples.as_ref().unwrap_or(shown),
                 resolved: targets.samples.is_some().then_some(shown),
                 depth: &targets.depth,
+                timer: self.timer.as_deref(),
             };
             let (colors, parts) = (&self.colors, scene.parts);
             let mut drawn;
@@ -378,7 +391,7 @@ impl LiveRenderer {
                     pass.ground_pixels(ground_key(PipelineKey::GROUND_PIXELS, parts), depths);
                     pass.sky();
                     drop(pass);
-                    scene.begin(&views.of(PassStage::Rest, "frame"), encoder, colors)
+                    scene.begin(&views.of(PassStage::Rest, "what stands and lies"), encoder, colors)
                 }
                 None => {
                     let mut pass = scene.begin(&views, encoder, colors);
@@ -391,7 +404,7 @@ impl LiveRenderer {
             drawn.add(scene.draw_rest(&mut pass, camera, (&patches, *options)));
             drop(pass);
             if let (Some(encode), Some(linear)) = (&self.encoder, &targets.linear) {
-                encode.record(gpu, encoder, linear, target);
+                encode.record(gpu, encoder, (linear, target), self.timer.as_deref());
             }
             Ok(drawn)
         });

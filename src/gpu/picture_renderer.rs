@@ -1,0 +1,180 @@
+//! Pictures on a device that stays open: what one picture needs and the next does too is made once.
+//!
+//! The device, the shaders and their pipelines stay, the textures that are drawn to, and the ground map as long as its scene
+//! has it. Materials, items and shadow maps are those of each picture, and are sent anew.
+
+use std::sync::{Arc, Weak};
+
+use crate::adapter::Gpu;
+use crate::error::GpuError;
+use crate::formats::{COLOR, FEATURE};
+use crate::frame::{FrameGroup, FrameTextures};
+use crate::geometry::GpuGeometry;
+use crate::ground::row_bits;
+use crate::layouts::Layouts;
+use crate::materials::{GpuMaterials, TexturePlaces, TextureScope};
+use crate::memory::{Loader, view};
+use crate::parts::ShaderParts;
+use crate::passes::{PassStage, PassViews, ScenePass};
+use crate::pipeline_key::PipelineKey;
+use crate::pipelines::{GpuPass, PassTarget, Pipelines, shader};
+use crate::plan::Plan;
+use crate::readback::Targets;
+use crate::shadow::{ShadowTextures, ShadowView};
+use crate::uniforms::{FrameScene, FrameUniforms};
+use sandtable_draw::ground::GroundMap;
+use sandtable_draw::list::DrawList;
+use sandtable_render::picture::Rendering;
+use sandtable_render::shadow::Shadows;
+use sandtable_view::camera::Camera;
+
+/// Draws pictures on one device.
+#[derive(Debug)]
+pub struct PictureRenderer {
+    gpu: Gpu,
+    layouts: Layouts,
+    colors: Pipelines,
+    features: Pipelines,
+    targets: Option<KeptTargets>,
+    ground: Option<KeptGround>,
+}
+
+/// The textures that the picture before was drawn to.
+#[derive(Debug)]
+struct KeptTargets {
+    textures: Targets,
+    bytes: u64,
+}
+
+/// The textures of the ground map of the picture before.
+#[derive(Debug)]
+struct KeptGround {
+    /// `None` where that had no ground.
+    map: Option<Weak<GroundMap>>,
+    textures: FrameTextures,
+    /// What they took with the shadows of their first picture.
+    bytes: u64,
+}
+
+impl PictureRenderer {
+    /// A renderer on an open device.
+    ///
+    /// # Errors
+    /// See [`GpuError`].
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        gpu.guarded("building its shaders", || {
+            let layouts = Layouts::new(gpu);
+            let shader = shader(gpu);
+            let pipelines = |pass, format, samples| {
+                Pipelines::new(gpu, &layouts, &shader, PassTarget { pass, format, samples })
+            };
+            let colors = pipelines(GpuPass::Color, COLOR, gpu.samples);
+            let features = pipelines(GpuPass::Feature, FEATURE, 1);
+            Ok(Self { gpu: gpu.clone(), layouts, colors, features, targets: None, ground: None })
+        })
+    }
+
+    /// The picture of `list` as `camera` sees it. `progress` is called with the name of each step as it begins.
+    ///
+    /// # Errors
+    /// See [`GpuError`]; after one of a driver the device is to be opened anew.
+    pub fn render(
+        &mut self,
+        list: &DrawList,
+        camera: &Camera,
+        progress: &dyn Fn(&'static str),
+    ) -> Result<Rendering, GpuError> {
+        list.check()?;
+        let gpu = self.gpu.clone();
+        let places = TexturePlaces::new(list, TextureScope::Items, &gpu.limits);
+        let plan = Plan::new(list, &places, |_| true);
+        progress("casting shadows");
+        let shadows = Shadows::new(list, camera)?;
+        let has_shadows = [&shadows.sun, &shadows.sky].map(Option::is_some);
+        let parts = ShaderParts::of_picture(list.ground.as_deref(), &list.lighting, has_shadows);
+        progress("making pipelines");
+        gpu.guarded("building its shaders", || {
+            let [colors, features] = plan.keys(parts);
+            self.colors.make(&gpu, colors.into_iter().chain([PipelineKey::SKY]));
+            self.features.make(&gpu, features);
+            Ok(())
+        })?;
+        progress("sending the scene");
+        let ground = self.ground.take().filter(|ground| ground.is_of(list.ground.as_ref()));
+        let targets = self.targets.take().filter(|targets| targets.textures.size() == camera.size());
+        let loaded = gpu.guarded("loading the scene", || {
+            let loader = Loader::new(&gpu);
+            let targets = match targets {
+                Some(targets) => {
+                    loader.keep("the pixels of the picture", targets.bytes)?;
+                    targets
+                }
+                None => {
+                    let textures = Targets::new(&loader, camera.size())?;
+                    KeptTargets { textures, bytes: loader.taken() }
+                }
+            };
+            let ground = match ground {
+                Some(mut ground) => {
+                    loader.keep("the ground map", ground.bytes)?;
+                    ground.textures.replace_shadows(ShadowTextures::upload(&loader, &shadows)?);
+                    ground
+                }
+                None => {
+                    let before = loader.taken();
+                    let textures = FrameTextures::upload(&loader, list.ground.as_deref(), &shadows)?;
+                    let map = list.ground.as_ref().map(Arc::downgrade);
+                    KeptGround { map, textures, bytes: loader.taken() - before }
+                }
+            };
+            let frame = FrameGroup::new(&loader, &self.layouts, &ground.textures)?;
+            let shadows = ShadowView::both(&shadows);
+            let row_bits = row_bits(gpu.limits.max_texture_dimension_2d);
+            let map = list.ground.as_deref();
+            let scene = FrameScene { ground: map, windows: &[], lighting: &list.lighting, shadows, row_bits };
+            frame.write(&gpu, &FrameUniforms::new(scene, camera));
+            let materials = GpuMaterials::upload(&loader, &self.layouts, list, &places)?;
+            let geometry = GpuGeometry::upload(&loader, list, &plan, Some(camera))?;
+            Ok((targets, ground, frame, materials, geometry))
+        });
+        let (targets, ground, frame, materials, geometry) = loaded?;
+        progress("drawing on the adapter");
+        let picture = gpu.guarded("drawing the picture", || {
+            let mut encoder = gpu.encoder("picture");
+            let is_multisampled = gpu.samples > 1;
+            let [samples, resolved, sample_depth, seen, depth] = targets.textures.all().map(view);
+            let colors = PassViews {
+                stage: PassStage::Whole,
+                label: "colors",
+                color: if is_multisampled { &samples } else { &resolved },
+                resolved: is_multisampled.then_some(&resolved),
+                depth: &sample_depth,
+                timer: None,
+            };
+            let mut pass = ScenePass::new(colors.begin(&mut encoder, &frame.group), &self.colors, &materials);
+            pass.sky();
+            pass.draw(&geometry, plan.color.iter().chain(plan.transparent(camera)), parts);
+            drop(pass);
+            let features =
+                PassViews { label: "features", color: &seen, resolved: None, depth: &depth, ..colors };
+            let mut pass =
+                ScenePass::new(features.begin(&mut encoder, &frame.group), &self.features, &materials);
+            pass.draw(&geometry, &plan.features, parts);
+            drop(pass);
+            targets.textures.read(&gpu, encoder, progress)
+        })?;
+        (self.targets, self.ground) = (Some(targets), Some(ground));
+        Ok(picture)
+    }
+}
+
+impl KeptGround {
+    /// Whether these are the textures of a map.
+    fn is_of(&self, map: Option<&Arc<GroundMap>>) -> bool {
+        match (&self.map, map) {
+            (Some(kept), Some(map)) => std::ptr::eq(kept.as_ptr(), Arc::as_ptr(map)),
+            (None, None) => true,
+            _ => false,
+        }
+    }
+}
