@@ -79,7 +79,11 @@ impl ScriptRun {
     }
 
     /// Commands that begin when the scene is open.
-    fn new(commands: Vec<(String, ScriptCommand)>, most_frames: Option<u32>, started: Instant) -> Self {
+    pub(super) fn new(
+        commands: Vec<(String, ScriptCommand)>,
+        most_frames: Option<u32>,
+        started: Instant,
+    ) -> Self {
         Self {
             commands: commands.into(),
             most_frames,

@@ -89,7 +89,8 @@ fn scene(name: &str) -> Arc<SceneModel> {
 /// The share of pixels whose features differ, and the mean difference of colors in 255ths.
 fn difference(walked: &DrawList, camera: &Camera, scene: &SceneModel, name: &str) -> (f64, f64) {
     let drawn = build_draw_list(scene, camera, &|_| ()).list;
-    let [a, b] = [walked, &drawn].map(|list| render(list, camera, RenderBackend::Cpu).expect("a sound list"));
+    let [a, b] =
+        [walked, &drawn].map(|list| render(list, camera, RenderBackend::Cpu, &|_| ()).expect("a sound list"));
     if let Some(folder) = std::env::var_os("SANDTABLE_LOOK") {
         for (picture, of) in [(&a, "walk"), (&b, "picture")] {
             let png = sandtable_files::png::encode_png(&picture.pixels);

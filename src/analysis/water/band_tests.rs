@@ -130,8 +130,8 @@ fn lakes_and_winding_flats_through_many_bands_have_the_bits_of_the_whole() {
             .map(|index| {
                 let (x, y) = ((index % columns) as f64, (index / columns) as f64);
                 let hills = libm::sin(x / scale + phase) * libm::cos(y / scale) * 3.0;
-                let hole = next() % 211 == 0;
-                let rough = (next() % 9 == 0) as u32 as f64;
+                let hole = next().is_multiple_of(211);
+                let rough = f64::from(u8::from(next().is_multiple_of(9)));
                 if hole { f32::NAN } else { (hills + rough).round() as f32 }
             })
             .collect();

@@ -65,7 +65,8 @@ mod tests {
     fn times_are_split_and_the_last_load_is_told() {
         let mut frames = FrameTimes::default();
         for _ in 0..10 {
-            let time = FrameTime { update_ms: 1.0, upload_ms: 2.0, draw_ms: 4.0, panels_ms: 0.5 };
+            let time =
+                FrameTime { update_ms: 1.0, upload_ms: 2.0, draw_ms: 4.0, panels_ms: 0.5, wait_ms: 0.0 };
             frames.add(time, FrameLoad { ground_triangles: 321, bytes: 4_200, ..FrameLoad::default() });
         }
         let harness = Harness::new_ui(|ui| timing_panel(ui, &frames));

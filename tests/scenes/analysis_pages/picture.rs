@@ -64,7 +64,7 @@ pub fn made(kind: &'static AnalysisKind, example: &Example) -> (Outcome, RgbImag
     let camera = |size| framed_camera(&scene, view, size).expect("it sees the land").0;
     let drawn = build_draw_list(&scene, &camera(DRAWN), &|_| ());
     let camera = camera(SIZE);
-    let mut picture = render(&drawn.list, &camera, RenderBackend::Cpu).expect("a sound list");
+    let mut picture = render(&drawn.list, &camera, RenderBackend::Cpu, &|_| ()).expect("a sound list");
     apply_look(&scene, &drawn.list, &camera, &mut picture);
     let shown =
         AnnotatedGround { graphics: &drawn.graphic_texts, nested: &drawn.nested, list: Some(&drawn.list) };
