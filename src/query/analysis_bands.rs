@@ -12,7 +12,7 @@
 //!  └────────────┘   └────────────┘
 //! ```
 //!
-//! Depressions and flow depend on all of the land; [`water_bands`](crate::water_bands) makes them.
+//! Depressions and flow depend on all of the land; `water_bands` makes them.
 
 use std::hint::black_box;
 use std::ops::Range;

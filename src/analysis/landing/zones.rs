@@ -1,5 +1,5 @@
 //! Helicopter landing points: a flat, clear touchdown disk with a clear way in and out (FM 3-21.38, chapter 4).
-//! [`zone_sites`](super::zone_sites) says of the best of them what a pilot needs.
+//! `zone_sites` says of the best of them what a pilot needs.
 
 use std::sync::atomic::{AtomicU8, Ordering};
 

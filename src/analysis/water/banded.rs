@@ -1,4 +1,4 @@
-//! The kinds `fill` and `flow` on land larger than the memory: the bits that [`kinds`](super::kinds) gives, band by band.
+//! The kinds `fill` and `flow` on land larger than the memory: the bits that `kinds` gives, band by band.
 
 use std::ops::Range;
 
