@@ -15,5 +15,10 @@ pub(crate) fn post_grid(ground: &Lattice) -> RegionGrid {
 
 /// So many posts as an area in km².
 pub(crate) fn area_km2(ground: &Lattice, posts: usize) -> f64 {
-    posts as f64 * ground.cell_m2() / 1e6
+    posts_km2(posts, ground.cell_m2())
+}
+
+/// So many posts, each of `cell_m2`, as an area in km².
+pub(crate) fn posts_km2(posts: usize, cell_m2: f64) -> f64 {
+    posts as f64 * cell_m2 / 1e6
 }

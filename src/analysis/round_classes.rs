@@ -77,7 +77,7 @@ pub(crate) fn round_classes(raster: &OutcomeRaster) -> Vec<ValueClass> {
     };
     let is_large = raster.unit == "m²" && froms.iter().any(|from| *from >= KM2 / 10.0);
     let (unit, scale) = if is_large { ("km²", 1.0 / KM2) } else { (raster.unit, 1.0) };
-    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+    let unit = after_number(unit);
     let written = |from: f32| short(from * scale);
     let class = |(index, &from): (usize, &f32)| {
         let label = match froms.get(index + 1) {
@@ -100,7 +100,7 @@ pub(crate) fn round_classes(raster: &OutcomeRaster) -> Vec<ValueClass> {
 /// Classes on both sides of 0 that part most values within `reach` of it.
 fn sides(reach: f32, unit: &str) -> Vec<ValueClass> {
     let step = round_step(f64::from(reach) / 3.0) as f32;
-    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+    let unit = after_number(unit);
     let class = |(index, tint): (usize, [u8; 4])| {
         let (from, to) = (step * (index as f32 - 3.0), step * (index as f32 - 2.0));
         match index {
@@ -140,6 +140,11 @@ fn powers(middle: f32, greatest: f32) -> Vec<f32> {
     let to = libm::log10(f64::from(greatest)).floor() as i32;
     let first = from.max(to - CLASSES as i32 + 1);
     (first..=to.max(first)).map(|power| libm::pow(10.0, f64::from(power)) as f32).collect()
+}
+
+/// A unit as it follows a number; nothing where there is none.
+fn after_number(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!(" {unit}") }
 }
 
 /// A number with three decimals at most.

@@ -131,8 +131,10 @@ pub fn sight_summary(
 ///
 /// # Errors
 /// As of the kind.
+///
+/// # Panics
+/// Where the kind is none of sight.
 pub(crate) fn run_sight(
-    kind: &SightKind,
     land: &Land,
     arguments: &AnalysisArguments,
     stop: &StopFlag,
@@ -141,9 +143,9 @@ pub(crate) fn run_sight(
     let places = sight_places(arguments).iter();
     let heights: Result<Vec<f64>, _> = places.map(|&at| place_height(ground, arguments, at)).collect();
     let heights = heights?;
-    let SightValues { raster, tally } = (kind.values)(land, arguments, PostRect::all(ground), stop)?;
-    let summary = (kind.summary)(ground, arguments, &heights, &tally)?;
-    Ok(Outcome { raster: Some(raster), tally, ..summary })
+    let SightValues { raster, tally } = sight_values(land, arguments, PostRect::all(ground), stop)?;
+    let summary = sight_summary(ground, arguments, &heights, &tally)?;
+    Ok(Outcome { raster: Some(raster), ..summary })
 }
 
 /// The windows of the places that see some of `posts`, with their indices.

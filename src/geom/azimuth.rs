@@ -1,4 +1,4 @@
-//! Directions of azimuths.
+//! Directions of azimuths, and azimuths of directions.
 
 use glam::DVec2;
 
@@ -17,6 +17,11 @@ pub fn heading(azimuth_deg: f64) -> DVec2 {
     toward(azimuth_deg.to_radians())
 }
 
+/// The azimuth of a direction, east and north, in degrees clockwise from north, 0..=360; 0 of none.
+pub fn azimuth_deg(direction: DVec2) -> f64 {
+    libm::atan2(direction.x, direction.y).to_degrees().rem_euclid(360.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -27,6 +32,7 @@ mod tests {
             [(0.0, DVec2::Y), (90.0, DVec2::X), (180.0, -DVec2::Y), (-90.0, -DVec2::X)]
         {
             assert!(heading(azimuth_deg).distance(wanted) < 1e-15, "{azimuth_deg}");
+            assert_eq!(super::azimuth_deg(wanted), azimuth_deg.rem_euclid(360.0));
         }
     }
 }

@@ -1,14 +1,15 @@
 //! The drawing of frames, whatever they are shown on: the scene in a picture of its own, and the panels over it.
 
 use std::sync::Arc;
+use std::time::Instant;
 
-use egui::{ClippedPrimitive, TextureId, TexturesDelta};
+use egui::{ClippedPrimitive, Context, PlatformOutput, RawInput, TextureId, TexturesDelta};
 use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
 
-use crate::app::ViewerApp;
+use crate::app::{ViewerApp, WindowRequest};
 use crate::frame_times::{FrameLoad, FrameTime};
 use crate::opened::SceneFrame;
-use crate::scene_graphics::SceneGraphics;
+use crate::scene_graphics::{SceneGraphics, milliseconds};
 use sandtable_base::message::chain::error_text;
 use sandtable_gpu::adapter::Gpu;
 use sandtable_gpu::live::LiveOptions;
@@ -24,13 +25,26 @@ pub struct FrameGraphics {
 }
 
 /// The input for painting the panels of one frame.
-pub struct PaintedPanels<'a> {
+pub struct PaintedPanels {
     /// Their triangles.
-    pub primitives: &'a [ClippedPrimitive],
+    primitives: Vec<ClippedPrimitive>,
     /// Textures that are new or not needed any more.
-    pub textures: TexturesDelta,
-    /// Pixels per point.
-    pub pixels_per_point: f32,
+    textures: TexturesDelta,
+    pixels_per_point: f32,
+}
+
+/// A frame whose scene is recorded and whose panels are laid out.
+pub struct RecordedFrame {
+    /// Its commands.
+    pub encoder: wgpu::CommandEncoder,
+    /// What was drawn of the scene; `None` where there is none.
+    pub drawn: Option<(FrameTime, FrameLoad)>,
+    /// What the app wants of the window.
+    pub requests: Vec<WindowRequest>,
+    /// What the panels want of the system.
+    pub platform: PlatformOutput,
+    /// The panels that are to be painted over it.
+    pub panels: PaintedPanels,
 }
 
 /// A texture that the panels are painted on.
@@ -94,8 +108,26 @@ impl FrameGraphics {
         }
     }
 
+    /// Lays out the panels of a frame and records its scene.
+    pub fn record(&mut self, context: &Context, app: &mut ViewerApp, input: RawInput) -> RecordedFrame {
+        let laying_out = Instant::now();
+        let texture = self.texture();
+        let output = context.run_ui(input, |ui| app.show(ui, texture));
+        let primitives = context.tessellate(output.shapes, output.pixels_per_point);
+        let panels_ms = milliseconds(laying_out);
+        let label = wgpu::CommandEncoderDescriptor { label: Some("frame") };
+        let mut encoder = self.gpu.device().create_command_encoder(&label);
+        let requests = app.take_requests();
+        let mut frame = app.scene_frame();
+        let drawn = frame.as_mut().and_then(|frame| self.draw_scene(&mut encoder, frame, app));
+        let drawn = drawn.map(|(time, load)| (FrameTime { panels_ms, ..time }, load));
+        let (textures, pixels_per_point) = (output.textures_delta, output.pixels_per_point);
+        let panels = PaintedPanels { primitives, textures, pixels_per_point };
+        RecordedFrame { encoder, drawn, requests, platform: output.platform_output, panels }
+    }
+
     /// Records the scene's picture. What fails is said among the panels, which stay.
-    pub fn draw_scene(
+    fn draw_scene(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         frame: &mut SceneFrame,
@@ -138,7 +170,7 @@ impl FrameGraphics {
     }
 
     /// Takes over the textures that are new to the panels.
-    pub fn take_textures(&mut self, panels: &PaintedPanels<'_>) {
+    pub fn take_textures(&mut self, panels: &PaintedPanels) {
         for (id, deltas) in &panels.textures.set {
             for delta in deltas {
                 self.painter.update_texture(self.gpu.device(), self.gpu.queue(), *id, delta);
@@ -150,7 +182,7 @@ impl FrameGraphics {
     pub fn paint(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        panels: &PaintedPanels<'_>,
+        panels: &PaintedPanels,
         target: PanelTarget<'_>,
     ) -> Vec<wgpu::CommandBuffer> {
         let screen = ScreenDescriptor {
@@ -158,7 +190,7 @@ impl FrameGraphics {
             pixels_per_point: panels.pixels_per_point,
         };
         let (device, queue) = (self.gpu.device(), self.gpu.queue());
-        let commands = self.painter.update_buffers(device, queue, encoder, panels.primitives, &screen);
+        let commands = self.painter.update_buffers(device, queue, encoder, &panels.primitives, &screen);
         let label = "panels";
         let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(label),
@@ -174,12 +206,12 @@ impl FrameGraphics {
             timestamp_writes: self.timer.as_ref().and_then(|timer| timer.writes(label)),
             ..wgpu::RenderPassDescriptor::default()
         });
-        self.painter.render(&mut pass.forget_lifetime(), panels.primitives, &screen);
+        self.painter.render(&mut pass.forget_lifetime(), &panels.primitives, &screen);
         commands
     }
 
     /// Forgets the textures that the panels need no more.
-    pub fn free_textures(&mut self, panels: &mut PaintedPanels<'_>) {
+    pub fn free_textures(&mut self, panels: &mut PaintedPanels) {
         for id in &panels.textures.free {
             self.painter.free_texture(id);
         }

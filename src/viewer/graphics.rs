@@ -119,7 +119,7 @@ impl WindowGraphics {
     pub fn present(
         &mut self,
         mut before: wgpu::CommandEncoder,
-        mut panels: PaintedPanels<'_>,
+        mut panels: PaintedPanels,
     ) -> Result<FramePresented, ViewerError> {
         self.frames.take_textures(&panels);
         let presented = self.paint(&mut before, &panels);
@@ -138,7 +138,7 @@ impl WindowGraphics {
     fn paint(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        panels: &PaintedPanels<'_>,
+        panels: &PaintedPanels,
     ) -> Result<(FramePresented, Option<wgpu::SurfaceTexture>, Vec<wgpu::CommandBuffer>), ViewerError> {
         use wgpu::CurrentSurfaceTexture as Current;
         let (frame, presented) = match self.surface.get_current_texture() {

@@ -12,7 +12,7 @@ use egui::{Context, Pos2, RawInput, Rect};
 
 use crate::app::{ViewerApp, ViewerStage, WindowRequest};
 use crate::error::ViewerError;
-use crate::frame_graphics::{FrameGraphics, PaintedPanels, PanelTarget};
+use crate::frame_graphics::{FrameGraphics, PaintedPanels, PanelTarget, RecordedFrame};
 use crate::frame_times::FrameTime;
 use crate::scene_graphics::milliseconds;
 use crate::script_run::{FRAME_S, ScriptRun};
@@ -109,21 +109,11 @@ impl OffscreenView {
         let begun = Instant::now();
         self.script.note_begin(begun);
         self.script.step(&mut self.app);
-        let laying_out = Instant::now();
-        let texture = self.frames.texture();
-        let output = self.context.run_ui(self.input(), |ui| self.app.show(ui, texture));
-        let primitives = self.context.tessellate(output.shapes, output.pixels_per_point);
-        let panels_ms = milliseconds(laying_out);
-        let label = wgpu::CommandEncoderDescriptor { label: Some("frame") };
-        let mut encoder = self.frames.gpu().device().create_command_encoder(&label);
-        let requests = self.app.take_requests();
-        let mut frame = self.app.scene_frame();
-        let drawn =
-            frame.as_mut().and_then(|frame| self.frames.draw_scene(&mut encoder, frame, &mut self.app));
+        let input = self.input();
+        let RecordedFrame { encoder, drawn, requests, panels, .. } =
+            self.frames.record(&self.context, &mut self.app, input);
         let painting = Instant::now();
-        let (textures, pixels_per_point) = (output.textures_delta, output.pixels_per_point);
-        let submitted =
-            self.submit(encoder, PaintedPanels { primitives: &primitives, textures, pixels_per_point });
+        let submitted = self.submit(encoder, panels);
         let draw_ms = milliseconds(painting);
         let own_ms = milliseconds(begun);
         let waiting = Instant::now();
@@ -132,7 +122,7 @@ impl OffscreenView {
         }
         if let Some((time, load)) = drawn {
             let draw_ms = time.draw_ms + draw_ms;
-            let time = FrameTime { draw_ms, panels_ms, wait_ms: milliseconds(waiting), ..time };
+            let time = FrameTime { draw_ms, wait_ms: milliseconds(waiting), ..time };
             self.app.frames.add(time, load);
             self.script.note_frame(time, load);
             self.script.note_pipelines(self.frames.pipelines());
@@ -151,7 +141,7 @@ impl OffscreenView {
     fn submit(
         &mut self,
         mut encoder: wgpu::CommandEncoder,
-        mut panels: PaintedPanels<'_>,
+        mut panels: PaintedPanels,
     ) -> wgpu::SubmissionIndex {
         self.frames.take_textures(&panels);
         let target = PanelTarget { view: &self.target.view, size: self.target.size };

@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use sandtable_draw::list::FeatureId;
 use sandtable_editing::edit::EditPlace;
+use sandtable_geom::azimuth::azimuth_deg;
 
 /// The table that states the picked thing.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +41,5 @@ pub struct DragTarget {
 
 /// The heading from a place toward another, whole degrees clockwise from north.
 pub fn heading_deg(from: DVec2, to: DVec2) -> f64 {
-    let ahead = to - from;
-    libm::atan2(ahead.x, ahead.y).to_degrees().rem_euclid(360.0).round()
+    azimuth_deg(to - from).round()
 }

@@ -16,8 +16,7 @@ use winit::window::{Fullscreen, Window, WindowId};
 
 use crate::app::{ViewerApp, WindowRequest};
 use crate::error::ViewerError;
-use crate::frame_graphics::PaintedPanels;
-use crate::frame_times::FrameTime;
+use crate::frame_graphics::RecordedFrame;
 use crate::graphics::{FramePresented, WindowGraphics};
 use crate::scene_graphics::milliseconds;
 use crate::script_run::{FRAME_S, ScriptRun};
@@ -239,31 +238,16 @@ impl ViewerWindow {
             script.step(&mut self.app);
             self.context.request_repaint();
         }
-        let laying_out = Instant::now();
+        let before = shown.graphics.frames.texture();
         let input = shown.input.take_egui_input(&shown.window);
-        let texture = shown.graphics.frames.texture();
-        let output = self.context.run_ui(input, |ui| self.app.show(ui, texture));
-        shown.input.handle_platform_output(&shown.window, output.platform_output);
-        let primitives = self.context.tessellate(output.shapes, output.pixels_per_point);
-        let panels_ms = milliseconds(laying_out);
-        let label = wgpu::CommandEncoderDescriptor { label: Some("frame") };
-        let mut encoder = shown.graphics.frames.gpu().device().create_command_encoder(&label);
-        let requests = self.app.take_requests();
-        let mut frame = self.app.scene_frame();
-        let drawn = frame
-            .as_mut()
-            .and_then(|frame| shown.graphics.frames.draw_scene(&mut encoder, frame, &mut self.app));
-        let panels = PaintedPanels {
-            primitives: &primitives,
-            textures: output.textures_delta,
-            pixels_per_point: output.pixels_per_point,
-        };
+        let RecordedFrame { encoder, drawn, requests, platform, panels } =
+            shown.graphics.frames.record(&self.context, &mut self.app, input);
+        shown.input.handle_platform_output(&shown.window, platform);
         let presenting = Instant::now();
         let own_ms = milliseconds(begun);
         let presented = shown.graphics.present(encoder, panels)?;
         if let Some((mut time, load)) = drawn {
             time.draw_ms += milliseconds(presenting);
-            let time = FrameTime { panels_ms, ..time };
             self.app.frames.add(time, load);
             if let Some(script) = &mut self.script {
                 script.note_frame(time, load);
@@ -272,7 +256,7 @@ impl ViewerWindow {
         if let Some(script) = &mut self.script {
             script.note_window(own_ms);
         }
-        if shown.graphics.frames.texture() != texture {
+        if shown.graphics.frames.texture() != before {
             self.context.request_repaint();
         }
         for request in requests {

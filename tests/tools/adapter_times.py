@@ -176,4 +176,5 @@ def main():
             series_table(options.program, folder)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -10,6 +10,7 @@ use super::zones::{HEADINGS, axes};
 use crate::center_columns::CenterColumns;
 use crate::land::Land;
 use crate::outcome::{FeatureRole, OutcomeFeature, OutcomeShape, OutcomeTable, PropertyValue, TableColumn};
+use sandtable_geom::azimuth::azimuth_deg;
 use sandtable_terrain::lattice::Lattice;
 
 /// The most touchdown points of a zone that are counted: more than a lift of a company. It bounds the search, whose ground
@@ -113,7 +114,7 @@ impl SiteSearch<'_> {
         let cell = self.land.ground.cell();
         let azimuth = |side: usize| {
             let (east, north) = HEADINGS[side % 8];
-            libm::atan2(east as f64 * cell.x, north as f64 * cell.y).to_degrees().rem_euclid(360.0)
+            azimuth_deg(DVec2::new(east as f64, north as f64) * cell)
         };
         let sides = if other > one { [heading + 4, heading] } else { [heading, heading + 4] };
         Some(LandingAxis {

@@ -18,7 +18,7 @@ use crate::outcome::{
     FeatureRole, Figure, Outcome, OutcomeFeature, OutcomeRaster, OutcomeShape, OutcomeTable, PostValues,
     PropertyValue, TableColumn,
 };
-use crate::sight_parts::{SightKind, SightValues, run_sight, windows};
+use crate::sight_parts::{SightKind, SightValues, windows};
 use crate::tally::FigureTally;
 use sandtable_base::limits::memory::check_memory;
 use sandtable_geom::azimuth::toward;
@@ -42,24 +42,15 @@ struct FireFan {
     sector: Sector,
 }
 
-/// The kind in parts.
+/// How many weapons hit each place, and the fan of each; no data beyond the ranges and sectors of all.
 pub(crate) const SIGHT: SightKind = SightKind { values, summary };
 
-/// How many weapons hit each place, and the fan of each; no data beyond the ranges and sectors of all.
+/// The values of `posts`. The tally has the posts that each weapon hits, and of how many; then those that any hits, and of how
+/// many.
 ///
 /// # Errors
 /// `weapons` off the ground or too many, `max_range` and `clearance` that do not fit, memory, and
 /// [`AnalysisError::Stopped`].
-pub(crate) fn fields_of_fire(
-    land: &Land,
-    arguments: &AnalysisArguments,
-    stop: &StopFlag,
-) -> Result<Outcome, AnalysisError> {
-    run_sight(&SIGHT, land, arguments, stop)
-}
-
-/// The values of `posts`. The tally has the posts that each weapon hits, and of how many; then those that any hits, and of how
-/// many.
 fn values(
     land: &Land,
     arguments: &AnalysisArguments,

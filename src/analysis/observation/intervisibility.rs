@@ -11,6 +11,7 @@ use crate::outcome::{
     FeatureRole, Figure, Outcome, OutcomeFeature, OutcomeShape, OutcomeTable, PropertyValue, TableColumn,
 };
 use sandtable_base::disjoint_sets::root;
+use sandtable_geom::azimuth::azimuth_deg;
 use sandtable_terrain::sight::Curvature;
 use sandtable_terrain::sight::ground::SightGround;
 use sandtable_terrain::sight::rise::Raised;
@@ -152,8 +153,7 @@ fn link(lookouts: &[Lookout], pair: &PostPair) -> OutcomeFeature {
 fn table(lookouts: &[Lookout], pairs: &[PostPair]) -> OutcomeTable {
     let row = |pair: &PostPair| {
         let [from, to] = [pair.from, pair.to].map(|index| &lookouts[index]);
-        let offset = to.end.at - from.end.at;
-        let azimuth_deg = libm::atan2(offset.x, offset.y).to_degrees().rem_euclid(360.0);
+        let azimuth_deg = azimuth_deg(to.end.at - from.end.at);
         vec![
             PropertyValue::Whole(from.number as i64),
             PropertyValue::Whole(to.number as i64),

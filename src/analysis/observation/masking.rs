@@ -16,7 +16,7 @@ use crate::outcome::{
     Figure, Hatching, Outcome, OutcomeRaster, OutcomeTable, PostValues, PropertyValue, TableColumn,
     ValueClass,
 };
-use crate::sight_parts::{SightKind, SightValues, run_sight, windows};
+use crate::sight_parts::{SightKind, SightValues, windows};
 use crate::tally::FigureTally;
 use sandtable_base::limits::memory::check_memory;
 use sandtable_terrain::lattice::Lattice;
@@ -32,7 +32,7 @@ const BYTES_PER_POST: u64 = 20;
 /// Heights above the ground at which the hidden share is a figure, meters.
 const LEVELS_M: [f32; 4] = [0.0, 50.0, 100.0, 300.0];
 
-/// The kind in parts.
+/// The height above the ground, meters, from which a target at each post is seen; no data beyond the range of all radars.
 pub(crate) const SIGHT: SightKind = SightKind { values, summary };
 
 /// What looks for targets.
@@ -49,20 +49,11 @@ struct MaskingWatch<'a> {
     posts: PostRect,
 }
 
-/// The height above the ground, meters, from which a target at each post is seen; no data beyond the range of all radars.
+/// The values of `posts`. The tally has the posts that each radar sees, and of how many; then for each level those that are
+/// hidden up to it, and of how many.
 ///
 /// # Errors
 /// `radars` off the ground or too many, memory, and [`AnalysisError::Stopped`].
-pub(crate) fn masking(
-    land: &Land,
-    arguments: &AnalysisArguments,
-    stop: &StopFlag,
-) -> Result<Outcome, AnalysisError> {
-    run_sight(&SIGHT, land, arguments, stop)
-}
-
-/// The values of `posts`. The tally has the posts that each radar sees, and of how many; then for each level those that are
-/// hidden up to it, and of how many.
 fn values(
     land: &Land,
     arguments: &AnalysisArguments,

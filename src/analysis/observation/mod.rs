@@ -15,14 +15,15 @@ pub(crate) mod test_hills;
 pub(crate) mod viewsheds;
 
 use crate::run::KindFunction;
+use crate::sight_parts::run_sight;
 
 /// The functions of the family's kinds.
 pub(crate) const FUNCTIONS: &[(&str, KindFunction)] = &[
-    ("viewsheds", viewsheds::viewsheds),
+    ("viewsheds", run_sight),
     ("intervisibility", intervisibility::intervisibility),
     ("best-posts", best_posts::best_posts),
-    ("fields-of-fire", fields_of_fire::fields_of_fire),
-    ("masking", masking::masking),
+    ("fields-of-fire", run_sight),
+    ("masking", run_sight),
     ("exposure", exposure::exposure),
 ];
 

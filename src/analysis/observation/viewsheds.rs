@@ -12,7 +12,7 @@ use crate::outcome::{
     Figure, Hatching, Outcome, OutcomeRaster, OutcomeTable, PostValues, PropertyValue, TableColumn,
     ValueClass,
 };
-use crate::sight_parts::{SightKind, SightValues, run_sight, windows};
+use crate::sight_parts::{SightKind, SightValues, windows};
 use crate::tally::FigureTally;
 use rayon::prelude::*;
 use sandtable_base::limits::memory::check_memory;
@@ -33,23 +33,14 @@ enum ViewshedShow {
     Dead,
 }
 
-/// The kind in parts.
-pub(crate) const SIGHT: SightKind = SightKind { values, summary };
-
 /// What posts see together, a value a post; no data where there is no ground and beyond the range of all.
-///
-/// # Errors
-/// `posts` off the ground or too many, memory, and [`AnalysisError::Stopped`].
-pub(crate) fn viewsheds(
-    land: &Land,
-    arguments: &AnalysisArguments,
-    stop: &StopFlag,
-) -> Result<Outcome, AnalysisError> {
-    run_sight(&SIGHT, land, arguments, stop)
-}
+pub(crate) const SIGHT: SightKind = SightKind { values, summary };
 
 /// The values of `posts`. The tally has the posts that each lookout sees, and of how many; then those that any sees, and of how
 /// many.
+///
+/// # Errors
+/// `posts` off the ground or too many, memory, and [`AnalysisError::Stopped`].
 fn values(
     land: &Land,
     arguments: &AnalysisArguments,

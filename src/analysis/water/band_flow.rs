@@ -122,29 +122,21 @@ impl EdgeFlow {
             }
         };
         let next: Vec<AtomicU32> = codes.par_iter().enumerate().with_min_len(1 << 14).map(step).collect();
-        // The way of what enters ends in a number, that of its exit from 1 on.
+        // The way of what enters ends in the number of its exit among the posts of edges, from 1 on.
         let edge_posts = || {
             let of_edge = |(edge, row): (usize, usize)| {
                 bands.edge(edge).enumerate().map(move |(column, post)| (row * columns + column, post))
             };
             bands.edges_of(band).flat_map(of_edge)
         };
-        let (south, north) = (0, codes.len() - columns);
         for (index, post) in edge_posts().filter(|&(_, post)| self.to[post] != NONE) {
             self.own[post] = counts[index];
-            let local = if index >= north { columns + index - north } else { index - south };
-            next[index].store(BASIN | (local as u32 + 1), Ordering::Relaxed);
+            next[index].store(BASIN | (post as u32 + 1), Ordering::Relaxed);
         }
-        let of_local = |local: usize| {
-            let edges: Vec<(usize, usize)> = bands.edges_of(band).collect();
-            let is_north = local >= columns;
-            let edge = edges.iter().find(|&&(_, row)| (row != 0) == is_north);
-            edge.map_or(NONE, |&(edge, _)| (bands.edge(edge).start + local % columns) as u32)
-        };
         for (index, post) in edge_posts() {
             end_walk(&next, index);
             let end = next[index].load(Ordering::Relaxed);
-            self.exit[post] = if end == OUTSIDE { NONE } else { of_local((end & !BASIN) as usize - 1) };
+            self.exit[post] = if end == OUTSIDE { NONE } else { (end & !BASIN) - 1 };
         }
     }
 

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
+use crate::measures::posts_km2;
 use crate::outcome::{Figure, Hatching, Outcome, OutcomeRaster, PostValues, ValueClass};
 use crate::water::infinity::InfiniteFlow;
 use crate::water::prepared::WaterGround;
@@ -74,11 +75,11 @@ pub(super) fn depression_figures(rows: &[DepressionRow], cell_m2: f64) -> Vec<Fi
     };
     let (filled, cut) = (sum(|row| row.filled), sum(|row| row.cut));
     let mut figures = vec![
-        Figure::new("area of depressions", filled.0 as f64 * cell_m2 / 1e6, "km²"),
+        Figure::new("area of depressions", posts_km2(filled.0, cell_m2), "km²"),
         Figure::new("volume of depressions", filled.1 * cell_m2, "m³"),
     ];
     if cut.0 > 0 {
-        figures.push(Figure::new("area of cuts", cut.0 as f64 * cell_m2 / 1e6, "km²"));
+        figures.push(Figure::new("area of cuts", posts_km2(cut.0, cell_m2), "km²"));
         figures.push(Figure::new("volume of cuts", cut.1 * cell_m2, "m³"));
     }
     figures

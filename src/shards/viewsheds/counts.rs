@@ -49,12 +49,7 @@ impl SightCounts {
 
     fn add(&mut self, other: PostRect, count: impl Fn(usize) -> f32) {
         let (own, width) = (self.posts, self.posts.width());
-        let first = Post {
-            column: own.first.column.max(other.first.column),
-            row: own.first.row.max(other.first.row),
-        };
-        let last =
-            Post { column: own.last.column.min(other.last.column), row: own.last.row.min(other.last.row) };
+        let Some(PostRect { first, last }) = own.intersection(other) else { return };
         for row in first.row..=last.row {
             let to = (row - own.first.row) as usize * width;
             let from = (row - other.first.row) as usize * other.width();

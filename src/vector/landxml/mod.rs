@@ -31,6 +31,7 @@ use crate::landxml::stations::StationEquations;
 use crate::landxml::units::LandUnits;
 use crate::xml::{self, DecodedXml, XmlElement, XmlReader};
 use sandtable_base::limits::DESIGN_VERTICES;
+use sandtable_geom::azimuth::azimuth_deg;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::profile::Profile;
 
@@ -334,8 +335,7 @@ impl LandLayer<'_> {
             properties.insert("station".into(), text.into());
             properties.insert("alignment".into(), name.clone().into());
             properties.insert("kind".into(), kind.into());
-            let azimuth = libm::atan2(heading.x, heading.y).to_degrees().rem_euclid(360.0);
-            insert_number(&mut properties, "azimuth", azimuth);
+            insert_number(&mut properties, "azimuth", azimuth_deg(heading));
             let at = self.placed(at, scale);
             if at.z.is_finite() {
                 insert_number(&mut properties, "elevation", at.z);
