@@ -101,6 +101,11 @@ impl Gpu {
         self.api
     }
 
+    /// Whether the processor draws.
+    pub fn is_software(&self) -> bool {
+        self.is_software
+    }
+
     /// The adapter.
     pub fn adapter(&self) -> &wgpu::Adapter {
         &self.adapter

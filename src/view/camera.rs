@@ -140,6 +140,11 @@ impl Camera {
         Self { eye: self.eye + by, ..*self }
     }
 
+    /// This camera with a picture of another size, of one pixel at the least, which shows the same height of the view.
+    pub fn resized(&self, (width, height): (u32, u32)) -> Self {
+        Self { width: width.max(1), height: height.max(1), ..*self }
+    }
+
     /// The projection.
     pub fn projection(&self) -> ViewProjection {
         self.projection

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
 
-use egui::{CentralPanel, Context, Frame, TextureId, Ui};
+use egui::{CentralPanel, Context, Frame, Ui};
 use glam::{DVec2, Vec2};
 
 use crate::active_tool::{ActiveTool, ToolPreview};
@@ -297,8 +297,8 @@ impl ViewerApp {
         }
     }
 
-    /// Draws the window of one frame; `texture` is the scene's picture.
-    pub fn show(&mut self, ui: &mut Ui, texture: Option<TextureId>) {
+    /// Draws the window of one frame.
+    pub fn show(&mut self, ui: &mut Ui) {
         self.follow_loading(ui);
         self.follow_drawing(ui);
         self.follow_viewshed();
@@ -319,7 +319,7 @@ impl ViewerApp {
             self.show_sides(ui);
         }
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
-            self.show_middle(ui, texture);
+            self.show_middle(ui);
             if has_panels {
                 self.notices.show(ui);
             }

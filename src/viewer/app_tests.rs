@@ -51,7 +51,7 @@ pub(super) fn window(file: Option<&Path>) -> AppHarness {
     let draw = move |ui: &mut Ui, app: &mut Option<ViewerApp>| {
         let app =
             app.get_or_insert_with(|| ViewerApp::with_recent(&options, ui.ctx(), RecentFiles::default()));
-        app.show(ui, None);
+        app.show(ui);
         // What a renderer would take over.
         drop(app.scene_frame());
     };

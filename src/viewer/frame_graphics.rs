@@ -3,17 +3,20 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use egui::{ClippedPrimitive, Context, PlatformOutput, RawInput, TextureId, TexturesDelta};
+use egui::{ClippedPrimitive, Context, PlatformOutput, RawInput, TexturesDelta};
 use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
 
 use crate::app::{ViewerApp, WindowRequest};
 use crate::frame_times::{FrameLoad, FrameTime};
 use crate::opened::SceneFrame;
+use crate::picture_paint::{PictureFit, PicturePaint};
+use crate::picture_size::{FramePurpose, PictureSize};
 use crate::scene_graphics::{SceneGraphics, milliseconds};
 use sandtable_base::message::chain::error_text;
 use sandtable_gpu::adapter::Gpu;
 use sandtable_gpu::live::LiveOptions;
 use sandtable_gpu::pass_timer::PassTimer;
+use sandtable_view::camera::Camera;
 
 /// The device, what paints the panels, and the renderer of scenes.
 pub struct FrameGraphics {
@@ -22,6 +25,8 @@ pub struct FrameGraphics {
     /// `None` until there is a scene, and after its renderer failed.
     scene: Option<SceneGraphics>,
     timer: Option<Arc<PassTimer>>,
+    /// The sizes of the scene's pictures; `None` where all of them are whole.
+    size: Option<PictureSize>,
 }
 
 /// The input for painting the panels of one frame.
@@ -61,8 +66,10 @@ impl FrameGraphics {
     pub fn new(gpu: Gpu, format: wgpu::TextureFormat) -> Self {
         // The scene's picture among the panels is shown as it is.
         let options = RendererOptions { dithering: false, ..RendererOptions::default() };
-        let painter = Renderer::new(gpu.device(), format, options);
-        Self { gpu, painter, scene: None, timer: None }
+        let mut painter = Renderer::new(gpu.device(), format, options);
+        painter.callback_resources.insert(PicturePaint::new(gpu.device(), format));
+        let size = gpu.is_software().then(PictureSize::new);
+        Self { gpu, painter, scene: None, timer: None, size }
     }
 
     /// Times the passes of the frames that follow, where the device has a clock.
@@ -87,9 +94,14 @@ impl FrameGraphics {
         self.gpu.longest_side()
     }
 
-    /// The scene's picture among the panels' textures; `None` where there is no scene.
-    pub fn texture(&self) -> Option<TextureId> {
-        self.scene.as_ref().and_then(|scene| scene.texture)
+    /// Notes what a frame took in all, milliseconds: the sizes of those that follow depend on it.
+    pub fn note_time(&mut self, taken_ms: f32) {
+        self.size.iter_mut().for_each(|size| size.note_time(taken_ms));
+    }
+
+    /// The size in pixels of the scene's picture of the next frame.
+    pub fn picture_size(&mut self, camera: &Camera, purpose: FramePurpose) -> (u32, u32) {
+        self.size.as_mut().map_or(camera.size(), |size| size.of_next(camera, purpose))
     }
 
     /// How many pipelines the renderer of scenes has made.
@@ -111,15 +123,19 @@ impl FrameGraphics {
     /// Lays out the panels of a frame and records its scene.
     pub fn record(&mut self, context: &Context, app: &mut ViewerApp, input: RawInput) -> RecordedFrame {
         let laying_out = Instant::now();
-        let texture = self.texture();
-        let output = context.run_ui(input, |ui| app.show(ui, texture));
+        let output = context.run_ui(input, |ui| app.show(ui));
         let primitives = context.tessellate(output.shapes, output.pixels_per_point);
         let panels_ms = milliseconds(laying_out);
         let label = wgpu::CommandEncoderDescriptor { label: Some("frame") };
         let mut encoder = self.gpu.device().create_command_encoder(&label);
         let requests = app.take_requests();
+        let is_kept = requests.iter().any(|request| matches!(request, WindowRequest::Picture(_)));
+        let purpose = if is_kept { FramePurpose::Kept } else { FramePurpose::Shown };
         let mut frame = app.scene_frame();
-        let drawn = frame.as_mut().and_then(|frame| self.draw_scene(&mut encoder, frame, app));
+        let drawn = frame.as_mut().and_then(|frame| self.draw_scene(&mut encoder, (frame, purpose), app));
+        if self.size.as_ref().is_some_and(PictureSize::is_lowered) {
+            context.request_repaint();
+        }
         let drawn = drawn.map(|(time, load)| (FrameTime { panels_ms, ..time }, load));
         let (textures, pixels_per_point) = (output.textures_delta, output.pixels_per_point);
         let panels = PaintedPanels { primitives, textures, pixels_per_point };
@@ -130,7 +146,7 @@ impl FrameGraphics {
     fn draw_scene(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        frame: &mut SceneFrame,
+        (frame, purpose): (&mut SceneFrame, FramePurpose),
         app: &mut ViewerApp,
     ) -> Option<(FrameTime, FrameLoad)> {
         if self.scene.is_none() {
@@ -139,7 +155,7 @@ impl FrameGraphics {
         let mut scene = self.scene.take()?;
         let options = LiveOptions { wireframe: app.shows_edges() };
         let is_loaded = frame.load.is_some();
-        let drawn = scene.draw(self, encoder, frame, &options);
+        let drawn = scene.draw(self, encoder, (frame, purpose), &options);
         match drawn {
             Ok(drawn) => {
                 if is_loaded {
@@ -157,15 +173,10 @@ impl FrameGraphics {
         }
     }
 
-    /// Shows a texture of the device as `known`, or as a new texture of the panels.
-    pub fn show_texture(&mut self, known: Option<TextureId>, view: &wgpu::TextureView) -> TextureId {
-        let filter = wgpu::FilterMode::Nearest;
-        match known {
-            Some(id) => {
-                self.painter.update_egui_texture_from_wgpu_texture(self.gpu.device(), view, filter, id);
-                id
-            }
-            None => self.painter.register_native_texture(self.gpu.device(), view, filter),
+    /// Shows a texture of the device as the scene's picture among the panels.
+    pub fn show_picture(&mut self, view: &wgpu::TextureView, fit: PictureFit) {
+        if let Some(paint) = self.painter.callback_resources.get_mut::<PicturePaint>() {
+            paint.show(self.gpu.device(), view, fit);
         }
     }
 

@@ -42,6 +42,17 @@ pub struct FrameLoad {
     pub bytes: u64,
     /// Patches whose triangles changed.
     pub changed_patches: usize,
+    /// The width of the scene's picture, pixels.
+    pub width: u32,
+    /// The width of the view that shows it, pixels.
+    pub view_width: u32,
+}
+
+impl FrameLoad {
+    /// The share of the view's side that was drawn, 0 to 1: less than 1 while a software adapter keeps up with what moves.
+    pub fn side_share(&self) -> f32 {
+        self.width as f32 / self.view_width.max(1) as f32
+    }
 }
 
 /// The frames of the last seconds.

@@ -1,8 +1,6 @@
 //! The layout of the panels: the menu above, the status below, the sections at the side, windows over the middle.
 
-use egui::{
-    Align2, CollapsingHeader, ComboBox, Context, Grid, Panel, RichText, ScrollArea, TextureId, Ui, Window,
-};
+use egui::{Align2, CollapsingHeader, ComboBox, Context, Grid, Panel, RichText, ScrollArea, Ui, Window};
 
 use crate::app::{ViewerApp, ViewerStage};
 use crate::commands::{ViewCommand, key_text};
@@ -242,7 +240,7 @@ impl ViewerApp {
         }
     }
 
-    pub(super) fn show_middle(&mut self, ui: &mut Ui, texture: Option<TextureId>) {
+    pub(super) fn show_middle(&mut self, ui: &mut Ui) {
         match self.stage() {
             ViewerStage::Empty => {
                 ui.centered_and_justified(|ui| ui.label("Nothing is open."));
@@ -268,7 +266,7 @@ impl ViewerApp {
                 let Some(opened) = &mut self.opened else { return };
                 let part = self.picked.as_ref().and_then(|picked| picked.part.as_ref());
                 self.view.grabbed_part = part.filter(|_| self.tool.is_none()).and_then(|part| part.grab);
-                let event = self.view.show(ui, opened, texture);
+                let event = self.view.show(ui, opened);
                 if let Some(event) = event {
                     self.take_view_event(event);
                 }

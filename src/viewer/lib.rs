@@ -51,6 +51,8 @@ mod paging;
 mod paging_tests;
 mod panels;
 mod picked_part;
+mod picture_paint;
+mod picture_size;
 mod place;
 mod place_picking;
 mod reaching;

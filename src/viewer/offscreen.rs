@@ -124,6 +124,7 @@ impl OffscreenView {
             let draw_ms = time.draw_ms + draw_ms;
             let time = FrameTime { draw_ms, wait_ms: milliseconds(waiting), ..time };
             self.app.frames.add(time, load);
+            self.frames.note_time(time.total_ms());
             self.script.note_frame(time, load);
             self.script.note_pipelines(self.frames.pipelines());
         } else {

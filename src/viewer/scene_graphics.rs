@@ -1,15 +1,16 @@
-//! The scene in a texture that the panels show like any other picture.
+//! The scene in a texture that the panels show in the view.
 //!
-//! It is as large as the room between the panels, so that the pointer's place on it is a pixel of its camera.
+//! Its camera's picture is as large as the view, so that the pointer's place there is one of its pixels; the texture may have
+//! fewer (`picture_size`).
 
 use std::sync::Arc;
 use std::time::Instant;
 
-use egui::TextureId;
-
 use crate::frame_graphics::FrameGraphics;
 use crate::frame_times::{FrameLoad, FrameTime};
 use crate::opened::SceneFrame;
+use crate::picture_paint::PictureFit;
+use crate::picture_size::FramePurpose;
 use crate::scene_load::SceneLoad;
 use sandtable_gpu::adapter::Gpu;
 use sandtable_gpu::error::GpuError;
@@ -26,13 +27,12 @@ pub struct SceneGraphics {
     /// What the renderer draws to: [`FORMAT`], or the same texture seen as one that encodes colors.
     drawn: wgpu::TextureFormat,
     picture: Option<ScenePicture>,
-    /// The picture among the panels' textures.
-    pub texture: Option<TextureId>,
 }
 
 struct ScenePicture {
     view: wgpu::TextureView,
     size: (u32, u32),
+    fit: PictureFit,
 }
 
 impl SceneGraphics {
@@ -47,7 +47,7 @@ impl SceneGraphics {
         let drawn = if has_views { FORMAT.add_srgb_suffix() } else { FORMAT };
         let mut renderer = LiveRenderer::new(&gpu, drawn)?;
         renderer.set_timer(timer);
-        Ok(Self { renderer, drawn, picture: None, texture: None })
+        Ok(Self { renderer, drawn, picture: None })
     }
 
     /// How many pipelines the renderer has made.
@@ -68,7 +68,7 @@ impl SceneGraphics {
         &mut self,
         graphics: &mut FrameGraphics,
         encoder: &mut wgpu::CommandEncoder,
-        frame: &mut SceneFrame,
+        (frame, purpose): (&mut SceneFrame, FramePurpose),
         options: &LiveOptions,
     ) -> Result<(FrameTime, FrameLoad), GpuError> {
         let uploading = Instant::now();
@@ -88,9 +88,10 @@ impl SceneGraphics {
         let sent = self.renderer.update(&frame.changes)?;
         let upload_ms = milliseconds(uploading);
         let drawing = Instant::now();
-        let size = frame.camera.size();
-        let view = self.target(graphics, size);
-        let drawn = self.renderer.draw(encoder, &view, size, &frame.camera, options)?;
+        let size = graphics.picture_size(&frame.camera, purpose);
+        let fit = if size == frame.camera.size() { PictureFit::Whole } else { PictureFit::Stretched };
+        let view = self.target(graphics, size, fit);
+        let drawn = self.renderer.draw(encoder, &view, size, &frame.camera.resized(size), options)?;
         let time = FrameTime {
             update_ms: frame.update_ms,
             upload_ms,
@@ -104,12 +105,21 @@ impl SceneGraphics {
             calls: drawn.calls,
             bytes: sent.total(),
             changed_patches: frame.statistics.changed_patches,
+            width: size.0,
+            view_width: frame.camera.size().0,
         };
         Ok((time, load))
     }
 
-    fn target(&mut self, graphics: &mut FrameGraphics, size: (u32, u32)) -> wgpu::TextureView {
-        if let Some(picture) = self.picture.as_ref().filter(|picture| picture.size == size) {
+    fn target(
+        &mut self,
+        graphics: &mut FrameGraphics,
+        size: (u32, u32),
+        fit: PictureFit,
+    ) -> wgpu::TextureView {
+        if let Some(picture) =
+            self.picture.as_ref().filter(|picture| (picture.size, picture.fit) == (size, fit))
+        {
             return picture.view.clone();
         }
         let texture = graphics.gpu().device().create_texture(&wgpu::TextureDescriptor {
@@ -125,9 +135,9 @@ impl SceneGraphics {
         let seen_as = |format| {
             texture.create_view(&wgpu::TextureViewDescriptor { format: Some(format), ..Default::default() })
         };
-        self.texture = Some(graphics.show_texture(self.texture, &seen_as(FORMAT)));
+        graphics.show_picture(&seen_as(FORMAT), fit);
         let view = seen_as(self.drawn);
-        self.picture = Some(ScenePicture { view: view.clone(), size });
+        self.picture = Some(ScenePicture { view: view.clone(), size, fit });
         view
     }
 }

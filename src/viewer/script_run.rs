@@ -39,6 +39,8 @@ pub struct ScriptRun {
     device: Vec<f32>,
     /// Calls of the adapter in each frame.
     calls: Vec<f32>,
+    /// The share of the view's side that each frame drew.
+    side_shares: Vec<f32>,
     pipelines: usize,
     triangles: usize,
     bytes: u64,
@@ -96,6 +98,7 @@ impl ScriptRun {
             passes: BTreeMap::new(),
             device: Vec::new(),
             calls: Vec::new(),
+            side_shares: Vec::new(),
             pipelines: 0,
             triangles: 0,
             bytes: 0,
@@ -132,6 +135,7 @@ impl ScriptRun {
         self.frames += 1;
         self.times.push(time);
         self.calls.push(load.calls as f32);
+        self.side_shares.push(load.side_share());
         self.triangles = load.ground_triangles;
         self.bytes += load.bytes;
     }
@@ -304,6 +308,11 @@ impl ScriptRun {
             },
             "passes": passes,
             "calls": percentile(self.calls.clone(), 0.5),
+            "side_share": {
+                "least": percentile(self.side_shares.clone(), 0.0),
+                "median": percentile(self.side_shares.clone(), 0.5),
+                "last": self.side_shares.last(),
+            },
             "pipelines": self.pipelines,
             "ground_triangles": self.triangles,
             "bytes_sent": self.bytes,

@@ -1,8 +1,8 @@
 //! The scene's picture in the window: pointer and keys move the camera; labels lie over it.
 
 use egui::{
-    Color32, EventFilter, FontId, Id, Painter, PointerButton, Pos2, Rect, Response, Role, Sense, TextureId,
-    Ui, WidgetInfo, pos2,
+    Color32, EventFilter, FontId, Id, Painter, PointerButton, Pos2, Rect, Response, Role, Sense, Ui,
+    WidgetInfo,
 };
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
@@ -13,6 +13,7 @@ use crate::line_names::LineNames;
 use crate::line_piece::LinePicture;
 use crate::opened::OpenedScene;
 use crate::picked_part::{DragTarget, GrabTarget};
+use crate::picture_paint::picture_shape;
 use crate::symbol_layer::SymbolLayer;
 use sandtable_scene::scene_label::SceneLabel;
 use sandtable_view::camera::Camera;
@@ -108,13 +109,8 @@ impl ViewArea {
         self.names = LineNames::default();
     }
 
-    /// Draws the picture `texture` over all of what `ui` has left, and moves the camera of `opened`.
-    pub fn show(
-        &mut self,
-        ui: &mut Ui,
-        opened: &mut OpenedScene,
-        texture: Option<TextureId>,
-    ) -> Option<ViewEvent> {
+    /// Shows the scene's picture over all of what `ui` has left, and moves the camera of `opened`.
+    pub fn show(&mut self, ui: &mut Ui, opened: &mut OpenedScene) -> Option<ViewEvent> {
         let rect = ui.available_rect_before_wrap();
         self.rect = Some(rect);
         let response = ui.interact(rect, Self::id(), Sense::click_and_drag());
@@ -133,10 +129,7 @@ impl ViewArea {
         if has_moved || opened.navigator.is_on_its_way() {
             ui.ctx().request_repaint();
         }
-        if let Some(texture) = texture {
-            let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-            ui.painter().image(texture, rect, whole, Color32::WHITE);
-        }
+        ui.painter().add(picture_shape(rect));
         if let (true, Ok(camera)) = (self.shows_labels, opened.camera(self.size)) {
             self.show_labels(ui, rect, opened, &camera);
         }

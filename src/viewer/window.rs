@@ -238,7 +238,6 @@ impl ViewerWindow {
             script.step(&mut self.app);
             self.context.request_repaint();
         }
-        let before = shown.graphics.frames.texture();
         let input = shown.input.take_egui_input(&shown.window);
         let RecordedFrame { encoder, drawn, requests, platform, panels } =
             shown.graphics.frames.record(&self.context, &mut self.app, input);
@@ -249,15 +248,13 @@ impl ViewerWindow {
         if let Some((mut time, load)) = drawn {
             time.draw_ms += milliseconds(presenting);
             self.app.frames.add(time, load);
+            shown.graphics.frames.note_time(time.total_ms());
             if let Some(script) = &mut self.script {
                 script.note_frame(time, load);
             }
         }
         if let Some(script) = &mut self.script {
             script.note_window(own_ms);
-        }
-        if shown.graphics.frames.texture() != before {
-            self.context.request_repaint();
         }
         for request in requests {
             match request {

@@ -52,6 +52,9 @@ pub fn timing_panel(ui: &mut Ui, frames: &FrameTimes) {
         load.ground_triangles, load.patches, load.drawn_triangles, load.calls
     ));
     ui.label(format!("{} patches changed, {:.1} kB sent", load.changed_patches, load.bytes as f64 / 1e3));
+    if load.side_share() < 1.0 {
+        ui.label(format!("moving: {:.0} % of the pixels of a side", load.side_share() * 100.0));
+    }
 }
 
 #[cfg(test)]

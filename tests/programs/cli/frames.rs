@@ -58,6 +58,32 @@ fn the_gpu_backend_draws_frames_without_a_display() {
     assert!(!scene.contains(&[27, 27, 27]) && colors("panels.png", (320, 200)).contains(&[27, 27, 27]));
 }
 
+/// A flight on which a picture is kept, and one at rest.
+const FLIGHT: &str = "wait 2\nfly 751500,4014500,1200 749500,4018000,400 1\nwait 2\nfly 752500,4015500,1300 749500,4018000,400 8\n\
+                      snapshot way.png\nwait 6\nsnapshot rest.png\nquit\n";
+
+#[test]
+fn the_gpu_backend_keeps_whole_pictures_of_a_flight_that_is_drawn_in_fewer_pixels() {
+    let scene = project("scenes/road.toml");
+    let fly = |script: &str| {
+        let scratch = Scratch::new();
+        let ran = view(&scratch, &scene, script, &["--size", "480x270"]);
+        let report: Value = serde_json::from_str(&printed(ran)?).expect("JSON");
+        let read = |name: &str| fs::read(scratch.at(name)).expect("a picture");
+        Some((report, ["way.png", "rest.png"].map(read)))
+    };
+    let Some((report, pictures)) = fly(FLIGHT) else { return };
+    // What was drawn before a picture, and how fast, does not show in it.
+    let hasty = FLIGHT.replacen("wait 2", "fly 751000,4014000,1500 749500,4018000,400 4", 1);
+    let (_, others) = fly(&hasty).expect("an adapter");
+    assert!(pictures == others, "the pictures depend on the frames before");
+    let is_software = report["adapter"].as_str().is_some_and(|name| name.contains("llvmpipe"));
+    let shares = &report["side_share"];
+    let least = shares["least"].as_f64().expect("a number");
+    assert!((0.25..=1.0).contains(&least) && (is_software || least == 1.0), "{report}");
+    assert_eq!(shares["last"], 1.0, "{report}");
+}
+
 #[test]
 fn the_gpu_backend_says_why_frames_are_not_drawn() {
     let scratch = Scratch::new();
