@@ -293,12 +293,19 @@ pub struct TableColumn {
     pub unit: &'static str,
     /// Decimals of its numbers on sheets.
     pub decimals: usize,
+    /// Whether its cells are the names of features, such as the numbers of posts.
+    pub is_of_marks: bool,
 }
 
 impl TableColumn {
     /// A column with this heading.
     pub const fn new(name: &'static str, unit: &'static str, decimals: usize) -> Self {
-        Self { name, unit, decimals }
+        Self { name, unit, decimals, is_of_marks: false }
+    }
+
+    /// A column of names of features.
+    pub const fn of_marks(name: &'static str) -> Self {
+        Self { name, unit: "", decimals: 0, is_of_marks: true }
     }
 }
 

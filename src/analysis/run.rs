@@ -194,6 +194,29 @@ mod tests {
     }
 
     #[test]
+    fn a_single_viewshed_says_part_by_part_which_share_is_done() {
+        let land = shaped(30, 30, 10.0, |column, row| ((column * 31 + row * 17) % 23) as f32 * 0.2);
+        let stands = (0..30 * 30).map(|index| if index % 7 == 0 { 1.0 } else { 0.0 }).collect();
+        let wooded = Land { obstacles_m: Some(stands), ..land.clone() };
+        for (name, key) in [("viewsheds", "posts"), ("fields-of-fire", "weapons"), ("masking", "radars")] {
+            let kind = sandtable_catalog::kind(name).expect(name);
+            let place = ArgumentValue::Points(vec![DVec2::new(152.0, 141.0)]);
+            let mut arguments = AnalysisArguments::new(kind).with(key, place);
+            if name == "fields-of-fire" {
+                arguments = arguments.with("max_range", ArgumentValue::Number(100.0));
+                arguments = arguments.with("arc", ArgumentValue::Number(90.0));
+            } else if name == "viewsheds" {
+                arguments = arguments.with("target_height", ArgumentValue::Number(2.0));
+            }
+            for land in [&land, &wooded] {
+                let stop = StopFlag::default();
+                run(land, &arguments, &stop).expect(name);
+                assert_eq!(stop.share(), Some(1.0), "{name}");
+            }
+        }
+    }
+
+    #[test]
     fn kinds_give_rasters_and_features_as_the_catalog_says() {
         let ground = shaped(30, 30, 10.0, |column, row| ((column * 31 + row * 17) % 23) as f32 * 0.2);
         let land = Land { other_ground: Some(ground.ground.clone()), ..ground };

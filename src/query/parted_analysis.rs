@@ -19,7 +19,7 @@ use crate::windowed_elevation::GroundReach;
 use sandtable_analysis::arguments::AnalysisArguments;
 use sandtable_analysis::extent::{BEYOND_NOTE, LandExtent, land_part, run_part};
 use sandtable_analysis::land::Land;
-use sandtable_analysis::outcome::{Outcome, OutcomeRaster};
+use sandtable_analysis::outcome::{Outcome, OutcomeRaster, PostValues};
 use sandtable_analysis::run::{lacking_note, tally_figures};
 use sandtable_analysis::sight_parts::{
     is_of_sight, needed_for_sight, place_height, sight_places, sight_summary, sight_values, sight_work,
@@ -98,6 +98,32 @@ impl PartedAnalysis {
     /// The posts of all parts together, counted in the whole ground.
     pub fn posts(&self) -> PostRect {
         self.posts
+    }
+
+    /// What the values of all parts are and how pictures divide them, without the values: that of the smallest part.
+    ///
+    /// # Errors
+    /// As [`PartedAnalysis::part`].
+    pub fn empty_raster(&self, dataset: &Dataset, stop: &StopFlag) -> Result<OutcomeRaster, AnalyzeError> {
+        let OutcomeRaster { name, unit, values, classes } = self.part(dataset, self.corner(), stop)?.raster;
+        let values = match values {
+            PostValues::Numbers(_) => PostValues::Numbers(Vec::new()),
+            PostValues::Codes(_) => PostValues::Codes(Vec::new()),
+        };
+        Ok(OutcomeRaster { name, unit, values, classes })
+    }
+
+    /// The ground of all parts, of which few heights may be held.
+    ///
+    /// # Errors
+    /// See [`AnalyzeError`].
+    pub fn ground(&self, dataset: &Dataset) -> Result<Arc<Lattice>, AnalyzeError> {
+        self.seen_ground(dataset, self.corner())
+    }
+
+    /// The four posts in the south-west.
+    fn corner(&self) -> PostRect {
+        PostRect { first: self.posts.first, last: self.posts.first.offset(1, 1) }
     }
 
     /// About how many posts are looked at for the values of a part.

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
+use crate::analysis_letters::add_letters;
 use crate::assets::Assets;
 use crate::build::{build, build_ground};
 use crate::build_errors::{BuildErrorSink, BuildErrors};
@@ -62,7 +63,8 @@ pub struct SceneAnalysis {
     pub feature: FeatureId,
     /// The ground on whose posts the values of its raster are.
     pub ground: Arc<Lattice>,
-    /// What it gives; a raster has classes, see [`Outcome::with_classes`].
+    /// What it gives; a raster has classes, see [`Outcome::with_classes`]. Where other analyses of the scene number their marks
+    /// alike, a letter stands before the numbers.
     pub outcome: Outcome,
 }
 
@@ -276,6 +278,7 @@ pub(super) fn analyze(
         });
     }
     errors.finish()?;
+    add_letters(&mut analyses);
     scene.findings.extend(findings.into_vec());
     scene.analyses = analyses;
     Ok(())

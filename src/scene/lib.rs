@@ -9,6 +9,7 @@
 
 mod all_samples;
 pub mod analyses;
+mod analysis_letters;
 pub mod analysis_map;
 pub mod areas;
 pub mod assets;

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use sandtable_base::limits::{PLAN_OBSERVERS, PLAN_POINTS, PLAN_SHARDS, RASTER_SAMPLES};
+use sandtable_export::features::FeatureExportError;
 use sandtable_files::disk::{ReadFileError, WriteFileError};
 use sandtable_files::error::FileError;
 use sandtable_files::raster_file::WriteRasterError;
@@ -45,6 +46,8 @@ pub enum ShardError {
     Above(#[from] FileError<HeightsAboveError>),
     #[error(transparent)]
     Analyze(Box<AnalyzeError>),
+    #[error(transparent)]
+    Features(#[from] FeatureExportError),
 }
 
 impl From<AnalyzeError> for ShardError {

@@ -12,6 +12,7 @@ use sandtable_analysis::outcome::Outcome;
 use sandtable_catalog::kind::AnalysisKind;
 use sandtable_dem::dem_format::DemFormat;
 use sandtable_dem::formats::WRITTEN_EXTENSIONS;
+use sandtable_export::features::FeatureFormat;
 use sandtable_files::disk;
 use sandtable_query::analysis::WrittenArgument;
 
@@ -98,15 +99,43 @@ pub fn gather(
         }
         PlannedProduct::Analysis(arguments) => {
             let out = checked(plan, own("analysis.tif"))?;
-            let format = raster_format(&out)?;
+            let format = analysis_format(&out)?;
             plan.verify_inputs()?;
-            let outcome = analysis::gather::gather(plan, arguments, &out, format)?;
+            let outcome = match format {
+                GatheredFormat::Raster(format) => analysis::gather::gather(plan, arguments, &out, format)?,
+                GatheredFormat::Features(format) => {
+                    analysis::gather::gather_features(plan, arguments, &out, format)?
+                }
+            };
             let (kind, arguments) = (arguments.kind(&plan.folder)?, arguments.written());
             Ok(GatheredProduct {
                 files: vec![out],
                 outcome: Some(GatheredOutcome { kind, arguments, outcome }),
             })
         }
+    }
+}
+
+/// A file of an analysis.
+enum GatheredFormat {
+    Raster(&'static DemFormat),
+    Features(FeatureFormat),
+}
+
+/// The format of a file of an analysis.
+fn analysis_format(out: &Path) -> Result<GatheredFormat, ShardError> {
+    let extension = out.extension().unwrap_or_default().to_string_lossy().into_owned();
+    match FeatureFormat::from_extension(&extension) {
+        Some(format @ (FeatureFormat::GeoPackage | FeatureFormat::GeoJson)) => {
+            Ok(GatheredFormat::Features(format))
+        }
+        _ => DemFormat::to_write(&extension).map(GatheredFormat::Raster).ok_or_else(|| {
+            let message = format!(
+                "analyses are gathered as .gpkg or .geojson, and their rasters as {WRITTEN_EXTENSIONS}; name a file that \
+                 ends so"
+            );
+            PlanError::new(out, PlanFault::Output(message)).into()
+        }),
     }
 }
 

@@ -288,3 +288,33 @@ fn errors_name_the_key_and_what_to_write() {
     );
     wrong("[[analysis]]\nkind = \"cut-fill\"\nagainst = \"none.tif\"\n", &["none.tif"]);
 }
+
+#[test]
+fn posts_that_two_analyses_number_alike_have_letters_on_the_ground_and_in_tables() {
+    let viewsheds = |posts: &str, show: &str| {
+        format!("[[analysis]]\nkind = \"viewsheds\"\nposts = {posts}\nshow = \"{show}\"\n")
+    };
+    let (two, one) = ("[[5400, 7900], [5500, 8200]]", "[[6500, 8000]]");
+    let names = |scene: &SceneModel| -> Vec<Vec<String>> {
+        let of = |features: &[sandtable_analysis::outcome::OutcomeFeature]| {
+            features.iter().map(|feature| feature.name.clone()).collect()
+        };
+        scene.analyses.iter().map(|analysis| of(&analysis.outcome.features)).collect()
+    };
+    let both = scene(&(viewsheds(two, "first") + &viewsheds(one, "count"))).expect("sound");
+    assert_eq!(names(&both), [vec!["A1", "A2"], vec!["B1"]]);
+    for (analysis, features) in both.analyses.iter().zip(names(&both)) {
+        let cells = analysis.outcome.tables[0].written_rows().map(|row| row[0].clone());
+        assert_eq!(cells.collect::<Vec<_>>(), features, "the tables name what the picture shows");
+        let figures = &analysis.outcome.figures;
+        assert_eq!(figures[0].name, format!("seen from post {}", features[0]));
+    }
+    let classes = &both.analyses[0].outcome.raster.as_ref().expect("a raster").classes;
+    assert_eq!(classes[1].label, "post A1");
+    let counted = &both.analyses[1].outcome.raster.as_ref().expect("a raster").classes;
+    assert_eq!(counted[1].label, "seen by 1", "a count is no name");
+    let alone = scene(&viewsheds(two, "first")).expect("sound");
+    assert_eq!(names(&alone), [["1", "2"]]);
+    let unseen = scene(&(viewsheds(two, "first") + &viewsheds(one, "count") + "draw = \"nothing\"\n"));
+    assert_eq!(names(&unseen.expect("sound")), [vec!["1", "2"], vec!["1"]], "marks that no picture shows");
+}

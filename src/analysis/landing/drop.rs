@@ -228,7 +228,7 @@ impl DropZone {
 
 fn table(centers: &CenterColumns, zones: &[DropZone], needs: &DropNeeds) -> OutcomeTable {
     let column = TableColumn::new;
-    let mut columns = vec![column("zone", "", 0)];
+    let mut columns = vec![TableColumn::of_marks("zone")];
     columns.extend(centers.columns());
     columns.extend([
         column("class", "", 0),

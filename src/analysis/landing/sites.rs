@@ -385,7 +385,7 @@ fn table(rows: &[SiteRow], centers: &CenterColumns) -> OutcomeTable {
         (column("mask", "°", 1), |row| row.mask_deg),
     ];
     let shown = || optional.iter().filter(|(_, value)| rows.iter().any(|row| value(row).is_some()));
-    let mut columns = vec![column("site", "", 0)];
+    let mut columns = vec![TableColumn::of_marks("site")];
     columns.extend(centers.columns());
     columns.extend([
         column("class", "", 0),

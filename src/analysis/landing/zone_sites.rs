@@ -209,7 +209,7 @@ fn points_value(points: usize) -> PropertyValue {
 
 fn columns(centers: &CenterColumns) -> Vec<TableColumn> {
     let column = TableColumn::new;
-    let mut columns = vec![column("zone", "", 0)];
+    let mut columns = vec![TableColumn::of_marks("zone")];
     columns.extend(centers.columns());
     columns.extend([
         column("size", "", 0),

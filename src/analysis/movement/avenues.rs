@@ -173,7 +173,7 @@ pub(crate) fn avenues(
     };
     let column = TableColumn::new;
     let columns = vec![
-        column("avenue", "", 0),
+        TableColumn::of_marks("avenue"),
         column("distance", "km", 2),
         column("climb", "m", 0),
         column("time", "min", 0),
@@ -240,7 +240,7 @@ pub(crate) fn chokes(
     let columns = vec![
         column("choke point", "", 0),
         column("width", "m", 0),
-        column("avenue", "", 0),
+        TableColumn::of_marks("avenue"),
         column("from start", "km", 2),
     ];
     let mut features: Vec<OutcomeFeature> =

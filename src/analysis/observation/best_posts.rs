@@ -83,11 +83,9 @@ pub(crate) fn best_posts(
             curvature: curvature(arguments),
             ..ViewshedOptions::new(place.end)
         };
-        let seen = watched.seen(&sight.look("area", &options, stop)?);
-        stop.did(1);
-        Ok(seen)
+        Ok(watched.seen(&sight.look("area", &options, stop)?))
     };
-    stop.stretch(0.0..0.95, places.len());
+    stop.stretch(0.0..0.95, places.len() * sight.look_units(arguments.number("target_height")));
     let views: Result<Vec<Vec<u64>>, AnalysisError> = if posts_within(ground, reach_m) < SIDE_BY_SIDE {
         places.par_iter().map(view).collect()
     } else {
@@ -290,7 +288,7 @@ fn outcome(land: &Land, chosen: &[ChosenPost], watched: usize) -> Outcome {
         ]);
         row
     };
-    let mut columns = vec![TableColumn::new("post", "", 0)];
+    let mut columns = vec![TableColumn::of_marks("post")];
     columns.extend(centers.columns());
     columns.extend(["sees", "adds", "together"].map(|name| TableColumn::new(name, "%", 1)));
     let table = OutcomeTable {

@@ -68,7 +68,7 @@ fn values(
     let mut values = vec![f32::NAN; count];
     let mut tally = vec![0; 2 * places.len()];
     let sight = SightLand::new(land).cleared_around(places.iter().copied());
-    stop.stretch(0.0..1.0, windows.len());
+    stop.stretch(0.0..1.0, windows.len() * sight.look_units(target_m));
     for (index, window) in windows {
         let end = SightEnd { at: places[index], above_m: muzzle_m };
         let options = ViewshedOptions {
@@ -87,7 +87,6 @@ fn values(
         });
         let (hit, of) = view.seen_of();
         (tally[2 * index], tally[2 * index + 1]) = (hit as u64, of as u64);
-        stop.did(1);
     }
     let hit = values.par_iter().filter(|&&value| value > 0.0).count();
     let all = values.par_iter().filter(|value| !value.is_nan()).count();
@@ -129,7 +128,7 @@ fn summary(
     let table = OutcomeTable {
         title: "Weapons".into(),
         columns: vec![
-            TableColumn::new("weapon", "", 0),
+            TableColumn::of_marks("weapon"),
             TableColumn::new("ground", "m", 0),
             TableColumn::new("hit", "km²", 2),
             TableColumn::new("share", "%", 1),

@@ -166,8 +166,8 @@ fn table(lookouts: &[Lookout], pairs: &[PostPair]) -> OutcomeTable {
     OutcomeTable {
         title: "Links".into(),
         columns: vec![
-            TableColumn::new("from", "", 0),
-            TableColumn::new("to", "", 0),
+            TableColumn::of_marks("from"),
+            TableColumn::of_marks("to"),
             TableColumn::new("distance", "km", 2),
             TableColumn::new("direction", "°", 0),
             TableColumn::new("in sight", "", 0),

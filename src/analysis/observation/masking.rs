@@ -23,7 +23,7 @@ use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::sight::Curvature;
 use sandtable_terrain::sight::line::SightEnd;
-use sandtable_terrain::sight::viewshed::ViewshedOptions;
+use sandtable_terrain::sight::viewshed::{SWEEP_UNITS, ViewshedOptions};
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// A value, the rise of each post and what stands there, and the rise as the sweep stores it.
@@ -78,11 +78,10 @@ fn values(
     };
     let mut values = vec![f32::NAN; count];
     let mut tally = vec![0; 2 * radars.len()];
-    stop.stretch(0.0..1.0, windows.len());
+    stop.stretch(0.0..1.0, windows.len() * SWEEP_UNITS);
     for (index, window) in windows {
         let (seen, known) = watch.merge((index, window), &mut values, stop)?;
         (tally[2 * index], tally[2 * index + 1]) = (seen as u64, known as u64);
-        stop.did(1);
     }
     let known = values.par_iter().filter(|value| !value.is_nan()).count() as u64;
     let hidden = |level_m: f32| values.par_iter().filter(|&&value| value > level_m).count() as u64;
@@ -123,7 +122,7 @@ fn summary(
     let table = OutcomeTable {
         title: "Radars".into(),
         columns: vec![
-            TableColumn::new("radar", "", 0),
+            TableColumn::of_marks("radar"),
             TableColumn::new("ground", "m", 0),
             TableColumn::new("antenna", "m", 0),
             TableColumn::new("ground in sight", "%", 1),

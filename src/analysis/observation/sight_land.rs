@@ -32,7 +32,7 @@ use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::query::{Interpolation, ground_height};
 use sandtable_terrain::sight::line::{Sight, SightEnd, line_of_sight};
 use sandtable_terrain::sight::viewshed::rises::required_rises;
-use sandtable_terrain::sight::viewshed::{PostVisibility, ViewshedOptions, viewshed_until};
+use sandtable_terrain::sight::viewshed::{PostVisibility, SWEEP_UNITS, ViewshedOptions, viewshed_until};
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// How far sight reaches into woods and houses from their edge, and out of them from an eye, meters. No manual has a number;
@@ -144,6 +144,11 @@ impl SightLand {
         posts.into_iter().flatten().filter(is_in_way).collect()
     }
 
+    /// The units that one [look](SightLand::look_at) at targets of such a height says that it did.
+    pub fn look_units(&self, target_above_m: f64) -> usize {
+        if self.standing_m.is_some() && target_above_m > 0.0 { 2 * SWEEP_UNITS } else { SWEEP_UNITS }
+    }
+
     /// What an observer sees; see the head of this file.
     ///
     /// # Errors
@@ -183,7 +188,10 @@ impl SightLand {
         };
         let over_tops = match options.target_above_m > 0.0 && eye.held.posts().any(is_between) {
             true => Some(look(&ViewshedOptions { target_above_m: 0.0, ..*options })?),
-            false => None,
+            false => {
+                stop.did(self.look_units(options.target_above_m) - SWEEP_UNITS);
+                None
+            }
         };
         seen.view.posts = eye.targets_seen(&seen, over_tops.as_ref(), options, stop);
         if stop.is_stopped() { Err(AnalysisError::Stopped) } else { Ok(seen) }

@@ -61,7 +61,7 @@ fn values(
     let mut values = vec![f32::NAN; count];
     let mut tally = vec![0; 2 * places.len()];
     let sight = SightLand::new(land).cleared_around(places.iter().copied());
-    stop.stretch(0.0..1.0, windows.len());
+    stop.stretch(0.0..1.0, windows.len() * sight.look_units(arguments.number("target_height")));
     for (index, window) in windows {
         let end = SightEnd { at: places[index], above_m: arguments.number("observer_height") };
         let options = ViewshedOptions {
@@ -77,7 +77,6 @@ fn values(
         });
         let (seen, of) = view.seen_of();
         (tally[2 * index], tally[2 * index + 1]) = (seen as u64, of as u64);
-        stop.did(1);
     }
     let seen = values
         .par_iter()
@@ -201,7 +200,7 @@ fn table(ground: &Lattice, lookouts: &[Lookout], shares: &[(usize, usize)]) -> O
     OutcomeTable {
         title: "Posts".into(),
         columns: vec![
-            TableColumn::new("post", "", 0),
+            TableColumn::of_marks("post"),
             TableColumn::new("ground", "m", 0),
             TableColumn::new("in sight", "km²", 2),
             TableColumn::new("share", "%", 1),

@@ -40,7 +40,7 @@ const HATCHINGS: [Hatching; 4] = [Hatching::Single, Hatching::Dots, Hatching::Le
 
 /// The columns of the table.
 const COLUMNS: [TableColumn; 5] = [
-    TableColumn::new("basin", "", 0),
+    TableColumn::of_marks("basin"),
     TableColumn::new("area", "km²", 3),
     TableColumn::new("with basins above", "km²", 3),
     TableColumn::new("outlet", "m", 1),

@@ -1,6 +1,7 @@
 //! `plan analysis`: the shards of an analysis make the bytes that `analyze` writes, and the figures that it prints.
 
 use std::fs;
+use std::path::Path;
 
 use serde_json::Value;
 
@@ -40,7 +41,27 @@ fn check(scratch: &Scratch, analysis: &[&str], shards: &str) -> Vec<Value> {
     assert_eq!(said, whole, "{analysis:?}");
     let (gathered, whole) = (fs::read(scratch.at("plan/analysis.tif")), fs::read(scratch.at("whole.tif")));
     assert!(gathered.expect("written") == whole.expect("written"), "{analysis:?}");
+    check_features(folder, analysis);
     lines
+}
+
+/// Compares the features of a plan whose shards are done with those that `analyze` writes, and both refusals where there are
+/// none.
+fn check_features(folder: &Path, analysis: &[&str]) {
+    for extension in ["gpkg", "geojson"] {
+        let (of_shards, of_whole) = (format!("gathered.{extension}"), format!("whole.{extension}"));
+        let said = run_in(folder, &["gather", "plan", "-o", &of_shards]);
+        let whole = run_in(folder, &[&["analyze"], analysis, &["-o", &of_whole]].concat());
+        assert_eq!(said.code, whole.code, "{analysis:?}: {} {}", said.err, whole.err);
+        assert_eq!(said.out, whole.out.replacen(&of_whole, &of_shards, 1), "{analysis:?}");
+        if whole.code != 0 {
+            let refused = "the analysis found no features, and its raster has no classes";
+            assert!(said.err.contains(refused) && whole.err.contains(refused), "{} {}", said.err, whole.err);
+            continue;
+        }
+        let files = [of_shards, of_whole].map(|name| fs::read(folder.join(name)).expect("written"));
+        assert!(files[0] == files[1], "{analysis:?} as .{extension}");
+    }
 }
 
 /// The notes among what was warned of.
@@ -118,6 +139,8 @@ fn an_analysis_in_shards_has_the_bytes_of_the_whole() {
     let lines = check(&scratch, &["geomorphons", "dem.tif", "--radius", "12"], "5");
     assert!(lines.iter().all(|line| line["halo"].as_u64() >= Some(12)), "{lines:?}");
     check(&scratch, &["ruggedness", "dem.tif", "--measure", "vrm", "--radius", "4"], "4");
+    check(&scratch, &["hillshade", "dem.tif"], "3");
+    check(&scratch, &["curvature", "dem.tif"], "3");
 }
 
 #[test]

@@ -5,6 +5,9 @@ use image::RgbImage;
 /// Colors are counted by so many bits a channel.
 const BITS: u32 = 6;
 
+/// Of so many colors of a palette one is kept for a color that boxes mix with others.
+const KEPT_SHARE: usize = 6;
+
 /// The colors of a picture, at most 256.
 pub struct Palette(Vec<[u8; 3]>);
 
@@ -34,12 +37,29 @@ impl Palette {
 
     /// The index of the color nearest to `color`.
     fn nearest(&self, color: [u8; 3]) -> u8 {
-        let apart = |other: &[u8; 3]| -> u32 {
-            other.iter().zip(color).map(|(&a, b)| u32::from(a.abs_diff(b)).pow(2)).sum()
-        };
-        let nearest = self.0.iter().enumerate().min_by_key(|(_, other)| apart(other));
+        let nearest = self.0.iter().enumerate().min_by_key(|(_, other)| apart(**other, color));
         nearest.map_or(0, |(index, _)| index as u8)
     }
+
+    /// Adds colors, until it has `most`, each the one that all others replace worst: the swatches of a legend, of which there
+    /// are few pixels, and which a reader compares with the map.
+    fn keep(&mut self, colors: &ColorBox, most: usize) {
+        while self.0.len() < most {
+            let fault = |&(color, count): &([u8; 3], u32)| {
+                u64::from(apart(self.color(self.nearest(color)), color)) * u64::from(count.isqrt())
+            };
+            let Some(worst) = colors.iter().max_by_key(|counted| (fault(counted), counted.0)) else { return };
+            if fault(worst) == 0 {
+                return;
+            }
+            self.0.push(worst.0);
+        }
+    }
+}
+
+/// How far apart two colors are: the sum of the squares of the differences of their channels.
+fn apart(one: [u8; 3], other: [u8; 3]) -> u32 {
+    one.iter().zip(other).map(|(&a, b)| u32::from(a.abs_diff(b)).pow(2)).sum()
 }
 
 /// Colors that are near each other, with their numbers of pixels.
@@ -60,14 +80,17 @@ impl PictureColors {
         let mean = |&(count, sums): &(u32, [u32; 3])| (sums.map(|sum| (sum / count) as u8), count);
         let mut boxes: Vec<ColorBox> =
             vec![counts.iter().filter(|(count, _)| *count > 0).map(mean).collect()];
-        while boxes.len() < most {
+        let all = boxes.concat();
+        let kept = most / KEPT_SHARE;
+        while boxes.len() < most - kept {
             let weight = |colors: &ColorBox| pixels(colors).isqrt().isqrt() * u32::from(widest(colors).1);
             let chosen = (0..boxes.len()).max_by_key(|&index| (weight(&boxes[index]), index));
             let Some(chosen) = chosen.filter(|&index| weight(&boxes[index]) > 0) else { break };
             let halves = halved(boxes.swap_remove(chosen));
             boxes.extend(halves);
         }
-        let palette = Palette(boxes.iter().map(middle).collect());
+        let mut palette = Palette(boxes.iter().map(middle).collect());
+        palette.keep(&all, most);
         let of_bins: Vec<u8> = counts
             .iter()
             .map(|counted| if counted.0 > 0 { palette.nearest(mean(counted).0) } else { 0 })
@@ -121,6 +144,17 @@ fn middle(colors: &ColorBox) -> [u8; 3] {
             colors.iter().map(|(color, count)| u64::from(color[channel]) * u64::from(*count)).sum();
         (sum / all) as u8
     })
+}
+
+#[test]
+fn a_swatch_of_few_pixels_keeps_its_color_beside_a_picture_of_many() {
+    let swatch = image::Rgb([250, 240, 190]);
+    let many = RgbImage::from_fn(256, 128, |x, y| match (x, y) {
+        (0..16, 0..10) => swatch,
+        _ => image::Rgb([(x / 2) as u8 + 60, (y * 3 / 2) as u8, ((x * y) % 251) as u8]),
+    });
+    let reduced = PictureColors::of(&many, 60);
+    assert!(apart(reduced.picture(256).get_pixel(5, 5).0, swatch.0) < 100);
 }
 
 #[test]

@@ -156,7 +156,7 @@ pub fn viewshed(lattice: &Lattice, options: &ViewshedOptions) -> Result<Viewshed
 }
 
 /// [`viewshed`] as long as `stop` is not set; `None` where it was set before the end. It ends within a ring of posts on each
-/// thread.
+/// thread. It says that it did [`SWEEP_UNITS`], part by part.
 ///
 /// # Errors
 /// As for [`viewshed`].
@@ -211,6 +211,9 @@ pub fn viewshed_by_lines(lattice: &Lattice, options: &ViewshedOptions) -> Result
 /// that the double work along their borders is negligible.
 const PARTS: usize = 8;
 
+/// The units that a viewshed says that it [did](StopFlag::did): the parts of all octants.
+pub const SWEEP_UNITS: usize = 8 * PARTS;
+
 /// The wedges that a sector touches, the largest first.
 fn wedges(frames: impl Iterator<Item = OctantFrame>, sector: &Sector) -> Vec<(OctantFrame, (f64, f64))> {
     let parts = (0..PARTS).map(|part| (part as f64 / PARTS as f64, (part + 1) as f64 / PARTS as f64));
@@ -253,10 +256,13 @@ impl<'a> Observer<'a> {
         };
         let scene = self.scene(stop);
         let wedges = wedges(OctantFrame::all(self.lattice, self.grid), &self.options.sector);
+        // What the sector leaves out is done.
+        stop.did(SWEEP_UNITS - wedges.len());
         let lines = AtomicUsize::new(0);
         // One by one in their order, so that no thread begins a large one when the others are done.
         wedges.into_iter().par_bridge().for_each(|(frame, rays)| {
             lines.fetch_add(sweep(&scene, &frame, rays, tests, answer), Ordering::Relaxed);
+            stop.did(1);
         });
         lines.into_inner()
     }

@@ -36,7 +36,8 @@ pub struct RequiredRises {
     pub lines: usize,
 }
 
-/// The rise of the target on every post that lets the observer see it; `None` where `stop` was set before the end.
+/// The rise of the target on every post that lets the observer see it; `None` where `stop` was set before the end. It says that
+/// it did [`SWEEP_UNITS`](super::SWEEP_UNITS), part by part.
 ///
 /// It is above 0 exactly where [`viewshed`](crate::sight::viewshed::viewshed) hides the target, and differs from
 /// [`required_rise`](crate::sight::rise::required_rise) by no more than [`RISE_ERROR_M`] or [`RISE_ERROR_SHARE`], whichever is
