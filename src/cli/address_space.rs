@@ -33,7 +33,7 @@ const OTHER_THREADS: u64 = 2;
 /// export it, 222 as a page. Rounded up by a tenth or more: other scenes have other small lists. A service has threads of its own.
 fn floor_of(command: &Command) -> Option<u64> {
     match command {
-        Command::Explain(_) | Command::Schema | Command::Licenses => None,
+        Command::Explain(_) | Command::Schema | Command::Catalog | Command::Licenses => None,
         Command::Export(arguments) if arguments.is_page() => Some(245),
         Command::Export(_) => Some(140),
         Command::Fly(_) => Some(110),

@@ -15,7 +15,7 @@ use crate::options::DatasetArguments;
 use crate::output::{print, print_lines, row, warn};
 use crate::output_format::output_format;
 use crate::progress::StepTimer;
-use sandtable_analysis::outcome::{Figure, Outcome, OutcomeTable, with_unit};
+use sandtable_analysis::outcome::{Figure, Outcome, OutcomeTable, ValueClass, with_unit};
 use sandtable_base::message::numbers::trimmed;
 use sandtable_catalog::kind::{AnalysisKind, AnalysisYield};
 use sandtable_catalog::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
@@ -23,7 +23,7 @@ use sandtable_catalog::{kind, kinds};
 use sandtable_dem::dem_format::DemFormat;
 use sandtable_dem::formats::WRITTEN_EXTENSIONS;
 use sandtable_export::features::FeatureFormat;
-use sandtable_export::features::analysis_json::outcome_json;
+use sandtable_export::features::analysis_json::{classes_json, outcome_json};
 use sandtable_export::features::outcome::{OutcomeFrame, export_outcome};
 use sandtable_files::{disk, raster_file};
 use sandtable_query::analysis::{Analyzed, WrittenArgument, analyze, bare_land, ground_raster};
@@ -154,8 +154,8 @@ pub fn run(command: &AnalyzeCommand) -> Result<(), CliError> {
         .map(|path| Ok::<_, CliError>((path, format(command.kind, path, input)?)))
         .transpose()?;
     let steps = StepTimer::default();
-    let outcome = match analyzed(command, output, &steps)? {
-        AnalysisMade::Written(outcome) => outcome,
+    let (outcome, classes) = match analyzed(command, output, &steps)? {
+        AnalysisMade::Written { outcome, classes } => (outcome, classes),
         AnalysisMade::InMemory(analyzed, scene) => {
             match output {
                 Some((path, AnalysisFormat::Map)) => write_map(command, &analyzed, scene, path, &steps)?,
@@ -165,21 +165,23 @@ pub fn run(command: &AnalyzeCommand) -> Result<(), CliError> {
                 }
                 None => {}
             }
-            analyzed.outcome
+            let outcome = analyzed.outcome.with_classes();
+            let classes = outcome.raster.as_ref().map(|raster| raster.classes.clone());
+            (outcome, classes.unwrap_or_default())
         }
     };
     steps.finish();
     outcome.notes.iter().for_each(|note| warn(&format!("note: {note}")));
     if command.dataset.json {
-        return print(&format!("{:#}\n", json(command, &outcome)));
+        return print(&format!("{:#}\n", json(command, &outcome, &classes)));
     }
     print_lines(&text(command, &outcome))
 }
 
 /// An analysis that was made.
 enum AnalysisMade {
-    /// Its raster was written band by band; the rest of what it gives.
-    Written(Outcome),
+    /// Its raster was written band by band; the rest of what it gives, and how a picture divides the values.
+    Written { outcome: Outcome, classes: Vec<ValueClass> },
     /// All of it, and the scene that it is of where that was built.
     InMemory(Analyzed, Option<Box<SceneModel>>),
 }
@@ -213,7 +215,7 @@ fn analyzed(
         && format.windows_writer.is_some()
         && let Some(bands) = analysis_bands(&dataset, (*kind, arguments), &crs, &stop)?
     {
-        return write_bands(command, bands, path, format).map(AnalysisMade::Written);
+        return write_bands(command, bands, path, format);
     }
     let land = match &scene {
         Some(scene) => land_of_drawn(scene, kind.layers, || open_scene_land(file, allowed, &progress))?,
@@ -260,13 +262,13 @@ fn write_bands(
     mut bands: AnalysisBands,
     path: &Path,
     format: &DemFormat,
-) -> Result<Outcome, CliError> {
+) -> Result<AnalysisMade, CliError> {
     let written = raster_file::write_windows(&mut bands, format, path, &command.dataset.file);
     match bands.problem() {
         Some(problem) => Err(problem.into()),
         None => {
             written?;
-            Ok(bands.outcome())
+            Ok(AnalysisMade::Written { outcome: bands.outcome(), classes: bands.classes().to_vec() })
         }
     }
 }
@@ -325,8 +327,11 @@ fn write(
     Ok(())
 }
 
-fn json(command: &AnalyzeCommand, outcome: &Outcome) -> Value {
+fn json(command: &AnalyzeCommand, outcome: &Outcome, classes: &[ValueClass]) -> Value {
     let mut object = outcome_json(command.kind, &command.arguments, outcome);
+    if !classes.is_empty() {
+        object["classes"] = classes_json(classes);
+    }
     object["output"] = command.output.as_ref().map(|path| path.display().to_string()).into();
     object
 }

@@ -65,6 +65,8 @@ pub enum Command {
     Symbol(SymbolArguments),
     /// Print the JSON Schema of scene files, with which editors complete and check them
     Schema,
+    /// Print the kinds of terrain analysis with their parameters, as JSON for programs that make forms of them
+    Catalog,
     /// Print the licenses of what this program is made of
     Licenses,
     /// Inspect, convert and make elevation files

@@ -5,6 +5,7 @@ mod address_space;
 mod analyze;
 mod arguments;
 mod backend;
+mod catalog;
 mod check;
 mod convert;
 mod dem_info;
@@ -117,6 +118,7 @@ fn run(arguments: &Arguments, programs: BuiltInPrograms) -> Result<(), CliError>
         Command::New(arguments) => new::run(arguments),
         Command::Symbol(arguments) => symbol::run(arguments),
         Command::Schema => schema::run(),
+        Command::Catalog => catalog::run(),
         Command::Licenses => licenses::run(),
         Command::Dem { command: DemCommand::Info(arguments) } => dem_info::run(arguments),
         Command::Dem { command: DemCommand::Convert(arguments) } => convert::run(arguments),

@@ -3,30 +3,56 @@
 //! ```text
 //! ⠹ analyzing 37 %, 24 s left [14s]
 //! ```
+//!
+//! A program that shows progress of its own, such as the plugin of QGIS, sets the environment variable `SANDTABLE_PROGRESS` to
+//! `lines`: then each step, and each percent of a step that knows its share, is a line of standard error.
+//!
+//! ```text
+//! progress: analyzing
+//! progress: analyzing 37 %
+//! ```
 
+use std::env;
 use std::fmt::Write;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 
+use crate::output::warn;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// What is left is estimated after this time, and this share: before, it is a guess.
 const LEAST_TIME: Duration = Duration::from_secs(2);
 const LEAST_SHARE: f64 = 0.02;
 
+/// The environment variable that asks for lines, by [`LINES`].
+const PROGRESS: &str = "SANDTABLE_PROGRESS";
+
+/// Its value.
+const LINES: &str = "lines";
+
+/// The time between two looks at the share: a reader sees it move, and looking costs nothing.
+const LOOK_AGAIN: Duration = Duration::from_millis(200);
+
 /// Times the steps of a command and shows the current one.
 pub struct StepTimer {
     bar: ProgressBar,
     starts: Mutex<Vec<(&'static str, Instant)>>,
+    /// Whether steps and shares are lines of standard error.
+    is_lines: bool,
 }
 
 impl Default for StepTimer {
     fn default() -> Self {
         let bar = ProgressBar::new_spinner();
         bar.enable_steady_tick(Duration::from_millis(100));
-        Self { bar: bar.with_style(step_style()), starts: Mutex::default() }
+        Self {
+            bar: bar.with_style(step_style()),
+            starts: Mutex::default(),
+            is_lines: env::var_os(PROGRESS).is_some_and(|value| value == LINES),
+        }
     }
 }
 
@@ -39,6 +65,10 @@ fn step_style() -> ProgressStyle {
 impl StepTimer {
     /// Shows beside the current step the share that `flag` states, and the time that is left.
     pub fn watch(&self, flag: Arc<StopFlag>) {
+        if self.is_lines {
+            let step = self.starts.lock().unwrap_or_else(PoisonError::into_inner).last().map(|start| start.0);
+            write_shares(step.unwrap_or_default(), &flag);
+        }
         let since = Instant::now();
         let share = move |_: &ProgressState, out: &mut dyn Write| {
             let text = flag.share().map(|share| share_text(since.elapsed(), share)).unwrap_or_default();
@@ -51,6 +81,9 @@ impl StepTimer {
     }
 
     pub fn begin(&self, step: &'static str) {
+        if self.is_lines {
+            warn(&format!("progress: {step}"));
+        }
         self.bar.set_style(step_style());
         self.bar.set_message(step);
         self.starts.lock().unwrap_or_else(PoisonError::into_inner).push((step, Instant::now()));
@@ -72,6 +105,23 @@ impl StepTimer {
         }
         times
     }
+}
+
+/// Writes each percent of a step as a line, on a thread that ends when nobody else holds the flag.
+fn write_shares(step: &'static str, flag: &Arc<StopFlag>) {
+    let flag = Arc::downgrade(flag);
+    thread::spawn(move || {
+        let mut last = None;
+        while let Some(flag) = flag.upgrade() {
+            let percent = flag.share().map(|share| (share * 100.0).floor() as u8);
+            if let Some(percent) = percent.filter(|_| percent != last) {
+                warn(&format!("progress: {step} {percent} %"));
+                last = Some(percent);
+            }
+            drop(flag);
+            thread::sleep(LOOK_AGAIN);
+        }
+    });
 }
 
 /// The share that is done, 0..=1, after some time, and the time that is left if all goes on alike.

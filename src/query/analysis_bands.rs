@@ -29,7 +29,7 @@ use crate::water_bands::{MOST_IN_MEMORY, WaterBands};
 use crate::windowed_elevation::WindowedElevation;
 use sandtable_analysis::arguments::AnalysisArguments;
 use sandtable_analysis::land::Land;
-use sandtable_analysis::outcome::{Outcome, OutcomeRaster, PostValues};
+use sandtable_analysis::outcome::{Outcome, OutcomeRaster, PostValues, ValueClass};
 use sandtable_analysis::run::run;
 use sandtable_analysis::water::banded::BandedWater;
 use sandtable_catalog::kind::{AnalysisKind, AnalysisYield};
@@ -66,6 +66,8 @@ pub struct AnalysisBands<'a> {
     stop: &'a StopFlag,
     /// What the analysis says besides its raster.
     outcome: Outcome,
+    /// How a picture divides the values; empty where that depends on all of them.
+    classes: Vec<ValueClass>,
     /// Why a band could not be analyzed.
     problem: Option<AnalyzeError>,
 }
@@ -138,6 +140,7 @@ fn made_in_bands<'a>(
         header,
         stop,
         outcome,
+        classes: raster.classes,
         problem: None,
     }))
 }
@@ -183,6 +186,11 @@ impl AnalysisBands<'_> {
         let mut outcome = self.outcome.clone();
         outcome.figures.extend(self.water.iter().flat_map(WaterBands::figures));
         outcome
+    }
+
+    /// How a picture divides the values; empty where that depends on all of them.
+    pub fn classes(&self) -> &[ValueClass] {
+        &self.classes
     }
 
     /// Why the last window could not be analyzed, where it could be read.

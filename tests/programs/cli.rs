@@ -2,6 +2,7 @@
 
 mod analyze;
 mod attacks;
+mod catalog;
 mod check;
 mod convert;
 mod export;

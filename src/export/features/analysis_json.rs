@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::outcome::json_value;
-use sandtable_analysis::outcome::{Figure, Outcome, OutcomeTable, PropertyValue};
+use sandtable_analysis::outcome::{Figure, Outcome, OutcomeTable, PropertyValue, ValueClass};
 use sandtable_catalog::kind::{AnalysisKind, AnalysisReach, AnalysisYield};
 use sandtable_catalog::kinds;
 use sandtable_catalog::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
@@ -92,6 +92,21 @@ pub fn outcome_json(kind: &AnalysisKind, arguments: &[WrittenArgument], outcome:
     })
 }
 
+/// The classes of a raster's values, rising: the least value, the name, the color and its opacity, 0 to 1.
+pub fn classes_json(classes: &[ValueClass]) -> Value {
+    let class = |class: &ValueClass| {
+        let [red, green, blue, opacity] = class.look.tint;
+        json!({
+            // As written in decimals: the value as f64 has digits that nobody stated.
+            "from": class.from.to_string().parse::<f64>().ok().filter(|from| from.is_finite()),
+            "label": class.label,
+            "color": format!("#{red:02x}{green:02x}{blue:02x}"),
+            "opacity": (f64::from(opacity) / 255.0 * 1000.0).round() / 1000.0,
+        })
+    };
+    classes.iter().map(class).collect()
+}
+
 fn table_json(table: &OutcomeTable) -> Value {
     let object = |row: &Vec<PropertyValue>| -> Map<String, Value> {
         table
@@ -107,6 +122,18 @@ fn table_json(table: &OutcomeTable) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use sandtable_analysis::outcome::Hatching;
+
+    #[test]
+    fn classes_state_their_least_value_name_color_and_opacity() {
+        let class = ValueClass::new(0.3, "steep", [255, 0, 16, 128], Hatching::None);
+        let below = ValueClass::new(f32::NEG_INFINITY, "below", [0; 4], Hatching::None);
+        let expected = json!([
+            { "from": null, "label": "below", "color": "#000000", "opacity": 0.0 },
+            { "from": 0.3, "label": "steep", "color": "#ff0010", "opacity": 0.502 },
+        ]);
+        assert_eq!(classes_json(&[below, class]), expected);
+    }
 
     #[test]
     fn the_catalog_states_forms_ranges_words_and_defaults() {
