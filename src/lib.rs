@@ -88,4 +88,5 @@ pub use sandtable_terrain::sight::Curvature;
 pub use sandtable_terrain::sight::line::{Blocker, SightEnd};
 pub use sandtable_terrain::sight::rise::Rise;
 pub use sandtable_terrain::sight::viewshed::{Sector, ViewshedOptions};
+pub use sandtable_terrain::stop_flag::StopFlag;
 pub use sandtable_view::camera::Camera;

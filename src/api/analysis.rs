@@ -85,9 +85,23 @@ impl Elevation {
     /// # Errors
     /// [`Error::Analysis`].
     pub fn analyze(&self, kind: &str, arguments: &[(&str, &str)], crs: &Crs) -> Result<Analysis, Error> {
+        self.analyze_until(kind, arguments, crs, &StopFlag::default())
+    }
+
+    /// [`Elevation::analyze`] as long as another thread does not stop it; [`StopFlag::share`] says how much of it is done.
+    ///
+    /// # Errors
+    /// [`Error::Analysis`], also where it was stopped.
+    pub fn analyze_until(
+        &self,
+        kind: &str,
+        arguments: &[(&str, &str)],
+        crs: &Crs,
+        stop: &StopFlag,
+    ) -> Result<Analysis, Error> {
         let (kind, arguments) = asked(kind, arguments)?;
         let land = bare_land(&self.dataset, (kind, &arguments), crs).map_err(failed)?;
-        let analyzed = analyze(&self.dataset, land, (kind, &arguments), crs, &StopFlag::default());
+        let analyzed = analyze(&self.dataset, land, (kind, &arguments), crs, stop);
         Ok(Analysis { kind, analyzed: analyzed.map_err(failed)?, arguments })
     }
 }
@@ -103,11 +117,25 @@ impl Scene {
     /// # Errors
     /// [`Error::Analysis`]; [`Error::OpenScene`] where its heights are exaggerated and it cannot be opened again.
     pub fn analyze(&self, kind: &str, arguments: &[(&str, &str)], crs: &Crs) -> Result<Analysis, Error> {
+        self.analyze_until(kind, arguments, crs, &StopFlag::default())
+    }
+
+    /// [`Scene::analyze`] as long as another thread does not stop it, as [`Elevation::analyze_until`].
+    ///
+    /// # Errors
+    /// As for [`Scene::analyze`]; [`Error::Analysis`] also where it was stopped.
+    pub fn analyze_until(
+        &self,
+        kind: &str,
+        arguments: &[(&str, &str)],
+        crs: &Crs,
+        stop: &StopFlag,
+    ) -> Result<Analysis, Error> {
         let (kind, arguments) = asked(kind, arguments)?;
         let model = self.true_to_scale()?;
         let dataset = Dataset::from_scene(&self.path.display().to_string(), model);
         let land = land_of(model, kind.layers);
-        let analyzed = analyze(&dataset, land, (kind, &arguments), crs, &StopFlag::default());
+        let analyzed = analyze(&dataset, land, (kind, &arguments), crs, stop);
         Ok(Analysis { kind, analyzed: analyzed.map_err(failed)?, arguments })
     }
 }

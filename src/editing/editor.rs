@@ -125,6 +125,18 @@ impl SceneSource {
         self.build_of(Assets::new(&self.path, &self.allowed)?.with_elevation(elevation), progress)
     }
 
+    /// Builds the scene with heights true to scale and without its analyses, for the land of one.
+    ///
+    /// # Errors
+    /// See [`OpenSceneError`].
+    pub fn build_land(&self) -> Result<SceneModel, OpenSceneError> {
+        let assets = Assets::new(&self.path, &self.allowed)?;
+        let mut document = self.decode(&self.text, &assets)?;
+        document.terrain.vertical_exaggeration = 1.0;
+        document.analyses.clear();
+        Ok(build(&document, &assets, &|_| ())?)
+    }
+
     /// The ground of the text as it is, saved or not, in the phase called `phase`.
     ///
     /// # Errors
@@ -189,6 +201,19 @@ impl SceneEditor {
         let assets = Assets::new(&source.path, &source.allowed)?;
         let document = source.decode(&source.text, &assets)?;
         Ok(Self { source, document, saved, done: Vec::new(), undone: Vec::new() })
+    }
+
+    /// Shows the phase called `name` from now on; the text stays as it is.
+    ///
+    /// # Errors
+    /// The scene has no such phase; the one from before is shown.
+    pub fn show_phase(&mut self, name: &str) -> Result<(), OpenSceneError> {
+        let source = SceneSource { phase: Some(name.to_owned()), ..self.source.clone() };
+        let assets = Assets::new(&source.path, &source.allowed)?;
+        let document = source.decode(&source.text, &assets)?;
+        check_phase(&document, Some(name))?;
+        (self.source, self.document) = (source, document);
+        Ok(())
     }
 
     /// The inputs of the scene, with all edits.

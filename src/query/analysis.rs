@@ -25,6 +25,7 @@ use sandtable_files::scratch_file::ScratchError;
 use sandtable_geom::crs::{Crs, CrsError};
 use sandtable_raster::raster::{Raster, Samples};
 use sandtable_scene::analyses::ground_at_posts;
+use sandtable_scene::scene_file::OpenSceneError;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::query::Surface;
@@ -55,6 +56,9 @@ pub enum AnalyzeError {
     Other { name: String, source: Box<OpenError> },
     #[error(transparent)]
     Analysis(#[from] AnalysisError),
+    /// A scene that exaggerates heights cannot be built true to scale.
+    #[error(transparent)]
+    Scene(Box<OpenSceneError>),
     /// There is no disk for what is known meanwhile.
     #[error(transparent)]
     Scratch(#[from] ScratchError),
@@ -91,7 +95,7 @@ impl AnalyzeError {
             Self::Argument { name, .. } | Self::Other { name, .. } => Some(name),
             Self::Analysis(error) => error.key(),
             Self::Unlimited { key, .. } => Some(key),
-            Self::Query(_) | Self::Ground(_) | Self::Scratch(_) | Self::Whole { .. } => None,
+            Self::Query(_) | Self::Ground(_) | Self::Scene(_) | Self::Scratch(_) | Self::Whole { .. } => None,
         }
     }
 

@@ -158,7 +158,12 @@ impl ViewerApp {
         let work = move || {
             let progress = |step| *said.lock().unwrap_or_else(PoisonError::into_inner) = step;
             let ground_in_phase = |phase: &str| source.ground_in_phase(phase);
-            let sources = AnalysisSources { assets: &assets, ground_in_phase: &ground_in_phase };
+            let true_to_scale = || source.build_land();
+            let sources = AnalysisSources {
+                assets: &assets,
+                ground_in_phase: &ground_in_phase,
+                true_to_scale: &true_to_scale,
+            };
             let tried = task.run(&sources, &stopped, &progress)?;
             let listing = AnalysisListing::new(tried.analysis());
             Ok((tried, listing))

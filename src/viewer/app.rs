@@ -266,12 +266,15 @@ impl ViewerApp {
 
     /// Opens a file; the scene from before stays until it is there. Edits of it that are not saved are lost.
     pub fn open(&mut self, path: &Path) {
-        self.start_loading(LoadingTask::File(path.to_owned(), self.options.allowed.clone()));
+        // A file that is read again is shown in the phase from before.
+        let source = self.session.as_ref().map(|session| session.editor.source());
+        let phase = source.filter(|source| source.path == path).and_then(|source| source.phase.clone());
+        self.start_loading(LoadingTask::File(path.to_owned(), self.options.allowed.clone(), phase));
         self.shows_open = false;
     }
 
     fn start_loading(&mut self, task: LoadingTask) {
-        let (LoadingTask::File(path, _) | LoadingTask::Edited(path, _)) = &task;
+        let (LoadingTask::File(path, ..) | LoadingTask::Edited(path, _)) = &task;
         let before = self.opened.as_ref().filter(|before| before.path == *path);
         let view = before.map_or_else(OpeningView::default, |before| OpeningView {
             seen: Some(before.seen_from(self.view.size)),
@@ -408,6 +411,8 @@ impl ViewerApp {
             ViewCommand::Home => self.go_to_camera(0),
             ViewCommand::NextCamera => self.go_to_camera(self.camera_number + 1),
             ViewCommand::PreviousCamera => self.go_to_camera(self.camera_number + usize::MAX),
+            ViewCommand::NextPhase => self.step_phase(1),
+            ViewCommand::PreviousPhase => self.step_phase_back(),
             ViewCommand::Orbit => self.set_mode(NavigationMode::Orbit),
             ViewCommand::Fly => self.set_mode(NavigationMode::Flight),
             ViewCommand::Walk => self.set_mode(NavigationMode::OnFoot),

@@ -27,6 +27,10 @@ pub enum ViewCommand {
     NextCamera,
     /// Goes to the camera before.
     PreviousCamera,
+    /// Shows the next phase of the scene.
+    NextPhase,
+    /// Shows the phase before.
+    PreviousPhase,
     /// Turns about the place that is looked at.
     Orbit,
     /// Flies.
@@ -144,6 +148,8 @@ pub const KEYS: &[KeyBinding] = &[
     press(NONE, Key::Num3, ViewCommand::Walk, "Walk on the ground"),
     press(NONE, Key::C, ViewCommand::NextCamera, "Next camera of the scene"),
     press(Modifiers::SHIFT, Key::C, ViewCommand::PreviousCamera, "Camera before"),
+    press(NONE, Key::Period, ViewCommand::NextPhase, "Next phase of the scene"),
+    press(NONE, Key::Comma, ViewCommand::PreviousPhase, "Phase before"),
     press(NONE, Key::Home, ViewCommand::Home, "Whole scene"),
     press(NONE, Key::H, ViewCommand::Home, ""),
     press(NONE, Key::N, ViewCommand::North, "Look north"),
@@ -231,6 +237,8 @@ pub fn shortcut_text(shortcut: &KeyboardShortcut) -> String {
         Key::Questionmark => "?",
         Key::Plus => "+",
         Key::Minus => "-",
+        Key::Period => ".",
+        Key::Comma => ",",
         Key::ArrowLeft => "Left",
         Key::ArrowRight => "Right",
         Key::ArrowUp => "Up",

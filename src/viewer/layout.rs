@@ -44,7 +44,7 @@ fn command_button(ui: &mut Ui, text: &str, command: ViewCommand) -> bool {
 impl ViewerApp {
     pub(super) fn show_menu(&mut self, ui: &mut Ui) {
         let mut commands = Vec::new();
-        let mut camera = None;
+        let (mut camera, mut phase) = (None, None);
         Panel::top("menu").show(ui, |ui| {
             ui.horizontal_wrapped(|ui| {
                 for (text, command) in [("Open", ViewCommand::Open), ("Keys", ViewCommand::Help)] {
@@ -71,6 +71,7 @@ impl ViewerApp {
                         }
                     });
                     combo.response.accessible_name("Cameras");
+                    phase = self.phase_choice(ui);
                     for (text, command) in BUTTONS {
                         if command_button(ui, text, command) {
                             commands.push(command);
@@ -113,6 +114,9 @@ impl ViewerApp {
         commands.into_iter().for_each(|command| self.run(command));
         if let Some(number) = camera {
             self.go_to_camera(number);
+        }
+        if let Some(name) = phase {
+            self.show_phase(&name);
         }
     }
 

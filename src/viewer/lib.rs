@@ -50,6 +50,7 @@ mod paging;
 #[cfg(test)]
 mod paging_tests;
 mod panels;
+mod phases;
 mod picked_part;
 mod picture_paint;
 mod picture_size;

@@ -36,8 +36,8 @@ pub struct SceneLoading {
 
 /// The task of opening a file.
 pub enum LoadingTask {
-    /// A file, with the folders that it may read.
-    File(PathBuf, Vec<PathBuf>),
+    /// A file, with the folders that it may read, and the phase to show where it has it; `None` for the first.
+    File(PathBuf, Vec<PathBuf>, Option<String>),
     /// The scene of the file at a path as it was edited.
     Edited(PathBuf, SceneSource),
 }
@@ -70,7 +70,7 @@ impl SceneLoading {
     ) -> Self {
         let (sender, news) = channel();
         let wake = Arc::new(wake);
-        let (LoadingTask::File(path, _) | LoadingTask::Edited(path, _)) = &task;
+        let (LoadingTask::File(path, ..) | LoadingTask::Edited(path, _)) = &task;
         let path = path.clone();
         thread::spawn(move || {
             let tell = |news| {
@@ -109,14 +109,16 @@ fn load(
     progress: &dyn Fn(&'static str),
 ) -> Result<LoadedFile, String> {
     progress("reading the scene file");
-    if let LoadingTask::File(path, allowed) = &task
+    if let LoadingTask::File(path, allowed, _) = &task
         && let Some(elevation) = large_elevation(path, progress)?
     {
         return load_paged((path, allowed), elevation, shown, wake, progress);
     }
     let (path, source, editor) = match task {
-        LoadingTask::File(path, allowed) => {
-            let editor = open_to_view(&path, &allowed).map_err(|error| opening_error(&error))?;
+        LoadingTask::File(path, allowed, phase) => {
+            let mut editor = open_to_view(&path, &allowed).map_err(|error| opening_error(&error))?;
+            // A phase that the file does not have any more gives way to the first.
+            let _ = phase.map(|phase| editor.show_phase(&phase));
             (path, editor.source().clone(), Some(editor))
         }
         LoadingTask::Edited(path, source) => (path, source, None),
@@ -174,7 +176,7 @@ mod tests {
 
     fn opened(path: &str) -> Result<LoadedFile, String> {
         let mut loading = SceneLoading::start(
-            LoadingTask::File(path.into(), Vec::new()),
+            LoadingTask::File(path.into(), Vec::new(), None),
             OpeningView::default(),
             LoaderSlot::default(),
             || (),

@@ -9,6 +9,7 @@
 //! | `key NAME` | presses a key of the table, such as `key Ctrl+Z` |
 //! | `fly X,Y,Z X,Y,Z N` | flies to an eye that looks at a place in N frames, heights as elevations |
 //! | `camera NAME` | goes to a camera of the scene |
+//! | `phase NAME` | shows a phase of the scene |
 //! | `pick X,Y` | says what the picture shows at a pixel |
 //! | `sun AZIMUTH,ALTITUDE` | moves the sun, degrees |
 //! | `heights FACTOR` | draws heights so many times as high |
@@ -51,6 +52,8 @@ pub enum ScriptCommand {
     },
     /// Goes to a camera by its name.
     Camera(String),
+    /// Shows a phase by its name.
+    Phase(String),
     /// Picks at a pixel.
     Pick(DVec2),
     /// Digs a crater.
@@ -99,7 +102,7 @@ pub struct ScriptError {
     expected: &'static str,
 }
 
-const EXPECTED: &str = "wait N, key NAME, fly X,Y,Z X,Y,Z N, camera NAME, pick X,Y, sun AZIMUTH,ALTITUDE, heights FACTOR, \
+const EXPECTED: &str = "wait N, key NAME, fly X,Y,Z X,Y,Z N, camera NAME, phase NAME, pick X,Y, sun AZIMUTH,ALTITUDE, heights FACTOR, \
                         hide KIND, show KIND, viewshed X,Y, edit crater X,Y RADIUS, analyze KIND KEY=VALUE, keep, discard, undo, redo, save, snapshot, snapshot FILE.png, resize WxH or quit";
 
 /// The commands of a script, each with its line as it is written.
@@ -127,6 +130,7 @@ fn command(words: &[&str]) -> Option<ScriptCommand> {
             ScriptCommand::Fly { eye: point(eye)?, target: point(target)?, frames: frames(count)? }
         }
         ["camera", _, ..] => ScriptCommand::Camera(words[1..].join(" ")),
+        ["phase", _, ..] => ScriptCommand::Phase(words[1..].join(" ")),
         ["pick", at] => ScriptCommand::Pick(place(at)?),
         ["sun", angles] => ScriptCommand::Sun(place(angles)?),
         ["viewshed", at] => ScriptCommand::Viewshed(place(at)?),

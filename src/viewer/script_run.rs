@@ -226,6 +226,7 @@ impl ScriptRun {
                 }
                 self.waits = 80;
             }
+            ScriptCommand::Phase(name) => app.show_phase(&name),
             ScriptCommand::Pick(pixel) => {
                 app.pick(pixel.as_vec2());
                 let picked = app.picked.as_ref().map(|picked| {

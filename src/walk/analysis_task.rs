@@ -12,7 +12,7 @@ use sandtable_query::analysis::{AnalyzeError, Analyzed, OtherGrounds, WrittenArg
 use sandtable_query::dataset::Dataset;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::SceneGround;
-use sandtable_scene::land::land_of;
+use sandtable_scene::land::land_of_drawn;
 use sandtable_scene::scene_file::OpenSceneError;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::lattice::Lattice;
@@ -33,6 +33,8 @@ pub struct AnalysisSources<'a> {
     pub assets: &'a Assets,
     /// The ground of the scene as it is edited, in the phase of a name.
     pub ground_in_phase: &'a dyn Fn(&str) -> Result<SceneGround, OpenSceneError>,
+    /// The scene as it is edited with heights true to scale; built only of one that exaggerates them, for what stands on it.
+    pub true_to_scale: &'a dyn Fn() -> Result<SceneModel, OpenSceneError>,
 }
 
 impl Walk {
@@ -67,7 +69,9 @@ impl AnalysisTask {
             .map(|argument| self.resolved(argument, sources.assets))
             .collect::<Result<_, _>>()?;
         progress("gathering the land");
-        let land = Land { ground: Arc::clone(&self.elevations), ..land_of(scene, kind.layers) };
+        let land = land_of_drawn(scene, kind.layers, sources.true_to_scale)
+            .map_err(|error| AnalyzeError::Scene(Box::new(error)))?;
+        let land = Land { ground: Arc::clone(&self.elevations), ..land };
         let phase = self.phase_compared(sources, progress)?;
         let named = |_: &str| phase.as_ref();
         let others = if phase.is_some() { OtherGrounds::Named(&named) } else { OtherGrounds::Files };
@@ -127,6 +131,7 @@ mod tests {
     use sandtable_picture as picture;
     use sandtable_picture::tried_analysis::tried_feature;
     use sandtable_query::analysis::analyze;
+    use sandtable_scene::land::land_of;
     use sandtable_scene::scene_file::open_scene_land;
     use std::path::Path;
 
@@ -137,6 +142,8 @@ mod tests {
         let scene = editor.source().build(&|_| ()).expect("sound");
         Walk::new(Arc::new(scene), WalkOptions::default())
     }
+
+    const NO_SCALE: fn() -> Result<SceneModel, OpenSceneError> = || panic!("heights are true to scale");
 
     const NO_PHASE: fn(&str) -> Result<SceneGround, OpenSceneError> =
         |name| Err(OpenSceneError::NoPhase { name: name.to_owned(), names: Vec::new() });
@@ -150,7 +157,8 @@ mod tests {
         let kind = sandtable_catalog::kind(kind).expect("a kind");
         let task = walk.analysis_task((kind, kind.title.to_owned()), written(arguments));
         let assets = Assets::new(Path::new(SCENE), &[]).expect("a folder");
-        let sources = AnalysisSources { assets: &assets, ground_in_phase: &NO_PHASE };
+        let sources =
+            AnalysisSources { assets: &assets, ground_in_phase: &NO_PHASE, true_to_scale: &NO_SCALE };
         task.run(&sources, &StopFlag::default(), &|_| ())
     }
 
@@ -186,6 +194,56 @@ mod tests {
             };
             assert_eq!(values(&found.outcome), values(&wanted.outcome), "{name}");
         }
+    }
+
+    #[test]
+    fn on_an_exaggerated_scene_a_tried_analysis_has_the_bits_of_the_command() {
+        let folder = std::env::temp_dir().join(format!("sandtable-exaggerated-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder");
+        let path = folder.join("scene.toml");
+        let dem = concat!(env!("SANDTABLE_ROOT"), "assets/jacksboro/valley.asc");
+        let dem = serde_json::Value::from(dem);
+        let text = format!(
+            "[terrain]\ndem = {dem}\ncrs = \"EPSG:32616\"\nvertical_exaggeration = 2.7\n\
+             [[building]]\npoints = [[751200, 4020800], [751500, 4020800], [751500, 4021000], [751200, 4021000]]\n\
+             height = 11.3\n"
+        );
+        std::fs::write(&path, &text).expect("written");
+        let allowed = [Path::new(env!("SANDTABLE_ROOT")).join("assets")];
+        let source = sandtable_editing::editor::SceneSource {
+            path: path.clone(),
+            allowed: allowed.to_vec(),
+            phase: None,
+            text,
+        };
+        let of_command = open_scene_land(&path, &allowed, &|_| ()).expect("sound");
+        let kind = sandtable_catalog::kind("viewsheds").expect("a kind");
+        let arguments = written(&[("posts", "751800,4020500"), ("range", "4000")]);
+        let dataset = Dataset::from_scene("scene", &of_command);
+        let land = land_of(&of_command, kind.layers);
+        assert!(
+            land.obstacles_m.iter().flatten().any(|height_m| *height_m > 3.0),
+            "a building stands there"
+        );
+        let stop = StopFlag::default();
+        let wanted = analyze(&dataset, land, (kind, &arguments), &of_command.crs, &stop).expect("an outcome");
+        let walk = Walk::new(Arc::new(source.build(&|_| ()).expect("sound")), WalkOptions::default());
+        let assets = Assets::new(&path, &allowed).expect("a folder");
+        let true_to_scale = || source.build_land();
+        let sources =
+            AnalysisSources { assets: &assets, ground_in_phase: &NO_PHASE, true_to_scale: &true_to_scale };
+        let task = walk.analysis_task((kind, "seen".to_owned()), arguments.clone());
+        let tried = task.run(&sources, &stop, &|_| ()).expect("an outcome");
+        let found = tried.analysis();
+        assert_eq!(found.outcome.figures, wanted.outcome.figures);
+        let values = |outcome: &sandtable_analysis::outcome::Outcome| {
+            bits(&outcome.raster.as_ref().expect("a raster").values)
+        };
+        assert_eq!(values(&found.outcome), values(&wanted.outcome));
+        let heights =
+            |ground: &Lattice| ground.heights().iter().map(|height| height.to_bits()).collect::<Vec<_>>();
+        assert!(heights(&found.ground) == heights(&wanted.ground), "the ground itself is the same");
+        std::fs::remove_dir_all(&folder).expect("removed");
     }
 
     #[test]
@@ -232,7 +290,11 @@ mod tests {
             let task = walk.analysis_task((kind, "pit".to_owned()), arguments);
             let assets = Assets::new(&path, &[]).expect("a folder");
             let ground_in_phase = |name: &str| source.ground_in_phase(name);
-            let sources = AnalysisSources { assets: &assets, ground_in_phase: &ground_in_phase };
+            let sources = AnalysisSources {
+                assets: &assets,
+                ground_in_phase: &ground_in_phase,
+                true_to_scale: &NO_SCALE,
+            };
             let tried = task.run(&sources, &StopFlag::default(), &|_| ())?;
             let figures = &tried.analysis().outcome.figures;
             Ok::<_, AnalyzeError>(figures.iter().find(|figure| figure.name == "cut").map(|cut| cut.value))

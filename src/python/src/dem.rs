@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyAnyMethods, PyDict, PyTuple};
 use sandtable::{
     Crs, Dem, DemOptions, Elevation, HeightSlices, HillshadeOptions, Interpolation, Samples, Sampling,
-    Sector, SightQuery, Status, Surface, ViewshedOptions,
+    Sector, SightQuery, Status, StopFlag, Surface, ViewshedOptions,
 };
 
 use crate::analysis::analyzed;
@@ -313,16 +313,23 @@ impl PyDem {
     /// shapely. `extent` is (x0, y0, x1, y1), two opposite corners or a ring. A kind that gives a raster alone makes an
     /// `xarray.DataArray`, which needs xarray; every other an `Analysis`. Roads, water,
     /// woods and buildings are not known, and a note says so. Raises SandtableError.
-    #[pyo3(signature = (kind, *, crs = None, **arguments))]
+    ///
+    /// `progress` is called with the share that is done, 0 to 1, some times a second; an exception of it ends the analysis. With
+    /// `progress=True` the share is printed on standard error.
+    #[pyo3(signature = (kind, *, crs = None, progress = None, **arguments))]
     fn analyze<'py>(
         &self,
         py: Python<'py>,
         kind: &str,
         crs: Option<&Bound<'py, PyAny>>,
+        progress: Option<&Bound<'py, PyAny>>,
         arguments: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let crs = crs_or(crs, || self.elevation.crs())?;
-        analyzed(py, arguments, crs, |texts, crs| self.elevation.analyze(kind, texts, crs))
+        let analyze = |texts: &[(&str, &str)], crs: &Crs, stop: &StopFlag| {
+            self.elevation.analyze_until(kind, texts, crs, stop)
+        };
+        analyzed(py, (arguments, progress), crs, analyze)
     }
 
     /// The mesh of the ground with few triangles that is nowhere off by more than `max_error` meters, verified at every post.

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use numpy::{PyArray1, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
-use sandtable::{Finding, Scene, SceneOptions};
+use sandtable::{Crs, Finding, Scene, SceneOptions, StopFlag};
 
 use crate::analysis::analyzed;
 use crate::arguments::crs_or;
@@ -103,16 +103,23 @@ impl PyScene {
     /// shapely. `extent` is (x0, y0, x1, y1), two opposite corners or a ring. A kind that gives a raster alone makes an
     /// `xarray.DataArray`, which needs xarray; every other an `Analysis`. The ground has its
     /// earthworks, and roads, water, woods and buildings are known. Raises SandtableError.
-    #[pyo3(signature = (kind, *, crs = None, **arguments))]
+    ///
+    /// `progress` is called with the share that is done, 0 to 1, some times a second; an exception of it ends the analysis. With
+    /// `progress=True` the share is printed on standard error.
+    #[pyo3(signature = (kind, *, crs = None, progress = None, **arguments))]
     fn analyze<'py>(
         &self,
         py: Python<'py>,
         kind: &str,
         crs: Option<&Bound<'py, PyAny>>,
+        progress: Option<&Bound<'py, PyAny>>,
         arguments: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let crs = crs_or(crs, || self.scene.crs())?;
-        analyzed(py, arguments, crs, |texts, crs| self.scene.analyze(kind, texts, crs))
+        let analyze = |texts: &[(&str, &str)], crs: &Crs, stop: &StopFlag| {
+            self.scene.analyze_until(kind, texts, crs, stop)
+        };
+        analyzed(py, (arguments, progress), crs, analyze)
     }
 
     fn __repr__(&self) -> String {

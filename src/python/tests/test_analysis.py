@@ -120,6 +120,35 @@ def test_an_exaggerated_scene_is_analyzed_true_to_scale(program, tmp_path):
         assert values == [figure["value"] for figure in said["figures"]]
 
 
+POSTS = {"posts": [(-84.2, 36.3), (-84.13, 36.34), (-84.29, 36.21)], "crs": "EPSG:4326"}
+
+
+def test_progress_is_called_with_rising_shares_and_changes_no_bit(dem):
+    shares = []
+    tried = {"kind": "best-posts", "count": 3, "spacing": 2000}
+    told = dem.analyze(**tried, progress=shares.append)
+    assert shares == sorted(shares) and shares[-1] == 1.0 and all(0.0 <= share <= 1.0 for share in shares)
+    np.testing.assert_array_equal(told.raster, dem.analyze(**tried).raster)
+
+
+def test_progress_true_prints_on_standard_error_alone(dem, capfd):
+    dem.analyze("viewsheds", progress=True, **POSTS)
+    out, err = capfd.readouterr()
+    assert out == "" and err.endswith("100%\n")
+    dem.analyze("viewsheds", progress=False, **POSTS)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_an_exception_of_progress_ends_the_analysis(dem):
+    def fail(share):
+        raise KeyError("enough")
+
+    with pytest.raises(KeyError, match="enough"):
+        dem.analyze("viewsheds", progress=fail, **POSTS)
+    with pytest.raises(TypeError, match="progress is a str"):
+        dem.analyze("slope", progress="bar")
+
+
 def test_what_is_wrong_is_named(dem):
     with pytest.raises(sandtable.SandtableError, match="`unit`.*degrees"):
         dem.analyze("slope", unit="degree")

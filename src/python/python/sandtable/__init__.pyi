@@ -1,4 +1,4 @@
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from os import PathLike
 from typing import Any, Literal, final
 
@@ -181,7 +181,14 @@ class Dem:
         flat: bool = False,
         crs: _Crs | None = None,
     ) -> Raster: ...
-    def analyze(self, kind: str, *, crs: _Crs | None = None, **arguments: Any) -> Any: ...
+    def analyze(
+        self,
+        kind: str,
+        *,
+        crs: _Crs | None = None,
+        progress: bool | Callable[[float], object] | None = None,
+        **arguments: Any,
+    ) -> Any: ...
     def mesh(self, max_error: float) -> Mesh: ...
     def hillshade(self, azimuth: float = 315.0, altitude: float = 45.0) -> Raster: ...
 
@@ -218,7 +225,14 @@ class Scene:
     def render(
         self, camera: str | None = None, size: tuple[int, int] | None = None
     ) -> NDArray[np.uint8]: ...
-    def analyze(self, kind: str, *, crs: _Crs | None = None, **arguments: Any) -> Any: ...
+    def analyze(
+        self,
+        kind: str,
+        *,
+        crs: _Crs | None = None,
+        progress: bool | Callable[[float], object] | None = None,
+        **arguments: Any,
+    ) -> Any: ...
 
 @final
 class Plan:
