@@ -37,19 +37,17 @@ const TRIANGLES: &str = "Ways lead from post to post and across the triangles be
      planes times 32 posts away are up to 0.7 % too long where the ground is alike in all directions (1.8 % nearer, 0.5 % from \
      96 posts on), up to 2.4 % for vehicles on slopes that they go freely and 9 % on steeper ones; for people on foot by Tobler's \
      function up to 2 % where the ground rises 10 %, 5 % where it rises 20 %, 8 % where it rises 40 % and 13 % where it rises \
-     70 %, by Langmuir's rule up to 4, 9 and 22 % where it rises 20, 40 and 70 %. A `route`, which goes from post to post alone, \
-     takes longer, on foot on real ground by up to 2.5 % on average and 15 % at most; where slopes near a vehicle's limits leave \
-     few directions open it takes up to three times as long or finds no way.";
+     70 %, by Langmuir's rule up to 4, 9 and 22 % where it rises 20, 40 and 70 %. Between posts times lie between \
+     theirs, so that on rough ground they may be too short: a `route` takes on real ground the time at its end within 1 % on \
+     average.";
 
 /// What is wrong with ways on a lattice.
-const METRICATION: &str = "Routes go to sixteen neighbors, as those of `r.walk -k` do: they take up to 2.75 % too long where the \
-     ground is alike in all directions, and for vehicles on slopes that they go freely up to 3 %. On a plane that rises \
-     steadily people on foot by Tobler's function take up to 4 % too long where it rises 10 %, 20 % where it rises 20 %, and \
-     42 % where it rises 70 %, along directions that fall by about 5 %: the quickest ones, which sixteen directions miss. \
-     By Langmuir's rule, at its break of 21 %, routes take up to 1.5 times as long on planes of 40 % and 3.7 times on planes of \
-     70 %. The kind `time` leads across the triangles between posts too: on real ground its times on foot are up to 2.5 % shorter \
-     on average and 15 % at most, and slopes near a vehicle's limits let it through where a route takes three times as long or \
-     finds no way. Lengths are those on the map.";
+const METRICATION: &str = "Routes are traced back through the times of the kind `time`, across the triangles between posts, and \
+     their points are moved along the sides to where they take the least. On real ground they take what `time` says at their \
+     end within 1 % on average, nine of ten within 5 % (8 % near the limits of a vehicle), and never longer than from post to \
+     post by sixteen steps. On level ground they are up to 0.2 % too long. Heights on a side lie on the line between its ends. \
+     Where `time` reaches a post past a side too steep to go along, the route goes along it at the slowest that the vehicle \
+     may. Lengths are those on the map.";
 
 /// What is known of slopes across the way.
 const WAY_SLOPES: &str = "Vehicles are slowed by slopes up, down and across; on roads and bridges a grade counts at most as the \
@@ -217,7 +215,8 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
         yields: AnalysisYield::Features,
         reach: AnalysisReach::Whole,
         layers: GOING_LAYERS,
-        source: "Dijkstra 1959 with the queue of Dial 1969; Tobler 1993; Naismith 1892 with Langmuir 1984",
+        source: "Dijkstra 1959 with the queue of Dial 1969, toward its end as Hart, Nilsson and Raphael 1968; Tobler 1993; \
+                 Naismith 1892 with Langmuir 1984; across triangles after Sethian and Vladimirsky 2003",
         limits: &[
             NO_SOIL,
             UNKNOWN_DEPTH,

@@ -13,15 +13,15 @@ use crate::line_posts::along_line;
 use crate::measures::post_grid;
 use crate::movement::corridors::{FreeGround, echelon};
 use crate::movement::route::{RouteMeasures, way_line};
-use crate::movement::search::TravelGoal;
 use crate::movement::travel::{TravelGround, travel_ground};
+use crate::movement::way::WayPoint;
 use crate::outcome::{
     FeatureRole, Figure, Outcome, OutcomeFeature, OutcomeShape, OutcomeTable, PropertyValue, TableColumn,
 };
 use sandtable_geom::distance_field::distances_m;
 use sandtable_terrain::stop_flag::StopFlag;
 
-/// A route does not differ where more than this share of its posts lie near earlier ones.
+/// A route does not differ where more than this share of the posts nearest to it lie near earlier ones.
 const MOST_SHARED: f64 = 0.8;
 
 /// Avenues with the free width at each of their posts.
@@ -31,10 +31,12 @@ struct AvenueSet {
 }
 
 struct Avenue {
-    way: Vec<usize>,
+    way: Vec<WayPoint>,
+    /// Of the points of the way.
+    positions: Vec<DVec2>,
     line: Vec<DVec2>,
     measures: RouteMeasures,
-    /// The free width at each post of the way, meters, 0 on ground that is not free; infinite where nothing limits it.
+    /// The free width at the post nearest to each point of the way, meters, 0 on ground that is not free; infinite where nothing limits it.
     widths_m: Vec<f64>,
     /// The share of its posts that lie near earlier avenues.
     shared: f64,
@@ -81,20 +83,17 @@ fn find_avenues(
     let mut is_near = vec![false; codes.len()];
     let mut avenues: Vec<Avenue> = Vec::new();
     for _ in 0..count {
-        let times = ground.times(&starts, TravelGoal::any_of(&ends), stop);
-        if stop.is_stopped() {
-            return Err(AnalysisError::Stopped);
-        }
-        let reached = ends.iter().copied().filter(|&end| times[end].is_finite());
-        let Some(end) = reached.min_by(|&one, &other| times[one].total_cmp(&times[other])) else {
+        let Some(way) = ground.quickest_way(&starts, &ends, stop)? else {
             return Err(AnalysisError::argument(
                 "to_line",
                 "is not reached from `from_line`: water, slopes or walls lie between",
             ));
         };
-        let way = ground.way_to(&times, end);
-        let near = way.iter().filter(|&&index| is_near[index]).count();
-        let shared = near as f64 / way.len() as f64;
+        let mut posts: Vec<usize> = way.iter().map(|&point| ground.nearest_post(point)).collect();
+        let widths_m = posts.iter().map(|&index| free.width_at_m(index)).collect();
+        posts.dedup();
+        let near = posts.iter().filter(|&&index| is_near[index]).count();
+        let shared = near as f64 / posts.len() as f64;
         if shared > MOST_SHARED {
             notes.push(format!(
                 "there are {} avenues that differ; a further one shares more than {} % with these",
@@ -104,7 +103,7 @@ fn find_avenues(
             break;
         }
         let mut is_off = vec![true; codes.len()];
-        way.iter().for_each(|&index| is_off[index] = false);
+        posts.iter().for_each(|&index| is_off[index] = false);
         let from_way_m = distances_m(&is_off, grid);
         drop(is_off);
         let mut slowed = Vec::new();
@@ -114,9 +113,9 @@ fn find_avenues(
                 slowed.push(index);
             }
         }
-        let widths_m = way.iter().map(|&index| free.width_at_m(index)).collect();
-        let line = way_line(&land.ground, &way);
-        avenues.push(Avenue { way, line, measures: RouteMeasures::default(), widths_m, shared });
+        let positions = way.iter().map(|&point| ground.position(point)).collect();
+        let (line, measures) = (way_line(&ground, &way), RouteMeasures::default());
+        avenues.push(Avenue { way, positions, line, measures, widths_m, shared });
         ground.slow_down(slowed, penalty);
     }
     ground.undo_slowing();
@@ -212,7 +211,7 @@ pub(crate) fn chokes(
     let set = find_avenues(land, arguments, stop)?;
     let mut places: Vec<ChokePoint> = Vec::new();
     for (rank, avenue) in set.avenues.iter().enumerate() {
-        places.extend(narrow_places(land, rank, avenue));
+        places.extend(narrow_places(rank, avenue));
     }
     // A stable sort: ties stay by avenue and station.
     places.sort_by(|one, other| one.width_m.total_cmp(&other.width_m));
@@ -257,12 +256,12 @@ pub(crate) fn chokes(
 }
 
 /// The places where an avenue is narrower than before and after; of a stretch of equal width, its middle.
-fn narrow_places(land: &Land, rank: usize, avenue: &Avenue) -> Vec<ChokePoint> {
+fn narrow_places(rank: usize, avenue: &Avenue) -> Vec<ChokePoint> {
     let widths = &avenue.widths_m;
-    let position = |at: usize| land.ground.map_position(land.ground.post_at(avenue.way[at]));
+    let positions = &avenue.positions;
     let mut stations = vec![0.0];
-    for at in 1..avenue.way.len() {
-        stations.push(stations[at - 1] + position(at - 1).distance(position(at)));
+    for (at, ends) in positions.windows(2).enumerate() {
+        stations.push(stations[at] + ends[0].distance(ends[1]));
     }
     let mut places = Vec::new();
     let mut first = 0;
@@ -278,7 +277,7 @@ fn narrow_places(land: &Land, rank: usize, avenue: &Avenue) -> Vec<ChokePoint> {
         if widths[first].is_finite() && is_limited && is_narrower(before) && is_narrower(after) {
             let middle = (first + last) / 2;
             places.push(ChokePoint {
-                at: position(middle),
+                at: positions[middle],
                 width_m: widths[first],
                 avenue: rank,
                 station_m: stations[middle],

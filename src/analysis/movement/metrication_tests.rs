@@ -94,7 +94,7 @@ fn on_planes_times_are_too_long_by_no_more_than_the_catalog_says() {
 }
 
 #[test]
-fn toward_a_goal_times_are_those_of_looking_everywhere() {
+fn toward_a_goal_times_are_those_of_looking_everywhere_in_however_many_lanes() {
     let mut land = shaped(61, 47, 20.0, |column, row| {
         ((column * 7 + row * 13 + column * row) % 17) as f32 * 0.4 + (column as f32 * 0.2).sin() * 30.0
     });
@@ -102,21 +102,28 @@ fn toward_a_goal_times_are_those_of_looking_everywhere() {
     let road =
         |ends| RoadLine { name: String::new(), line: line(ends), surface: RoadClass::Main, width_m: 6.0 };
     land.roads = Some(vec![road([[0.0, 100.0], [1200.0, 300.0]]), road([[300.0, 0.0], [900.0, 920.0]])]);
-    for name in ["foot", "truck", "tracked"] {
+    let stop = StopFlag::default();
+    for (name, has_triangles) in [("foot", true), ("truck", true), ("tracked", true), ("truck", false)] {
         let mut ground = travel(&land, &Vehicle::built_in(name).expect("built in"));
+        ground.has_triangles = has_triangles;
         ground.slow_down(1000..1100, 3.0);
         for start in [0, 61 * 20 + 7, 61 * 47 - 1] {
-            ground.has_triangles = false;
             let all = everywhere(&ground, &[start]);
             for ends in [vec![61 * 30 + 50], vec![5, 6, 7, 70], vec![61 * 46, 61 * 46 + 60], vec![start]] {
-                let times = ground.times(&[start], TravelGoal::any_of(&ends), &StopFlag::default());
+                let toward = |lanes| {
+                    let found = ground.search_in_lanes(&[start], TravelGoal::any_of(&ends), &stop, lanes);
+                    ground.inner_times(&found)
+                };
+                let times = toward(1);
                 let nearest = |times: &[f32]| {
                     ends.iter().copied().min_by(|&a, &b| times[a].total_cmp(&times[b])).expect("ends")
                 };
                 let end = nearest(&all);
                 assert_eq!((nearest(&times), times[end]), (end, all[end]), "{name} {start} {ends:?}");
-                assert_eq!(ground.way_to(&times, end), ground.way_to(&all, end), "{name} {start} {ends:?}");
                 assert!(times.iter().zip(&all).all(|(found, least)| found >= least));
+                for lanes in [2, 4] {
+                    assert_eq!(toward(lanes), times, "{name} {start} {ends:?} {lanes}");
+                }
             }
         }
     }

@@ -9,11 +9,14 @@ mod isochrones;
 mod neighbors;
 pub(crate) mod obstacles;
 mod queue;
+mod refine;
 mod route;
 mod search;
+mod trace;
 mod travel;
 mod triangles;
 pub mod vehicle;
+mod way;
 
 use crate::run::KindFunction;
 

@@ -2,7 +2,6 @@
 
 use super::tests::everywhere;
 use super::*;
-use crate::movement::search::TravelGoal;
 use crate::test_land::shaped;
 use crate::test_places::{PLACES, place, table};
 use sandtable_terrain::stop_flag::StopFlag;
@@ -112,9 +111,9 @@ fn routes_cost_what_those_of_scikit_image_do_and_never_more() {
             let [column, line] = [1, 2].map(|cell: usize| row[cell].parse::<usize>().expect("a number"));
             let wanted: f64 = row[3].parse().expect("a number");
             let end = line * columns + column;
-            let times = ground.times(&[start(&land)], TravelGoal::any_of(&[end]), &StopFlag::default());
-            let way = ground.way_to(&times, end);
-            let along = *ground.seconds_along(&way).last().expect("posts");
+            let way =
+                ground.quickest_way(&[start(&land)], &[end], &StopFlag::default()).expect("not stopped");
+            let along = ground.seconds_along(&way.expect("a way"));
             assert!((along / wanted - 1.0).abs() < 1e-4, "{name} {row:?}: {along}");
             // With knight's moves, a route is at most as long, and at least as long as the straight bound of eight.
             let short = f64::from(of_sixteen[end]) / wanted;

@@ -21,6 +21,8 @@ pub(crate) struct BucketQueue {
     /// The bucket that is emptied, counted from time 0.
     current: u64,
     entries: usize,
+    /// The least time beyond the bucket that is emptied, seconds.
+    emptied_to_s: f32,
     /// Whether a post was put into a bucket before its own, since that lay beyond the ring.
     has_early: bool,
     /// An empty bucket, for its memory.
@@ -34,7 +36,17 @@ impl BucketQueue {
         let width = shortest_s.max(longest_s / (MOST_BUCKETS - 3) as f64);
         let count = ((longest_s / width) as usize).min(MOST_BUCKETS - 3) + 3;
         let buckets = vec![Vec::new(); count];
-        Self { buckets, per_second: 1.0 / width, current: 0, entries: 0, has_early: false, spare: Vec::new() }
+        let per_second = 1.0 / width;
+        let emptied_to_s = emptied_to_s(0, per_second);
+        Self {
+            buckets,
+            per_second,
+            current: 0,
+            entries: 0,
+            emptied_to_s,
+            has_early: false,
+            spare: Vec::new(),
+        }
     }
 
     /// The bucket of a time, counted from time 0; never one that was emptied, nor one beyond the ring.
@@ -66,9 +78,21 @@ impl BucketQueue {
         entry.time_s == time_s || (f64::from(expected_s) * self.per_second) as u64 == self.current
     }
 
-    /// A time, seconds, up to which all posts are in the bucket that is emptied or were in earlier ones.
+    /// The least time, seconds, of a post beyond the bucket that is emptied: those expected before it are or were in buckets
+    /// that were emptied.
+    #[inline]
     pub fn emptied_to_s(&self) -> f32 {
-        ((self.current + 1) as f64 / self.per_second) as f32 * (1.0 + 1e-6)
+        self.emptied_to_s
+    }
+
+    /// When a bucket begins, seconds.
+    pub fn start_s(&self, bucket: u64) -> f64 {
+        bucket as f64 / self.per_second
+    }
+
+    /// Puts back a post that is expected beyond the bucket in which it was, since that lay beyond the ring.
+    pub fn put_back(&mut self, post: QueuedPost, expected_s: f32) {
+        self.push(post, expected_s, f32::INFINITY);
     }
 
     /// The first bucket from the one that is emptied on that has posts.
@@ -81,7 +105,10 @@ impl BucketQueue {
     /// Takes the posts of a bucket, no earlier than any that was taken and no later than the first that has posts; posts that
     /// are pushed into it later are taken next.
     pub fn take_bucket(&mut self, bucket: u64) -> Vec<QueuedPost> {
-        self.current = bucket;
+        if bucket != self.current {
+            self.current = bucket;
+            self.emptied_to_s = emptied_to_s(bucket, self.per_second);
+        }
         let count = self.buckets.len() as u64;
         let posts = &mut self.buckets[(bucket % count) as usize];
         self.entries -= posts.len();
@@ -98,4 +125,17 @@ impl BucketQueue {
         bucket.clear();
         self.spare = bucket;
     }
+}
+
+/// The least time that lies beyond a bucket.
+fn emptied_to_s(bucket: u64, per_second: f64) -> f32 {
+    let is_beyond = |time_s: f32| (f64::from(time_s) * per_second) as u64 > bucket;
+    let mut time_s = ((bucket + 1) as f64 / per_second) as f32;
+    while time_s > 0.0 && is_beyond(time_s.next_down()) {
+        time_s = time_s.next_down();
+    }
+    while time_s.is_finite() && !is_beyond(time_s) {
+        time_s = time_s.next_up();
+    }
+    time_s
 }

@@ -5,15 +5,18 @@ use glam::DVec2;
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
-use crate::movement::search::TravelGoal;
 use crate::movement::travel::{TravelGround, travel_ground};
+use crate::movement::way::WayPoint;
 use crate::outcome::{
     FeatureRole, Figure, Outcome, OutcomeFeature, OutcomeShape, OutcomeTable, PropertyValue, TableColumn,
 };
-use sandtable_terrain::lattice::Lattice;
+use sandtable_geom::simplify::simplified;
 use sandtable_terrain::stop_flag::StopFlag;
 
-/// What a way is: lengths in meters, on the map; climb and descent between its posts.
+/// How far a line may leave the points of its way, in cells: less than anybody sees.
+const STRAIGHT_CELLS: f64 = 0.01;
+
+/// What a way is: lengths in meters, on the map; climb and descent between its points.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct RouteMeasures {
     /// Its length on the map, meters.
@@ -27,30 +30,31 @@ pub(crate) struct RouteMeasures {
 }
 
 impl RouteMeasures {
-    /// Of posts that follow each other.
-    pub fn of(ground: &TravelGround<'_>, way: &[usize]) -> Self {
-        let lattice = ground.lattice();
-        let mut measures = Self::default();
+    /// Of points that follow each other.
+    pub fn of(ground: &TravelGround<'_>, way: &[WayPoint]) -> Self {
+        let mut measures = Self { seconds: ground.seconds_along(way), ..Self::default() };
         for ends in way.windows(2) {
-            let [from, to] = [ends[0], ends[1]].map(|index| lattice.map_position(lattice.post_at(index)));
-            measures.length_m += from.distance(to);
-            let rise = f64::from(ground.height_m(ends[1])) - f64::from(ground.height_m(ends[0]));
+            let [from, to] = [ends[0], ends[1]];
+            measures.length_m += ground.position(from).distance(ground.position(to));
+            let rise = f64::from(ground.height_at_m(to)) - f64::from(ground.height_at_m(from));
             measures.climb_m += rise.max(0.0);
             measures.descent_m += (-rise).max(0.0);
         }
-        measures.seconds = ground.seconds_along(way).last().copied().unwrap_or(0.0);
         measures
     }
 }
 
 /// The positions of a way where its direction changes, its ends included.
-pub(crate) fn way_line(lattice: &Lattice, way: &[usize]) -> Vec<DVec2> {
-    let step = |from: usize, to: usize| to as i64 - from as i64;
-    let is_kept = |at: usize| {
-        at == 0 || at + 1 == way.len() || step(way[at - 1], way[at]) != step(way[at], way[at + 1])
+pub(crate) fn way_line(ground: &TravelGround<'_>, way: &[WayPoint]) -> Vec<DVec2> {
+    let positions: Vec<DVec2> = way.iter().map(|&point| ground.position(point)).collect();
+    let slack_m = ground.lattice().cell().min_element() * STRAIGHT_CELLS;
+    let off_m = |first: usize, last: usize, at: usize| {
+        let [along, beside] = [last, at].map(|other| positions[other] - positions[first]);
+        let share = (beside.dot(along) / along.length_squared()).clamp(0.0, 1.0);
+        (beside - along * share).length()
     };
-    let kept = (0..way.len()).filter(|&at| is_kept(at));
-    let mut line: Vec<DVec2> = kept.map(|at| lattice.map_position(lattice.post_at(way[at]))).collect();
+    let kept = simplified(positions.len(), slack_m, off_m);
+    let mut line: Vec<DVec2> = kept.into_iter().map(|at| positions[at]).collect();
     if line.len() == 1 {
         line.push(line[0]);
     }
@@ -75,20 +79,15 @@ pub(crate) fn route(
         .iter()
         .map(|&(key, at)| ground.post_near(key, at))
         .collect::<Result<Vec<usize>, AnalysisError>>()?;
-    let mut way: Vec<usize> = posts.first().copied().into_iter().collect();
+    let mut way: Vec<WayPoint> = posts.first().map(|&post| ground.point_at(post)).into_iter().collect();
     let start_min = arguments.number("start_h") * 60.0;
     let (mut rows, mut total) = (Vec::new(), RouteMeasures::default());
     for (leg, ends) in posts.windows(2).enumerate() {
-        let times = ground.times(&ends[..1], TravelGoal::any_of(&ends[1..]), stop);
-        if stop.is_stopped() {
-            return Err(AnalysisError::Stopped);
-        }
-        if times[ends[1]].is_infinite() {
+        let Some(part) = ground.quickest_way(&ends[..1], &ends[1..], stop)? else {
             let (key, at) = places[leg + 1];
             let problem = "no way leads there: water, slopes or walls surround it or the place before it";
             return Err(AnalysisError::Place { key, at, problem });
-        }
-        let part = ground.way_to(&times, ends[1]);
+        };
         let measures = RouteMeasures::of(&ground, &part);
         total.length_m += measures.length_m;
         total.climb_m += measures.climb_m;
@@ -101,7 +100,7 @@ pub(crate) fn route(
     }
     rows.push(leg_row("all".to_owned(), &total, start_min + total.seconds / 60.0));
     let mut features = vec![OutcomeFeature {
-        shape: OutcomeShape::Line(way_line(ground.lattice(), &way)),
+        shape: OutcomeShape::Line(way_line(&ground, &way)),
         name: String::new(),
         role: FeatureRole::Route,
         properties: vec![

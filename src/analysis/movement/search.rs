@@ -1,11 +1,10 @@
 //! The time that a vehicle takes from places to every post, or to a goal: shortest ways over the ground.
 //!
-//! To all posts, ways lead by steps and across triangles; toward a goal by steps alone, so that the posts of a way are known
-//! from the times alone, ties by the order of neighbors.
-//!
 //! Times are sums of f32. Such a sum never falls as a summand rises, so the least time of each post is one number, whatever
 //! the order in which posts are reached. Threads share the posts in blocks of rows, each with a queue for its own, and go
-//! through the buckets together: what one reaches in a block of another, it hands over before the next bucket.
+//! through the buckets together: what one reaches in a block of another, it hands over before the next bucket. Only posts
+//! whose bucket was emptied or is being emptied lead on, and a search ends between buckets: what it found by then is one set
+//! of numbers, too.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -102,25 +101,39 @@ struct SearchLane {
     looks: usize,
 }
 
+/// Seconds to posts, by their bits and by the indices of posts with the border; infinite where none is reached.
+pub(super) struct TravelTimes(Vec<AtomicU32>);
+
+impl TravelTimes {
+    /// The time of a post.
+    #[inline]
+    pub fn time_s(&self, post: usize) -> f32 {
+        f32::from_bits(self.0[post].load(Ordering::Relaxed))
+    }
+}
+
 /// A search over the ground; indices are those with the border.
 struct TravelFront<'a, 'b> {
     ground: &'a TravelGround<'b>,
-    /// Seconds, by their bits. A thread writes those of its own blocks alone, and reads all.
-    times: Vec<AtomicU32>,
+    /// A thread writes those of its own blocks alone, and reads all.
+    times: TravelTimes,
     onward: Option<OnwardTime>,
     /// The goal's posts, which rise.
     goals: Vec<usize>,
+    /// No post is reached that is expected at the goal later, seconds.
     ends_s: f32,
+    /// How much later than the goal posts are looked at, seconds: the side of a triangle that leads to a post may have its
+    /// diagonal end expected later by as much as that end is farther.
+    slack_s: f32,
     /// A block has two to the power of this many posts.
     block_bits: u32,
     lanes: usize,
-    has_triangles: bool,
 }
 
 impl TravelFront<'_, '_> {
     #[inline]
     fn time_s(&self, post: usize) -> f32 {
-        f32::from_bits(self.times[post].load(Ordering::Relaxed))
+        self.times.time_s(post)
     }
 
     #[inline]
@@ -136,6 +149,12 @@ impl TravelFront<'_, '_> {
         })
     }
 
+    /// The same for the end of a step from a post whose column and row are known.
+    #[inline]
+    fn onward_by_s(&self, [column, row]: [i32; 2], step: &TravelStep) -> f32 {
+        self.onward.map_or(0.0, |onward| onward.seconds(column + step.columns, row + step.rows))
+    }
+
     /// Empties the bucket of a lane; posts of the lane that are pushed into it meanwhile are left there.
     fn empty_bucket(&self, lane: &mut SearchLane, bucket: u64) {
         let posts = lane.queue.take_bucket(bucket);
@@ -149,18 +168,24 @@ impl TravelFront<'_, '_> {
     /// A post is reached at a time: where that is sooner than before, it goes into the queue of its lane.
     #[inline]
     fn reach(&self, to: usize, time_s: f32, lane: &mut SearchLane) {
+        self.reach_with(to, time_s, || self.onward_s(to), lane);
+    }
+
+    /// [`TravelFront::reach`] with what gives the least time on from the post.
+    #[inline]
+    fn reach_with(&self, to: usize, time_s: f32, onward_s: impl Fn() -> f32, lane: &mut SearchLane) {
         let before_s = self.time_s(to);
         if time_s >= before_s || time_s.is_nan() {
             return;
         }
-        let onward_s = self.onward_s(to);
+        let onward_s = onward_s();
         if time_s + onward_s > self.ends_s {
             return;
         }
         let post = QueuedPost { index: to as u32, time_s };
         let owner = self.lane_of(to);
         if owner == lane.number {
-            self.times[to].store(time_s.to_bits(), Ordering::Relaxed);
+            self.times.0[to].store(time_s.to_bits(), Ordering::Relaxed);
             lane.queue.push(post, time_s + onward_s, before_s + onward_s);
         } else {
             lane.outboxes[owner].push(post);
@@ -176,10 +201,12 @@ impl TravelFront<'_, '_> {
         if !lane.queue.holds(entry, time_s, expected_s) || expected_s > self.ends_s {
             return;
         }
-        if self.goals.binary_search(&from).is_ok() {
-            // The search goes no further than posts that are as near.
-            lane.ends_s = lane.ends_s.min(time_s);
+        if expected_s >= lane.queue.emptied_to_s() {
+            lane.queue.put_back(entry, expected_s);
             return;
+        }
+        if self.goals.binary_search(&from).is_ok() {
+            lane.ends_s = lane.ends_s.min(time_s);
         }
         match (self.ground.is_alike(from), self.ground.grades.has_across()) {
             (true, false) => self.go_on_over::<true, false>(from, time_s, lane),
@@ -200,6 +227,7 @@ impl TravelFront<'_, '_> {
         let ground = self.ground;
         let pace = ground.pace(from);
         let least_pace = if ALIKE { pace } else { ground.least_pace };
+        let at = if self.onward.is_some() { ground.column_and_row(from) } else { [0; 2] };
         // No step is quicker than its least time.
         let least_s = |step: &TravelStep| time_s + step.least_per_pace_s * least_pace;
         let arrival_s = |step: &TravelStep| match ALIKE {
@@ -210,7 +238,7 @@ impl TravelFront<'_, '_> {
         for step in knights {
             let to = from.wrapping_add_signed(step.offset);
             if least_s(step) < self.time_s(to) {
-                self.reach(to, arrival_s(step), lane);
+                self.reach_with(to, arrival_s(step), || self.onward_by_s(at, step), lane);
             }
         }
         let mut before_s = [f32::INFINITY; RING];
@@ -225,7 +253,7 @@ impl TravelFront<'_, '_> {
                 *reached_s = reached_s.min(arrival_s(step));
             }
         }
-        if self.has_triangles {
+        if ground.has_triangles {
             let paces = [pace; 2];
             let mut heights_m = [0.0; RING];
             if ALIKE {
@@ -237,7 +265,7 @@ impl TravelFront<'_, '_> {
             // Of a side, the post that is taken later leads on across its triangles.
             let emptied_to_s = lane.queue.emptied_to_s();
             for (side, triangles) in SIDES.iter().enumerate() {
-                if before_s[side] >= emptied_to_s {
+                if before_s[side] + self.onward_by_s(at, &ring[side]) >= emptied_to_s {
                     continue;
                 }
                 let first_s = before_s[side].min(time_s);
@@ -267,14 +295,23 @@ impl TravelFront<'_, '_> {
         }
         for index in 0..RING {
             if reached_s[index] < before_s[index] {
-                self.reach(posts[index], reached_s[index], lane);
+                let onward_s = || self.onward_by_s(at, &ring[index]);
+                self.reach_with(posts[index], reached_s[index], onward_s, lane);
             }
         }
     }
 
     /// Goes on until nothing is reached any more.
     fn run(&mut self, lanes: &mut [SearchLane], stop: &StopFlag) {
+        let mut emptied = 0;
         while let Some(bucket) = lanes.iter().filter_map(|lane| lane.queue.first_bucket()).min() {
+            if bucket > emptied {
+                emptied = bucket;
+                self.ends_s = lanes.iter().map(|lane| lane.ends_s + self.slack_s).fold(self.ends_s, f32::min);
+                if lanes[0].queue.start_s(bucket) > f64::from(self.ends_s) {
+                    break;
+                }
+            }
             let front = &*self;
             let posts: usize = lanes.iter().map(|lane| lane.queue.posts_in(bucket)).sum();
             if posts < LEAST_SHARED_BUCKET || lanes.len() == 1 {
@@ -291,7 +328,6 @@ impl TravelFront<'_, '_> {
                     lanes[other].outboxes[lane] = posts;
                 }
             }
-            self.ends_s = lanes.iter().map(|lane| lane.ends_s).fold(self.ends_s, f32::min);
             let looks = lanes.iter().map(|lane| lane.looks).sum::<usize>();
             if looks >= POSTS_PER_LOOK {
                 stop.did(looks);
@@ -306,39 +342,56 @@ impl TravelFront<'_, '_> {
 
 impl TravelGround<'_> {
     /// Seconds from the nearest in time of the starts to each post; infinite where none is reached. With a goal, the posts on
-    /// the quickest way by steps to the nearest of its posts have their times, and others may have later ones: the search
-    /// looks first where the least time on to the goal is the least (Hart, Nilsson and Raphael 1968).
+    /// the quickest way to the nearest of its posts have their times, and others may have later ones: the search looks first
+    /// where the least time on to the goal is the least (Hart, Nilsson and Raphael 1968).
     pub fn times(&self, starts: &[usize], goal: TravelGoal<'_>, stop: &StopFlag) -> Vec<f32> {
+        self.inner_times(&self.search(starts, goal, stop))
+    }
+
+    /// The times of posts without their border.
+    pub(super) fn inner_times(&self, found: &TravelTimes) -> Vec<f32> {
+        let mut times = vec![f32::INFINITY; self.ground.heights().len()];
+        times.par_chunks_mut(self.ground.columns() as usize).enumerate().for_each(|(row, times)| {
+            let posts = self.framed_row(row);
+            times.iter_mut().zip(posts).for_each(|(time, post)| *time = found.time_s(post));
+        });
+        times
+    }
+
+    /// The search for [`TravelGround::times`].
+    pub(super) fn search(&self, starts: &[usize], goal: TravelGoal<'_>, stop: &StopFlag) -> TravelTimes {
         let lanes = match self.framed_count() {
             ..LEAST_SHARED => 1,
             _ => rayon::current_num_threads().min(MOST_LANES),
         };
         // Rounded down to a power of two.
-        self.times_in_lanes(starts, goal, stop, 1 << lanes.max(1).ilog2())
+        self.search_in_lanes(starts, goal, stop, 1 << lanes.max(1).ilog2())
     }
 
-    /// [`TravelGround::times`] by so many threads, a power of two.
-    pub(super) fn times_in_lanes(
+    /// [`TravelGround::search`] by so many threads, a power of two.
+    pub(super) fn search_in_lanes(
         &self,
         starts: &[usize],
         goal: TravelGoal<'_>,
         stop: &StopFlag,
         lanes: usize,
-    ) -> Vec<f32> {
+    ) -> TravelTimes {
+        let unreached = || AtomicU32::new(f32::INFINITY.to_bits());
+        let times = TravelTimes((0..self.framed_count()).into_par_iter().map(|_| unreached()).collect());
         if !self.least_pace.is_finite() {
-            return vec![f32::INFINITY; self.ground.heights().len()];
+            return times;
         }
         let rows = self.ground.rows() as usize / (BLOCKS_PER_LANE * lanes);
-        let unreached = || AtomicU32::new(f32::INFINITY.to_bits());
         let mut front = TravelFront {
             ground: self,
-            times: (0..self.framed_count()).into_par_iter().map(|_| unreached()).collect(),
+            times,
             onward: goal.any_of.and_then(|posts| OnwardTime::new(self, posts)),
             goals: goal.any_of.iter().copied().flatten().map(|&post| self.framed(post)).collect(),
             ends_s: goal.most_s,
+            slack_s: self.steps.iter().take(RING).map(|step| step.least_per_pace_s).fold(0.0, f32::max)
+                * self.least_pace,
             block_bits: (self.width * rows.clamp(1, ROWS_PER_BLOCK)).ilog2(),
             lanes,
-            has_triangles: goal.any_of.is_none() && self.has_triangles,
         };
         let lane = |number| SearchLane {
             number,
@@ -355,14 +408,7 @@ impl TravelGround<'_> {
         }
         // Within the pool, threads wait for each other without going to sleep.
         rayon::scope(|_| front.run(&mut lanes, stop));
-        let mut times = vec![f32::INFINITY; self.ground.heights().len()];
-        times.par_chunks_mut(self.ground.columns() as usize).enumerate().for_each(|(row, times)| {
-            let found = &front.times[self.framed_row(row)];
-            times.iter_mut().zip(found).for_each(|(time, found)| {
-                *time = f32::from_bits(found.load(Ordering::Relaxed));
-            });
-        });
-        times
+        front.times
     }
 
     /// A queue for the steps on this ground.

@@ -9,6 +9,8 @@
 //! Posts lie in rows with a border of closed ones, so that no neighbor lies beyond them; [`TravelGround::framed`] is the
 //! index there of a post of the lattice.
 
+use std::ops::Range;
+
 use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::movement::going::{Going, SEVERELY_RESTRICTED};
@@ -93,11 +95,13 @@ impl<'a> TravelGround<'a> {
             framed_rows.take(rows).enumerate().map(range).reduce(|| (f32::INFINITY, 0.0), wider);
         drop(going);
         let grades = GradeTable::new(vehicle, is_langmuir);
+        let mut alike = vec![0u64; count / u64::BITS as usize];
+        mark_alike(&mut alike, &paces, width, 0..rows + 2 * BORDER);
         Ok(Self {
             ground,
             width,
             heights_m,
-            alike: alike(&paces, width),
+            alike,
             paces,
             steps: steps(ground, width, &grades),
             grades,
@@ -116,6 +120,12 @@ impl<'a> TravelGround<'a> {
         (index / columns + BORDER) * self.width + index % columns + BORDER
     }
 
+    /// The index of a post of the lattice by that with the border.
+    pub(super) fn inner(&self, framed: usize) -> usize {
+        let [column, row] = [framed % self.width - BORDER, framed / self.width - BORDER];
+        row * self.ground.columns() as usize + column
+    }
+
     /// The column and the row of a post by its index with the border.
     #[inline]
     pub(super) fn column_and_row(&self, framed: usize) -> [i32; 2] {
@@ -123,7 +133,7 @@ impl<'a> TravelGround<'a> {
     }
 
     /// The part of a row with its border that holds the posts of a row of the lattice.
-    pub(super) fn framed_row(&self, row: usize) -> std::ops::Range<usize> {
+    pub(super) fn framed_row(&self, row: usize) -> Range<usize> {
         let first = (row + BORDER) * self.width + BORDER;
         first..first + self.ground.columns() as usize
     }
@@ -135,6 +145,7 @@ impl<'a> TravelGround<'a> {
 
     /// Multiplies the pace of posts, to keep a later way off them.
     pub fn slow_down(&mut self, posts: impl IntoIterator<Item = usize>, factor: f32) {
+        let known = self.slowed.len();
         for index in posts {
             let index = self.framed(index);
             let pace = &mut self.paces[index];
@@ -144,15 +155,24 @@ impl<'a> TravelGround<'a> {
                 self.greatest_pace = self.greatest_pace.max(pace.abs());
             }
         }
-        self.alike = alike(&self.paces, self.width);
+        self.mark_alike_since(known);
+    }
+
+    /// Finds anew which posts are alike around those that were slowed after so many others.
+    fn mark_alike_since(&mut self, known: usize) {
+        let rows = || self.slowed[known..].iter().map(|&(index, _)| index as usize / self.width);
+        let (Some(first), Some(last)) = (rows().min(), rows().max()) else { return };
+        // Slowed posts lie within the border.
+        mark_alike(&mut self.alike, &self.paces, self.width, first - BORDER..last + BORDER + 1);
     }
 
     /// Gives all posts their paces from before [`TravelGround::slow_down`].
     pub fn undo_slowing(&mut self) {
-        while let Some((index, pace)) = self.slowed.pop() {
+        for &(index, pace) in self.slowed.iter().rev() {
             self.paces[index as usize] = pace;
         }
-        self.alike = alike(&self.paces, self.width);
+        self.mark_alike_since(0);
+        self.slowed.clear();
     }
 
     /// Whether the vehicle can be at a post.
@@ -187,6 +207,12 @@ impl<'a> TravelGround<'a> {
     #[inline(always)]
     pub(super) fn pace(&self, framed: usize) -> f32 {
         self.paces[framed].abs()
+    }
+
+    /// Whether a road, a bridge or a ford is at a post.
+    #[inline(always)]
+    pub(super) fn is_way(&self, framed: usize) -> bool {
+        self.paces[framed] < 0.0
     }
 
     /// Seconds from a post to a neighbor; infinite where the step is not passable. Indices are those with the border.
@@ -271,62 +297,19 @@ impl<'a> TravelGround<'a> {
         }
     }
 
-    /// The posts of the quickest way by steps that ends at a reached post, from the start on.
-    pub fn way_to(&self, times: &[f32], end: usize) -> Vec<usize> {
-        let columns = self.ground.columns() as i32;
-        let mut way = vec![end];
-        let mut at = end;
-        while times[at] > 0.0 && times[at].is_finite() {
-            let before = self.steps.iter().find_map(|step| {
-                let from = self.framed(at).wrapping_add_signed(-step.offset);
-                // Posts of the border are not passable.
-                let before = at.wrapping_add_signed(-(step.rows * columns + step.columns) as isize);
-                let leads = self.pace(from).is_finite()
-                    && times[before] < times[at]
-                    && times[before] + self.seconds(from, step) == times[at];
-                leads.then_some(before)
-            });
-            // Every reached post but a start has one.
-            let Some(before) = before else { break };
-            way.push(before);
-            at = before;
-        }
-        way.reverse();
-        way
-    }
-
-    /// Seconds along posts that follow each other as neighbors.
-    pub fn seconds_along(&self, way: &[usize]) -> Vec<f64> {
-        let mut sums = vec![0.0];
-        let mut sum = 0.0;
-        for ends in way.windows(2) {
-            let [from, to] = [ends[0], ends[1]].map(|index| self.framed(index));
-            if let Some(step) = self.steps.iter().find(|step| from.wrapping_add_signed(step.offset) == to) {
-                sum += f64::from(self.seconds(from, step));
-            }
-            sums.push(sum);
-        }
-        sums
-    }
-
-    /// The height of a post as the vehicle travels it, meters.
-    pub fn height_m(&self, index: usize) -> f32 {
-        self.heights_m[self.framed(index)]
-    }
-
     /// The ground.
     pub fn lattice(&self) -> &'a Lattice {
         self.ground
     }
 }
 
-/// A bit for each post: whether its pace is that of all posts up to two columns and rows away, and none is a way. Rows are
-/// whole words.
-fn alike(paces: &[f32], width: usize) -> Vec<u64> {
+/// Sets the bits of posts in rows: whether the pace of each is that of all posts up to two columns and rows away, and none is
+/// a way. Rows are whole words.
+fn mark_alike(alike: &mut [u64], paces: &[f32], width: usize, rows: Range<usize>) {
     let bits = u64::BITS as usize;
     let words = width / bits;
-    let mut alike = vec![0u64; paces.len() / bits];
-    alike.par_chunks_mut(words).enumerate().for_each(|(row, alike)| {
+    let of_rows = alike.par_chunks_mut(words).enumerate().skip(rows.start).take(rows.len());
+    of_rows.for_each(|(row, alike)| {
         if row < BORDER || (row + BORDER + 1) * width > paces.len() {
             return;
         }
@@ -347,7 +330,6 @@ fn alike(paces: &[f32], width: usize) -> Vec<u64> {
             *word = posts.iter().rev().fold(0, |word, &is| word << 1 | u64::from(is));
         }
     });
-    alike
 }
 
 /// The ground of a land for a vehicle named by the argument, with the going's codes and notes.
@@ -462,18 +444,31 @@ mod tests {
                 let wanted = relaxed(&ground, &[0, 20]);
                 for lanes in [1, 2, 4] {
                     let (all, stop) = (TravelGoal::within(f32::INFINITY), StopFlag::default());
-                    let times = ground.times_in_lanes(&[0, 20], all, &stop, lanes);
+                    let times = ground.inner_times(&ground.search_in_lanes(&[0, 20], all, &stop, lanes));
                     let wanted = (0..times.len()).map(|index| wanted[ground.framed(index)]);
                     assert!(times.iter().copied().eq(wanted), "{name} {has_triangles} {lanes}");
                 }
             }
-            let times = everywhere(&ground, &[0, 20]);
-            let end = 22 * 37 + 36;
-            let way = ground.way_to(&times, end);
-            assert!(times[way[0]] == 0.0 && times[end].is_finite(), "{name}");
-            let along = *ground.seconds_along(&way).last().expect("posts");
-            assert!((along - f64::from(times[end])).abs() < 1e-3 * along, "{name}");
         }
+    }
+
+    #[test]
+    fn slowing_and_undoing_it_find_anew_which_posts_are_alike() {
+        let land = flat(70, 30, 10.0);
+        let mut ground = travel(&land, &built_in("truck"));
+        let before = ground.alike.clone();
+        let all = |ground: &TravelGround<'_>| {
+            let mut alike = vec![0; ground.alike.len()];
+            mark_alike(&mut alike, &ground.paces, ground.width, 0..30 + 2 * BORDER);
+            alike
+        };
+        for posts in [0..3, 700..790, 2099..2100] {
+            ground.slow_down(posts, 3.0);
+            assert_eq!(ground.alike, all(&ground));
+        }
+        assert_ne!(ground.alike, before);
+        ground.undo_slowing();
+        assert_eq!(ground.alike, before);
     }
 
     #[test]

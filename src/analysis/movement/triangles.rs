@@ -138,6 +138,28 @@ impl TriangleTable {
     }
 }
 
+impl TriangleTable {
+    /// The shares of the side at which ways to q begin: all that [`TriangleTable::arrival_s`] may try, and more.
+    pub fn shares(
+        &self,
+        triangle: &TravelTriangle,
+        axis: usize,
+        grades: &GradeTable,
+    ) -> impl Iterator<Item = f32> + use<> {
+        let axis = &self.axes[axis];
+        let [height_a, height_b, height_q] = triangle.heights_m;
+        let (rise, side_rise) = (height_q - height_a, height_b - height_a);
+        let of_grade = axis.share_of_grade(rise, side_rise, grades.best_grade());
+        let of_across = grades.has_across().then(|| {
+            let across =
+                [rise * (axis.side_m / axis.straight_m), side_rise * (axis.straight_m / axis.side_m)];
+            let gradient = [rise / axis.straight_m, side_rise / axis.side_m];
+            axis.share_of_across(across, gradient, grades.across_limit())
+        });
+        SHARES.into_iter().chain(of_grade).chain(of_across.flatten())
+    }
+}
+
 impl TravelTriangle {
     /// The time at q of a way that begins at a point, with the factor of its slopes.
     #[inline(always)]
