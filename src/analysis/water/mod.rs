@@ -20,6 +20,8 @@ mod fill;
 mod flood;
 mod infinity;
 mod kinds;
+#[cfg(test)]
+mod network_oracle_tests;
 mod normal_depth;
 #[cfg(test)]
 mod oracle_tests;
