@@ -27,6 +27,9 @@ mod normal_depth;
 mod oracle_tests;
 mod outlines;
 mod prepared;
+mod reservoir;
+#[cfg(test)]
+mod reservoir_tests;
 mod streams;
 
 use crate::run::KindFunction;
