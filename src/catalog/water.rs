@@ -36,6 +36,7 @@ const DAM_BREAK_LIMITS: &[&str] = &[
     "Downstream the peak falls by half over `halving_km`: the default is an assumption on the safe side, not a law; a wide plain halves it within a few kilometers.",
     "Each reach has the normal depth of its mean section, which jumps from one reach to the next; on level beds the slope counts as 0.0001, and arrivals are those of a kinematic wave.",
     "Water that the elevations show counts as ground: behind a full dam state `volume_m3` and `height_m`.",
+    "The reservoir is the side of the dam whose water, up to the level, reaches neither the border of the land nor a hole in the data; where that is both sides or none, `reservoir` must say.",
     "The dam's line is extended straight beyond its ends to hold the water; it is sought up to 30 m or a quarter of its length, at most 200 m, to both sides for the lowest ground.",
     LIMITS[0],
     LIMITS[1],
@@ -277,6 +278,14 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
                 "m",
                 ParameterDefault::Required,
                 "The level of the water behind the dam, an elevation.",
+            ),
+            AnalysisParameter::plain(
+                "reservoir",
+                ParameterForm::Points { least: 1 },
+                ParameterDefault::Otherwise(
+                    "the side of the dam where its line and the ground hold water up to the level, while on the other, which begins no higher, it leaves the land",
+                ),
+                "A point in the water behind the dam. Needed where both sides of the dam hold water up to the level, or neither does.",
             ),
             AnalysisParameter::number(
                 "volume_m3",

@@ -64,7 +64,7 @@ def write_elevation(folder, side):
 
 
 def run(command, threads=None):
-    """Runs a command; seconds and the most memory in MiB."""
+    """Runs a command; seconds by the clock, the most memory in MiB, and seconds of the processors, the system's among them."""
     environment = dict(os.environ)
     if threads:
         environment["RAYON_NUM_THREADS"] = str(threads)
@@ -77,7 +77,7 @@ def run(command, threads=None):
         if process.returncode != 0:
             said.seek(0)
             sys.exit(f"{command}: {said.read().decode(errors='replace')[-2000:]}")
-    return seconds, usage.ru_maxrss / 1024
+    return seconds, usage.ru_maxrss / 1024, usage.ru_utime + usage.ru_stime
 
 
 ROADS = 12
@@ -200,12 +200,12 @@ def threaded(program, elevation, folder, side):
 
 
 def best(commands):
-    """The best times and memories of commands that are run in turn."""
+    """The least times, memories and processor times of commands that are run in turn."""
     found = {name: [] for name in commands}
     for _ in range(REPEATS):
         for name, (command, threads) in commands.items():
             found[name].append(run(command, threads))
-    return {name: min(times) for name, times in found.items()}
+    return {name: tuple(map(min, zip(*runs))) for name, runs in found.items()}
 
 
 def prepare_grass(elevation, folder):
@@ -239,13 +239,15 @@ def main():
         prepare_grass(elevation, options.folder)
         prepare_roads(options.folder)
     run(["gdal_translate", "-q", "-of", "ENVI", elevation, options.folder / "hills.raw"])
-    print(f"| what, {options.side}², whole process | ours | MiB | peer | | times |\n|---|---|---|---|---|---|")
+    print(f"| what, {options.side}², whole process | ours | processor | MiB | peer | | processor | times | processor |\n|---|---|---|---|---|---|---|---|---|")
     for what, command, peers in rows:
         times = best({"ours": (command, None), **{name: (peer, None) for name, peer in peers.items()}})
-        seconds, memory = times["ours"]
+        seconds, memory, processor = times["ours"]
         for name in peers:
-            peer = times[name][0]
-            print(f"| {what} | {seconds:.2f} s | {memory:.0f} | {name} | {peer:.2f} s | {peer / seconds:.1f} |", flush=True)
+            peer, _, work = times[name]
+            ours = f"{what} | {seconds:.2f} s | {processor:.2f} s | {memory:.0f}"
+            ratios = f"{peer / seconds:.1f} | {work / processor:.1f}"
+            print(f"| {ours} | {name} | {peer:.2f} s | {work:.2f} s | {ratios} |", flush=True)
     print("\n| what | 1 thread | 2 threads | times |\n|---|---|---|---|")
     for what, command in threaded(options.program, elevation, options.folder, options.side):
         if is_wanted(what) or "threads" in wanted:

@@ -150,7 +150,7 @@ pub(crate) fn basins(
 }
 
 /// The posts by which at least so many posts drain off the land, the most first, and how many of them are left out.
-fn mouths(drainage: &Drainage, counts: &[u32], least: f64) -> (Vec<usize>, usize) {
+pub(super) fn mouths(drainage: &Drainage, counts: &[u32], least: f64) -> (Vec<usize>, usize) {
     let mut mouths: Vec<usize> = (0..counts.len())
         .filter(|&index| f64::from(counts[index]) >= least && drainage.to(index).is_none())
         .collect();
@@ -200,7 +200,7 @@ fn snapped(ground: &Lattice, (post, at): (usize, DVec2), counts: &[u32], snap_m:
 }
 
 /// The basin of each post, from 1; 0 where it drains through no outlet.
-fn codes(drainage: &Drainage, outlets: &[usize]) -> Vec<u8> {
+pub(super) fn codes(drainage: &Drainage, outlets: &[usize]) -> Vec<u8> {
     let mut codes = vec![0_u8; drainage.codes.len()];
     for (at, &outlet) in outlets.iter().enumerate() {
         codes[outlet] = at as u8 + 1;

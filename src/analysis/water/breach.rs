@@ -38,7 +38,7 @@ pub(crate) struct BreachTally {
 }
 
 /// What a search knows of the posts around a pit.
-struct BreachSearch {
+pub(super) struct BreachSearch {
     reach: i64,
     side: i64,
     /// The search that a post was last seen by, the cost to it, and the step by which it was reached.
@@ -58,21 +58,7 @@ pub(crate) fn breach(
     stop: &StopFlag,
 ) -> Result<BreachTally, AnalysisError> {
     let (columns, rows) = (ground.columns() as usize, ground.rows() as usize);
-    let longest = columns.max(rows) as f64;
-    let reach = (limits.length_m / ground.cell().min_element()).clamp(1.0, MOST_POSTS.min(longest)) as i64;
-    let side = 2 * reach + 1;
-    check_memory(
-        (side * side) as u64 * 24,
-        "the search for ways out of pits",
-        "state a shorter `breach_length_m`",
-    )?;
-    let mut search = BreachSearch {
-        reach,
-        side,
-        seen: vec![(0, 0.0, 0); (side * side) as usize],
-        round: 0,
-        queue: BinaryHeap::new(),
-    };
+    let mut search = BreachSearch::new(ground, limits.length_m)?;
     let mut pits: Vec<(u32, u32)> = (0..heights.len())
         .filter(|&index| is_pit(heights, index, columns, rows))
         .map(|index| (sortable(heights[index]), index as u32))
@@ -103,7 +89,7 @@ pub(crate) fn breach(
 }
 
 /// Whether water stays on a post: it is no outlet, none of its neighbors is lower, and none that is alike comes before it.
-fn is_pit(heights: &[f32], index: usize, columns: usize, rows: usize) -> bool {
+pub(super) fn is_pit(heights: &[f32], index: usize, columns: usize, rows: usize) -> bool {
     let height = heights[index];
     !is_outlet(heights, index, columns, rows)
         && neighbors(index, columns, rows).all(|(_, other)| (heights[other], other) > (height, index))
@@ -131,8 +117,25 @@ fn cut(heights: &mut [f32], way: &[usize]) {
 }
 
 impl BreachSearch {
+    /// A search for ways that lead at most so far from their pit.
+    ///
+    /// # Errors
+    /// [`AnalysisError::Memory`].
+    pub fn new(ground: &Lattice, length_m: f64) -> Result<Self, AnalysisError> {
+        let longest = f64::from(ground.columns().max(ground.rows()));
+        let reach = (length_m / ground.cell().min_element()).clamp(1.0, MOST_POSTS.min(longest)) as i64;
+        let side = 2 * reach + 1;
+        check_memory(
+            (side * side) as u64 * 24,
+            "the search for ways out of pits",
+            "state a shorter `breach_length_m`",
+        )?;
+        let seen = vec![(0, 0.0, 0); (side * side) as usize];
+        Ok(Self { reach, side, seen, round: 0, queue: BinaryHeap::new() })
+    }
+
     /// The cheapest way from lower ground or an outlet back to a pit, with its cost; `None` where it would be too long or too deep.
-    fn way_out(
+    pub fn way_out(
         &mut self,
         ground: &Lattice,
         heights: &[f32],

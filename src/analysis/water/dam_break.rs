@@ -8,18 +8,15 @@
 //! It is a first estimate for warning and reconnaissance. No water is moved: a wave, its front and its backwater need a
 //! hydrodynamic model.
 
-use glam::DVec2;
-
-use super::carve::banks;
-use super::flood::{DEPTHS, FloodRule, deepest_m, spread, volume_m3};
+use super::flood::{DEPTHS, deepest_m, volume_m3};
 use super::kinds::numbers;
 use super::normal_depth::{ReachFlow, ValleyReach};
 use super::outlines::outline_features;
 use super::prepared::WaterGround;
+use super::reservoir::Reservoir;
 use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
-use crate::line_posts::along_line;
 use crate::measures::area_km2;
 use crate::outcome::{
     FeatureRole, Figure, Outcome, OutcomeFeature, OutcomeShape, OutcomeTable, PropertyValue, TableColumn,
@@ -27,7 +24,6 @@ use crate::outcome::{
 };
 use crate::water::drainage::Drainage;
 use sandtable_terrain::lattice::Lattice;
-use sandtable_terrain::neighbors::neighbors;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// A kinematic wave travels so many times as fast as the water in it, where a section is wide.
@@ -43,17 +39,6 @@ const COLUMNS: [TableColumn; 7] = [
     TableColumn::new("speed", "m/s", 1),
     TableColumn::new("arrival", "min", 0),
 ];
-
-/// The water behind a dam.
-struct Reservoir {
-    is_wet: Vec<bool>,
-    /// The lowest post below the dam, near it.
-    foot: usize,
-    volume_m3: f64,
-    /// The water's height above the foot, meters.
-    height_m: f64,
-    notes: Vec<String>,
-}
 
 /// The way of the water below a dam.
 struct FloodWay {
@@ -71,8 +56,8 @@ fn peak_discharge(volume_m3: f64, height_m: f64) -> f64 {
 /// What the failure of a dam would flood.
 ///
 /// # Errors
-/// [`AnalysisError::Argument`] where there is no ground beside the dam or no water behind it; [`AnalysisError::Memory`] and
-/// [`AnalysisError::Stopped`].
+/// [`AnalysisError::Argument`] where there is no ground beside the dam, no water behind it, or nothing tells which side that is
+/// on; [`AnalysisError::Memory`] and [`AnalysisError::Stopped`].
 pub(crate) fn dam_break(
     land: &Land,
     arguments: &AnalysisArguments,
@@ -168,77 +153,6 @@ pub(crate) fn dam_break(
     })
 }
 
-impl Reservoir {
-    /// The water behind the dam of the arguments.
-    fn behind(
-        ground: &Lattice,
-        heights: &[f32],
-        arguments: &AnalysisArguments,
-        stop: &StopFlag,
-    ) -> Result<Self, AnalysisError> {
-        let (dam, level) = (arguments.points("dam"), arguments.number("level_m") as f32);
-        let no_ground = || AnalysisError::argument("dam", "has no ground on both of its sides");
-        let length_m: f64 = dam.windows(2).map(|leg| leg[0].distance(leg[1])).sum();
-        // A dam is the thicker the longer it is, as a rule.
-        let (width_m, more_m) = (0.0, (length_m / 4.0).min(200.0));
-        let [left, right] = banks(ground, heights, dam, (width_m, more_m)).ok_or_else(no_ground)?;
-        let (head, foot) =
-            if (heights[left], left) >= (heights[right], right) { (left, right) } else { (right, left) };
-        let mut is_wall = vec![false; heights.len()];
-        along_line(ground, dam, 0.0, |index| is_wall[index] = true);
-        let mut is_beyond = vec![false; heights.len()];
-        for ray in rays(ground, dam) {
-            along_line(ground, &ray, 0.0, |index| is_beyond[index] = true);
-        }
-        let is_open = |index: usize| heights[index] < level && !is_wall[index] && !is_beyond[index];
-        let is_wet = spread(ground, vec![head], FloodRule::Sides, is_open, stop)?;
-        let held_m3 = || {
-            let depth = |index: usize| if is_wet[index] { level - heights[index] } else { 0.0 };
-            volume_m3(ground, &(0..heights.len()).map(depth).collect::<Vec<f32>>())
-        };
-        let volume_m3 = arguments.number_if("volume_m3").unwrap_or_else(held_m3);
-        let height_m = arguments.number_if("height_m").unwrap_or(f64::from(level - heights[foot]));
-        if volume_m3 <= 0.0 || height_m <= 0.0 {
-            let problem = format!(
-                "{level} is not above the ground behind the dam; state a higher one, or `volume_m3` and `height_m` where the \
-                 elevations show the water's surface"
-            );
-            return Err(AnalysisError::argument("level_m", problem));
-        }
-        let (columns, rows) = (ground.columns() as usize, ground.rows() as usize);
-        let wet = || (0..heights.len()).filter(|&index| is_wet[index]);
-        let mut notes = Vec::new();
-        if wet().any(|index| neighbors(index, columns, rows).count() < 8) {
-            notes.push(
-                "the water behind the dam reaches the border of the land; its volume is that on the land"
-                    .into(),
-            );
-        }
-        let goes_around = |index: usize| {
-            neighbors(index, columns, rows).any(|(_, other)| is_beyond[other] && heights[other] < level)
-        };
-        if wet().any(goes_around) {
-            notes.push(
-                "at this level water would go around the dam; it is held by the dam's line, which is extended straight"
-                    .into(),
-            );
-        }
-        Ok(Self { is_wet, foot, volume_m3, height_m, notes })
-    }
-}
-
-/// The lines straight on from both ends of a dam, to beyond the land.
-fn rays(ground: &Lattice, dam: &[DVec2]) -> Vec<[DVec2; 2]> {
-    let extent = ground.cell() * ground.last_grid();
-    let far_m = 2.0 * extent.length() + ground.cell().max_element();
-    let ray = |end: DVec2, before: DVec2| {
-        let along = (end - before).normalize_or_zero();
-        (along != DVec2::ZERO).then(|| [end, end + along * far_m])
-    };
-    let ([first, second, ..], [.., before, last]) = (dam, dam) else { return Vec::new() };
-    ray(*first, *second).into_iter().chain(ray(*last, *before)).collect()
-}
-
 impl FloodWay {
     /// The way that water takes from a post, at most so far.
     fn from(start: usize, drainage: &Drainage, ground: &Lattice, longest_m: f64) -> Self {
@@ -284,6 +198,8 @@ impl FloodWay {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec2;
+
     use super::*;
     use crate::arguments::ArgumentValue;
     use crate::test_land::{run_kind, shaped, values_of};

@@ -20,11 +20,16 @@ mod fill;
 mod flood;
 mod infinity;
 mod kinds;
+#[cfg(test)]
+mod network_oracle_tests;
 mod normal_depth;
 #[cfg(test)]
 mod oracle_tests;
 mod outlines;
 mod prepared;
+mod reservoir;
+#[cfg(test)]
+mod reservoir_tests;
 mod streams;
 
 use crate::run::KindFunction;

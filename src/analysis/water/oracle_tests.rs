@@ -4,7 +4,7 @@
 //! `oracle.tsv` has counts and CRCs that `tests/tools/analysis_water_oracle.py` makes; it says what each is.
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use std::path::Path;
 
     use glam::DVec2;
@@ -23,7 +23,7 @@ mod tests {
     const TABLE: &str = include_str!("oracle.tsv");
 
     /// The CRC-32 of zip files.
-    fn crc(bytes: impl IntoIterator<Item = u8>) -> String {
+    pub(in crate::water) fn crc(bytes: impl IntoIterator<Item = u8>) -> String {
         let mut crc = u32::MAX;
         for byte in bytes {
             crc ^= u32::from(byte);
@@ -45,12 +45,31 @@ mod tests {
         assert_eq!(crc(*b"123456789"), "cbf43926");
     }
 
+    fn models() -> &'static Path {
+        Path::new(concat!(env!("SANDTABLE_ROOT"), "../shared/data/dem"))
+    }
+
+    /// Whether the real models are there; where they must be, a test that needs them fails.
+    pub(in crate::water) fn has_models() -> bool {
+        let has = models().exists() || std::env::var_os("SANDTABLE_REQUIRE_DATA").is_some();
+        if !has {
+            eprintln!("SKIPPED: no test data at {}", models().display());
+        }
+        has
+    }
+
+    /// The columns of a real model, and its heights row by row from the south-west.
+    pub(in crate::water) fn model(name: &str) -> (u32, Vec<f32>) {
+        let bytes = std::fs::read(models().join(name)).expect("a file");
+        let raster = read(name, &bytes, &DemHints::default()).expect("elevation");
+        let south_first =
+            (0..raster.height).rev().flat_map(|row| (0..raster.width).map(move |column| (column, row)));
+        (raster.width, south_first.map(|(column, row)| raster.at(column, row) as f32).collect())
+    }
+
     #[test]
     fn real_ground_drains_as_with_richdem_pysheds_and_pyflwdir() {
-        let folder = Path::new(concat!(env!("SANDTABLE_ROOT"), "../shared/data/dem"));
-        let is_required = std::env::var_os("SANDTABLE_REQUIRE_DATA").is_some();
-        if !folder.exists() && !is_required {
-            eprintln!("SKIPPED: no test data at {}", folder.display());
+        if !has_models() {
             return;
         }
         for line in TABLE.lines().skip(1) {
@@ -74,22 +93,12 @@ mod tests {
             else {
                 panic!("{line}")
             };
-            let bytes = std::fs::read(folder.join(name)).expect("a file");
-            let raster = read(name, &bytes, &DemHints::default()).expect("elevation");
-            assert_eq!(
-                (raster.width.to_string(), raster.height.to_string()),
-                (columns.into(), rows.into()),
-                "{name}"
-            );
-            let south_first =
-                (0..raster.height).rev().flat_map(|row| (0..raster.width).map(move |column| (column, row)));
-            let heights: Vec<f32> = south_first.map(|(column, row)| raster.at(column, row) as f32).collect();
+            let (width, heights) = model(name);
+            let height = heights.len() / width as usize;
+            assert_eq!((width.to_string(), height.to_string()), (columns.into(), rows.into()), "{name}");
             assert_eq!(crc_of_heights(&heights), raw, "{name}: the elevations");
-            let land = bare(
-                (DVec2::ZERO, DVec2::splat(cell_m.parse().expect("a number"))),
-                raster.width,
-                heights.clone(),
-            );
+            let land =
+                bare((DVec2::ZERO, DVec2::splat(cell_m.parse().expect("a number"))), width, heights.clone());
             let drainage = drain(&land.ground, &heights, &StopFlag::default()).expect("drained");
             let count =
                 drainage.filled_m.iter().zip(&heights).filter(|(filled, height)| filled > height).count();
