@@ -33,6 +33,9 @@ from .task import PictureTask
 PREFIX = "sandtable/dialog/"
 LEFT_OUT = "left out"
 
+# Notes on a picture that the dialog shows: more would hide the buttons on small screens.
+MOST_NOTES = 5
+
 
 class PictureDialog(QDialog):
     """Makes a scene of the map as `settings` (QgsMapSettings) show it, then its picture and its page."""
@@ -199,7 +202,7 @@ class PictureDialog(QDialog):
         if not is_done:
             self._end(task.problem or "Canceled.")
             return
-        self._end("\n".join(task.made))
+        self._end("\n".join(task.made + notes_of(task.said[0])))
         self.preview.setPixmap(QPixmap(task.made[0]).scaledToWidth(480, Qt.SmoothTransformation))
         for path in task.made if self.is_opening else []:
             QDesktopServices.openUrl(QUrl.fromLocalFile(path))
@@ -219,6 +222,14 @@ class PictureDialog(QDialog):
         """Ends the work and closes the dialog."""
         self.cancel()
         super().reject()
+
+
+def notes_of(said):
+    """What `render` notes of the scene: what it left out, guessed or finds odd."""
+    rows = [line.split(maxsplit=1) for line in said.splitlines()]
+    notes = [row[1] for row in rows if len(row) == 2 and row[0] == "note"]
+    left = [f"… and {len(notes) - MOST_NOTES} more"] if len(notes) > MOST_NOTES else []
+    return notes[:MOST_NOTES] + left
 
 
 def _is_elevation(layer):

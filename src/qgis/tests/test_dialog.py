@@ -9,7 +9,7 @@ from common import APP, ROOT, STREETS, TOWN, QgisTest, Swellendam
 from qgis.core import QgsApplication
 from qgis.PyQt.QtGui import QImage
 
-from sandtable_qgis.dialog import PictureDialog
+from sandtable_qgis.dialog import PictureDialog, notes_of
 
 # What a person waits at most for swellendam's picture with the debug build of the program, on a machine with other work.
 MOST_S = 15
@@ -51,6 +51,7 @@ class DialogTest(QgisTest):
         print(f"\nfrom the map to the picture: {took:.1f} s")
         self.assertLessEqual(took, MOST_S)
         self.assertTrue(any(0 < percent < 100 for percent in seen), "the steps move the bar")
+        self.assertIn("cut off along its border", dialog.message.text(), "what the program notes is shown")
         self._look(picture)
         dialog.with_page.setChecked(True)
         dialog.make()
@@ -94,6 +95,10 @@ class DialogTest(QgisTest):
         self.assertNotIn("picture.png", left)
         self.assertFalse([name for name in left if name.endswith(".part")])
         self.assertTrue(dialog.make_button.isEnabled())
+
+    def test_notes_of_the_program_are_shown_the_first_of_many(self):
+        said = "a.png\n  ground   1 post\n" + "".join(f"  note     number {i}\n" for i in range(7))
+        self.assertEqual(notes_of(said), [f"number {i}" for i in range(5)] + ["… and 2 more"])
 
     def test_the_settings_are_kept_from_dialog_to_dialog(self):
         dialog = self.dialog()
