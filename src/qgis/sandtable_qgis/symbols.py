@@ -43,14 +43,15 @@ class FeatureSymbols:
         if self.renderer is None:
             return None
         self.context.expressionContext().setFeature(feature)
-        symbol = self.renderer.symbolForFeature(feature, self.context)
-        if symbol is None:
+        # Rules may give several: what is drawn last is what a reader sees, of symbols as of their layers.
+        symbols = self.renderer.symbolsForFeature(feature, self.context)
+        if not symbols:
             return None
+        symbol = symbols[-1]
         layers = [symbol.symbolLayer(i) for i in range(symbol.symbolLayerCount())]
         layers = [layer for layer in layers if layer.enabled()]
         if not layers:
             return None
-        # What is drawn last is what a reader sees.
         top = layers[-1]
         opacity = symbol.opacity() * self.layer.opacity()
         geometry = self.layer.geometryType()

@@ -5,7 +5,7 @@ import struct
 from pathlib import Path
 
 from common import STREETS, TOWN, QgisTest, Swellendam
-from qgis.core import QgsFillSymbol, QgsLineSymbol, QgsRasterLayer
+from qgis.core import QgsFeatureRequest, QgsFillSymbol, QgsLineSymbol, QgsRasterLayer, QgsRuleBasedRenderer
 
 from sandtable_qgis.program import run
 from sandtable_qgis.scene import BUILDINGS, SceneError, SceneOptions, guessed_role, scene_text, write_scene
@@ -38,6 +38,19 @@ class SceneTest(QgisTest):
         self.assertIn(("#d7261e", 4.54), looks)
         self.assertIn(("#ffffff", 1.51), looks)
         self.assertGreater(len(roads), 100)
+
+    def test_rules_give_features_their_symbols_and_leave_out_those_of_none(self):
+        root = QgsRuleBasedRenderer.Rule(None)
+        symbol = QgsLineSymbol.createSimple({"line_color": "#00aa55", "line_width": "20", "line_width_unit": "RenderMetersInMapUnits"})
+        root.appendChild(QgsRuleBasedRenderer.Rule(symbol, filterExp="highway = 'residential'"))
+        self.map.roads.setRenderer(QgsRuleBasedRenderer(root))
+        write_scene(str(self.folder), self.options())
+        roads = features(next(self.folder.glob("*-roads.geojson")))
+        request = QgsFeatureRequest().setFilterRect(self.options().extent).setFilterExpression("highway = 'residential'")
+        self.assertEqual(len(roads), len(list(self.map.roads.getFeatures(request))))
+        self.assertEqual({one["properties"]["stroke"] for one in roads}, {"#00aa55"})
+        # 0.025° of latitude are 2.8 km and 1080 pixels.
+        self.assertTrue(all(7 < one["properties"]["stroke-width"] < 10 for one in roads), roads[0]["properties"])
 
     def test_a_dashed_line_and_an_area_without_fill_stay_so(self):
         self.map.rivers.renderer().setSymbol(QgsLineSymbol.createSimple({"line_style": "dash"}))
