@@ -1,0 +1,1 @@
+"""Algorithms of Processing: one runs one command of the program."""
