@@ -33,11 +33,17 @@ const OTHER_THREADS: u64 = 2;
 /// export it, 222 as a page. Rounded up by a tenth or more: other scenes have other small lists. A service has threads of its own.
 fn floor_of(command: &Command) -> Option<u64> {
     match command {
-        Command::Explain(_) | Command::Schema | Command::Catalog | Command::Licenses => None,
+        Command::Explain(_)
+        | Command::Schema
+        | Command::Catalog
+        | Command::Completions(_)
+        | Command::Licenses => None,
         Command::Export(arguments) if arguments.is_page() => Some(245),
         Command::Export(_) => Some(140),
         Command::Fly(_) => Some(110),
-        Command::Render(_) | Command::View(_) | Command::Pick(_) | Command::Work(_) => Some(75),
+        Command::Render(_) | Command::Demo(_) | Command::View(_) | Command::Pick(_) | Command::Work(_) => {
+            Some(75)
+        }
         Command::Check(_)
         | Command::Report(_)
         | Command::New(_)

@@ -1,11 +1,15 @@
 //! The commands and their arguments.
 
+use std::path::Path;
+
 use clap::{Parser, Subcommand};
 
 use crate::analyze::AnalyzeCommand;
 use crate::check::CheckArguments;
+use crate::completions::CompletionsArguments;
 use crate::convert::ConvertArguments;
 use crate::dem_info::DemInfoArguments;
+use crate::demo::DemoArguments;
 use crate::explain::ExplainArguments;
 use crate::export::ExportArguments;
 use crate::fly::FlyArguments;
@@ -41,8 +45,12 @@ pub struct Arguments {
     /// Allow reading files by their addresses from HOST, in a build with the feature `cloud`
     #[arg(long, global = true, value_name = "HOST", value_parser = AllowedHost::parse)]
     pub allow_remote: Vec<AllowedHost>,
+    /// Show no progress, and say nothing of files that are written: print answers and errors alone
+    #[arg(short, long, global = true)]
+    pub quiet: bool,
+    /// What to do; without it, what can be done with the files of the current folder
     #[command(subcommand)]
-    pub command: Command,
+    pub command: Option<Command>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -59,6 +67,8 @@ pub enum Command {
     Check(CheckArguments),
     /// Explain a code of `check`, or list all
     Explain(ExplainArguments),
+    /// Write a scene with its data out of the program, draw it, and open the picture
+    Demo(DemoArguments),
     /// Write a first scene file for an elevation file and vector files
     New(NewArguments),
     /// Draw one military symbol: PNG or SVG
@@ -67,6 +77,8 @@ pub enum Command {
     Schema,
     /// Print the kinds of terrain analysis with their parameters, as JSON for programs that make forms of them
     Catalog,
+    /// Print what completes the commands in a shell, or the manual page
+    Completions(CompletionsArguments),
     /// Print the licenses of what this program is made of
     Licenses,
     /// Inspect, convert and make elevation files
@@ -109,6 +121,40 @@ pub enum Command {
     Mesh(MeshArguments),
     /// Fly over an elevation file and compare level-of-detail methods
     Lod(LodArguments),
+}
+
+impl Command {
+    /// What is there after Ctrl-C, and how to go on, as a user reads it.
+    #[cfg(unix)]
+    pub fn kept(&self) -> &'static str {
+        match self {
+            Self::Work(_) => "shards that are done are kept; the same command goes on with the rest",
+            Self::Fly(arguments) if !arguments.is_one_file() => {
+                "frames that are drawn are kept; the same command goes on with the rest"
+            }
+            Self::Render(arguments) if arguments.scenes.len() > 1 => {
+                "pictures of scenes that are done are kept, and files that were there are as before"
+            }
+            _ => "files that were there are as before, and nothing half-written is left",
+        }
+    }
+
+    /// The one scene file that the command reads; `None` where it may read another file as well, or several.
+    pub fn scene(&self) -> Option<&Path> {
+        match self {
+            Self::Render(arguments) => match &arguments.scenes[..] {
+                [scene] => Some(scene),
+                _ => None,
+            },
+            Self::Pick(arguments) => Some(&arguments.scene.scene),
+            Self::Fly(arguments) => Some(&arguments.scene.scene),
+            // As JSON, an error is a finding.
+            Self::Check(arguments) => (!arguments.json).then_some(&*arguments.scene.scene),
+            Self::Report(arguments) => Some(&arguments.scene.scene),
+            Self::Export(arguments) => Some(&arguments.scene.scene),
+            _ => None,
+        }
+    }
 }
 
 /// The commands for elevation files.

@@ -7,7 +7,7 @@ use clap::Args;
 
 use crate::error::CliError;
 use crate::options::HeightArguments;
-use crate::output::{print_lines, row};
+use crate::output::{print_summary, row};
 use crate::output_format::raster_format;
 use crate::progress::StepTimer;
 use crate::values::number;
@@ -90,7 +90,7 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), CliError> {
         }
     };
     steps.finish();
-    print_lines(&summary(out, format, &converted, &written, valid))
+    print_summary(&summary(out, format, &converted, &written, valid))
 }
 
 /// Writes a large file of which all samples stay while it is read, where the format allows it: the elevation without its

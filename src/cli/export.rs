@@ -7,7 +7,7 @@ use clap::Args;
 
 use crate::error::CliError;
 use crate::options::SceneArguments;
-use crate::output::{print_lines, row};
+use crate::output::{print_summary, row};
 use crate::output_format::output_format;
 use crate::progress::StepTimer;
 use crate::values::number;
@@ -130,7 +130,7 @@ fn run_scene(arguments: &ExportArguments, format: ExportFormat) -> Result<(), Cl
     ];
     let notes: Vec<&str> =
         scene.notes().into_iter().chain(exported.notes.iter().map(String::as_str)).collect();
-    print_lines(&summary(&exported.files, &facts, &notes))
+    print_summary(&summary(&exported.files, &facts, &notes))
 }
 
 fn run_features(arguments: &ExportArguments, format: FeatureFormat) -> Result<(), CliError> {
@@ -143,7 +143,7 @@ fn run_features(arguments: &ExportArguments, format: FeatureFormat) -> Result<()
     let ExportedFeatures { layers, notes } = exported;
     let facts: Vec<String> = layers.iter().map(|(name, count)| row(15, name, count)).collect();
     let notes: Vec<&str> = scene.notes().into_iter().chain(notes.iter().map(String::as_str)).collect();
-    print_lines(&summary(&[out], &facts, &notes))
+    print_summary(&summary(&[out], &facts, &notes))
 }
 
 fn run_page(arguments: &ExportArguments) -> Result<(), CliError> {
@@ -161,7 +161,7 @@ fn run_page(arguments: &ExportArguments) -> Result<(), CliError> {
             format!("{} triangles, off by at most {} m", page.ground_triangles, page.max_error_m),
         ),
     ];
-    print_lines(&summary(&[out], &facts, &scene.notes()))
+    print_summary(&summary(&[out], &facts, &scene.notes()))
 }
 
 fn run_print(arguments: &ExportArguments, format: PrintFormat) -> Result<(), CliError> {
@@ -188,7 +188,7 @@ fn run_print(arguments: &ExportArguments, format: PrintFormat) -> Result<(), Cli
         ),
         row(10, "triangles", triangles),
     ];
-    print_lines(&summary(
+    print_summary(&summary(
         &files,
         &facts,
         &scene.notes().into_iter().chain(notes.iter().map(String::as_str)).collect::<Vec<_>>(),

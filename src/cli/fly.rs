@@ -8,8 +8,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::backend::BackendName;
 use crate::error::CliError;
 use crate::options::SceneArguments;
-use crate::output::{print_lines, row};
-use crate::progress::StepTimer;
+use crate::output::{print_summary, row};
+use crate::progress::{StepTimer, shown};
 use crate::values::{choice, number, picture_size};
 use sandtable_base::limits::FLIGHT_FRAMES;
 use sandtable_render::OtherRenderer;
@@ -45,6 +45,13 @@ pub struct FlyArguments {
     pub backend: BackendName,
 }
 
+impl FlyArguments {
+    /// Whether the frames go into one animated picture.
+    pub fn is_one_file(&self) -> bool {
+        self.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
+    }
+}
+
 pub fn run(arguments: &FlyArguments, gpu: Option<OtherRenderer>) -> Result<(), CliError> {
     let SceneArguments { scene: file, access } = &arguments.scene;
     let steps = StepTimer::default();
@@ -65,12 +72,11 @@ pub fn run(arguments: &FlyArguments, gpu: Option<OtherRenderer>) -> Result<(), C
         fps: arguments.fps,
         backend: arguments.backend.renderer(gpu),
     };
-    let bar = ProgressBar::new(u64::from(options.frames));
+    let bar = shown(ProgressBar::new(u64::from(options.frames)));
     let style = ProgressStyle::with_template("{bar:30} frame {pos} of {len} [{elapsed} of about {duration}]");
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
     let done = |number: u32| bar.set_position(u64::from(number));
-    let is_file = arguments.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
-    let count = if is_file {
+    let count = if arguments.is_one_file() {
         fly_to_file(&scene, &flight, &options, &arguments.output, &done)?;
         format!("{} in one animated picture", options.frames)
     } else {
@@ -85,5 +91,5 @@ pub fn run(arguments: &FlyArguments, gpu: Option<OtherRenderer>) -> Result<(), C
         row(9, "frames", count),
     ];
     lines.extend(scene.notes().into_iter().map(|note| row(9, "note", note)));
-    print_lines(&lines)
+    print_summary(&lines)
 }

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use glam::DVec2;
 
 use crate::error::CliError;
-use crate::output::print;
+use crate::output::print_summary;
 use crate::output_format::raster_format;
 use crate::progress::StepTimer;
 use crate::values::{choice, numbers};
@@ -130,7 +130,8 @@ pub fn run(arguments: &GridArguments) -> Result<(), CliError> {
     steps.begin("writing");
     let written = raster_file::write(&gridded.raster, format, out, &inputs)?;
     steps.finish();
-    print(&summary(out, arguments.method, &cloud, &gridded, &written))
+    let summary = summary(out, arguments.method, &cloud, &gridded, &written);
+    print_summary(&[summary.trim_end().to_owned()])
 }
 
 fn method(arguments: &GridArguments) -> Result<GriddingMethod, CliError> {

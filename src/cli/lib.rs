@@ -7,11 +7,14 @@ mod arguments;
 mod backend;
 mod catalog;
 mod check;
+mod completions;
 mod convert;
 mod dem_info;
+mod demo;
 mod error;
 mod explain;
 mod export;
+mod first_steps;
 mod fly;
 mod gather;
 mod grid;
@@ -83,42 +86,51 @@ pub struct BuiltInPrograms {
 /// Exit codes: 0 done, 1 the input is wrong, 2 usage.
 pub fn main(programs: BuiltInPrograms) -> ExitCode {
     let arguments = Arguments::parse();
+    if arguments.quiet {
+        output::be_quiet();
+    }
     #[cfg(unix)]
     if let Some(code) = supervisor::supervise() {
         return code;
     }
-    let done = run(&arguments, programs);
+    let Some(command) = &arguments.command else {
+        return first_steps::print_first_steps().map_or_else(|error| error.report(), |()| ExitCode::SUCCESS);
+    };
+    let done = run(&arguments, command, programs);
     remote::note_traffic();
     match done {
         Ok(()) => ExitCode::SUCCESS,
-        Err(error) => error.report(),
+        Err(error) => first_steps::with_next_command(error, command).report(),
     }
 }
 
-fn run(arguments: &Arguments, programs: BuiltInPrograms) -> Result<(), CliError> {
+fn run(arguments: &Arguments, command: &Command, programs: BuiltInPrograms) -> Result<(), CliError> {
     // Before anything is read: what reads a limit holds it.
     limit::set(&arguments.limit)?;
     remote::set(&arguments.allow_remote)?;
-    let threads = address_space::threads_for(&arguments.command)?;
+    let threads = address_space::threads_for(command)?;
     // A picture has threads of its own.
-    if !matches!(arguments.command, Command::Render(_)) {
+    if !matches!(command, Command::Render(_) | Command::Demo(_)) {
         threads::start(threads)?;
     }
     // The service ends by itself, when its last answers are read, and writes no files.
     #[cfg(unix)]
-    if !matches!(arguments.command, Command::Serve(_)) {
-        signals::handle();
+    if !matches!(command, Command::Serve(_)) {
+        signals::handle(command.kept());
     }
-    match &arguments.command {
+    first_steps::check_scene(command)?;
+    match command {
         Command::Render(arguments) => render::run(arguments, threads, programs.gpu),
         Command::Pick(arguments) => pick::run(arguments),
         Command::Fly(arguments) => fly::run(arguments, programs.gpu),
         Command::Check(arguments) => check::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),
+        Command::Demo(arguments) => demo::run(arguments, threads),
         Command::New(arguments) => new::run(arguments),
         Command::Symbol(arguments) => symbol::run(arguments),
         Command::Schema => schema::run(),
         Command::Catalog => catalog::run(),
+        Command::Completions(arguments) => completions::run(arguments),
         Command::Licenses => licenses::run(),
         Command::Dem { command: DemCommand::Info(arguments) } => dem_info::run(arguments),
         Command::Dem { command: DemCommand::Convert(arguments) } => convert::run(arguments),

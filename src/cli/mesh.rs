@@ -9,7 +9,7 @@ use clap::Args;
 use crate::convert::place_error;
 use crate::error::CliError;
 use crate::options::HeightArguments;
-use crate::output::{print_lines, row, warn};
+use crate::output::{print_summary, row, warn};
 use crate::output_format::output_format;
 use crate::progress::StepTimer;
 use crate::values::number;
@@ -131,7 +131,7 @@ where
     if let Some(note) = resampled(header, lattice, crs) {
         warn(&format!("note: {}: {note}", arguments.file.display()));
     }
-    print_lines(&summary(arguments, place, bounded.size(), deviation))
+    print_summary(&summary(arguments, place, bounded.size(), deviation))
 }
 
 /// The error of an elevation file of which no mesh can be made.

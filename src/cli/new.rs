@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::check::contents;
 use crate::error::CliError;
-use crate::output::print_lines;
+use crate::output::print_summary;
 use crate::progress::StepTimer;
 use sandtable_new::{self as new_scene, NewSceneOptions, WrittenScene};
 use sandtable_remote::access::RemoteAccess;
@@ -82,7 +82,7 @@ pub fn run(arguments: &NewArguments) -> Result<(), CliError> {
     let mut lines = vec![path.display().to_string()];
     lines.extend(contents(&scene));
     lines.extend(["to render it:".into(), format!("  {}", command("render"))]);
-    print_lines(&lines)
+    print_summary(&lines)
 }
 
 /// A command on the scene, as a shell reads it.
@@ -93,7 +93,7 @@ fn command(verb: &str, scene: &Path, allowed: &[PathBuf], hosts: &[AllowedHost])
 }
 
 /// A path as a shell reads it.
-fn shell(path: &Path) -> String {
+pub fn shell(path: &Path) -> String {
     let text = path.display().to_string();
     let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "/._-+,:@%".contains(letter);
     if !text.is_empty() && text.chars().all(is_plain) {

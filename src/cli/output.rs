@@ -3,8 +3,22 @@
 //! A reader that closes the pipe (`sandtable … | head`) has all it wants, which is not an error. A full disk is one.
 
 use std::io::{self, BufWriter, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::error::CliError;
+
+/// Whether progress and summaries are left out, for the whole run.
+static IS_QUIET: AtomicBool = AtomicBool::new(false);
+
+/// Leaves out progress and summaries of written files from now on.
+pub fn be_quiet() {
+    IS_QUIET.store(true, Ordering::Relaxed);
+}
+
+/// Whether progress and summaries are left out.
+pub fn is_quiet() -> bool {
+    IS_QUIET.load(Ordering::Relaxed)
+}
 
 /// Standard output cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -18,6 +32,11 @@ pub fn print(text: &str) -> Result<(), CliError> {
 /// Prints `lines`, each with its end.
 pub fn print_lines(lines: &[String]) -> Result<(), CliError> {
     stream(|out| lines.iter().try_for_each(|line| writeln!(out, "{line}")))
+}
+
+/// Prints what a command says of the files that it wrote; nothing where it is to be quiet.
+pub fn print_summary(lines: &[String]) -> Result<(), CliError> {
+    if is_quiet() { Ok(()) } else { print_lines(lines) }
 }
 
 /// Prints what `write` writes, buffered.

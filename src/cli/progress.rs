@@ -18,9 +18,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressState, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
-use crate::output::warn;
+use crate::output::{is_quiet, warn};
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// What is left is estimated after this time, and this share: before, it is a guess.
@@ -46,14 +46,22 @@ pub struct StepTimer {
 
 impl Default for StepTimer {
     fn default() -> Self {
-        let bar = ProgressBar::new_spinner();
+        let bar = shown(ProgressBar::new_spinner());
         bar.enable_steady_tick(Duration::from_millis(100));
         Self {
             bar: bar.with_style(step_style()),
             starts: Mutex::default(),
-            is_lines: env::var_os(PROGRESS).is_some_and(|value| value == LINES),
+            is_lines: !is_quiet() && env::var_os(PROGRESS).is_some_and(|value| value == LINES),
         }
     }
+}
+
+/// A bar that a terminal shows, unless the run is quiet.
+pub fn shown(bar: ProgressBar) -> ProgressBar {
+    if is_quiet() {
+        bar.set_draw_target(ProgressDrawTarget::hidden());
+    }
+    bar
 }
 
 /// The step and the time of all.

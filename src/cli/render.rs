@@ -9,7 +9,7 @@ use crate::backend::BackendName;
 use crate::check::{contents, counted_findings};
 use crate::error::CliError;
 use crate::options::AccessArguments;
-use crate::output::{print, print_lines, row, warn};
+use crate::output::{print, print_summary, row, warn};
 use crate::progress::StepTimer;
 use crate::render_series::{RenderFailure, RenderedFile, RenderedPicture, RenderedScene, render};
 use crate::threads;
@@ -74,6 +74,26 @@ pub struct RenderArguments {
 }
 
 impl RenderArguments {
+    /// Renders one scene by its first camera, with everything else as it is by default.
+    pub fn of_scene(scene: &Path, picture: &Path) -> Self {
+        Self {
+            scenes: vec![scene.to_owned()],
+            access: AccessArguments { allow: Vec::new() },
+            output: Some(picture.to_owned()),
+            size: None,
+            camera: None,
+            all_cameras: false,
+            phase: None,
+            all_phases: false,
+            backend: BackendName::Cpu,
+            threads: None,
+            sheet: false,
+            buffers: None,
+            sidecar: false,
+            json: false,
+        }
+    }
+
     /// Whether every camera has a picture: on a sheet, unless it is one of phases.
     pub fn shows_all_cameras(&self) -> bool {
         self.all_cameras || (self.sheet && !self.all_phases && self.camera.is_none())
@@ -94,7 +114,7 @@ pub fn run(arguments: &RenderArguments, threads: usize, gpu: Option<OtherRendere
                 let times = steps.finish();
                 match arguments.json {
                     true => values.extend(scenes.iter().flat_map(|scene| scene.as_json(&times))),
-                    false => print_lines(&summary(arguments, path, &scenes, &times))?,
+                    false => print_summary(&summary(arguments, path, &scenes, &times))?,
                 }
                 failures.extend(missing);
             }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::error::CliError;
-use crate::output::{print_lines, warn};
+use crate::output::{print_summary, warn};
 use crate::output_format::output_format;
 use crate::values::number;
 use sandtable_annotate::symbol_picture::symbol_picture;
@@ -87,7 +87,7 @@ pub fn run(arguments: &SymbolArguments) -> Result<(), CliError> {
         }
         SymbolFormat::Svg => disk::write(&arguments.output, labeled.svg(arguments.size).as_bytes())?,
     }
-    print_lines(&[format!("{}: {}", arguments.output.display(), labeled.description())])
+    print_summary(&[format!("{}: {}", arguments.output.display(), labeled.description())])
 }
 
 #[cfg(test)]

@@ -11,7 +11,9 @@
 
 mod cameras;
 mod crop;
+pub mod demo;
 mod folder;
+pub mod found_files;
 mod overlays;
 mod rules;
 mod survey;

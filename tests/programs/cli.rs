@@ -9,6 +9,7 @@ mod export;
 mod export_features;
 #[cfg(unix)]
 mod faults;
+mod first_steps;
 mod fly;
 mod frames;
 mod grid;

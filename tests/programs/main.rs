@@ -7,3 +7,4 @@ mod cli;
 mod findings_page;
 mod readme;
 mod serve;
+mod systems;

@@ -97,6 +97,30 @@ fn an_interrupted_program_leaves_the_old_file_and_nothing_else() {
 }
 
 #[test]
+fn an_interrupted_flight_says_that_its_frames_are_kept() {
+    let scratch = Scratch::new();
+    let scene = project("scenes/river.toml");
+    let mut command = heeding(env!("CARGO_BIN_EXE_sandtable"));
+    command.args(["fly", &scene, "--size", "320x180", "--seconds", "600", "--fps", "25", "-o", "frames"]);
+    command.current_dir(scratch.folder()).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
+    let child = command.spawn().expect("the program starts");
+    let deadline = Instant::now() + Duration::from_secs(120);
+    let frames = || std::fs::read_dir(scratch.at("frames")).into_iter().flatten().flatten();
+    while !frames().any(|frame| frame.file_name().to_string_lossy().ends_with(".png")) {
+        assert!(Instant::now() < deadline, "it draws nothing");
+        sleep(Duration::from_millis(5));
+    }
+    let interrupted = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(interrupted.expect("kill is there").success());
+    let output = child.wait_with_output().expect("the program ends");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.signal(), Some(2), "a shell sees the signal: {said}");
+    let wanted = "interrupted: frames that are drawn are kept; the same command goes on with the rest\n";
+    assert_eq!(said, wanted);
+    assert!(frames().count() > 0, "they are kept");
+}
+
+#[test]
 fn what_a_killed_program_leaves_the_next_removes_and_a_living_one_keeps() {
     let mut flight = LongFlight::begin();
     let part = flight.parts();

@@ -64,8 +64,7 @@ fn every_command_has_help_to_read() {
 fn wrong_usage_ends_with_two() {
     let scene = project("scenes/road.toml");
     for arguments in [
-        &[][..],
-        &["paint"],
+        &["paint"][..],
         &["render"],
         &["render", &scene, "--size", "640"],
         &["render", &scene, "--size", "0x0"],
@@ -91,6 +90,23 @@ fn nothing_moves_where_nobody_watches() {
     let ran = run_in(scratch.folder(), &["render", &project("scenes/road.toml"), "--size", "64x48"]);
     let out = ran.ok();
     assert!(!out.contains('\u{1b}') && !out.contains('\r'), "{out:?}");
+}
+
+#[test]
+fn a_quiet_program_prints_answers_and_errors_alone() {
+    let scratch = Scratch::new();
+    let (scene, dem) = (project("scenes/road.toml"), project("assets/jacksboro/dem.tif"));
+    for arguments in [
+        &["render", &scene, "--size", "64x48", "-o", "a.png", "--quiet"][..],
+        &["--quiet", "dem", "convert", &dem, "-o", "a.bt"],
+        &["symbol", "10031000161211020000", "-o", "a.svg", "-q"],
+    ] {
+        assert_eq!(run_in(scratch.folder(), arguments).ok(), "", "{arguments:?}");
+    }
+    assert_eq!(scratch.names(), ["a.bt", "a.png", "a.prj", "a.svg"]);
+    let answer = run(&["height", &dem, "--at", "-84.2,36.3", "--quiet"]).ok();
+    assert!(answer.contains("375,Ok"), "{answer}");
+    assert!(run(&["check", "nowhere.toml", "-q"]).failed(1).contains("no such file"));
 }
 
 #[test]
