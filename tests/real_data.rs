@@ -10,6 +10,8 @@ mod broken;
 mod first_picture;
 #[path = "real_data/line_widths.rs"]
 mod line_widths;
+#[path = "real_data/new_choices.rs"]
+mod new_choices;
 #[path = "real_data/oracle.rs"]
 mod oracle;
 #[path = "real_data/places.rs"]

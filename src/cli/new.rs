@@ -20,7 +20,8 @@ Every layer of the vector files is surveyed: lines with `highway` become roads b
 `barrier` fences and walls, with `power` power lines; polygons of water become lakes, with `building` buildings, with \
 `landuse`, `natural` or `leisure` areas. A layer without such properties is classified by its name (roads, rivers, \
 lakes, buildings). The schemas of Geofabrik, BGT, TIGER/Line, Ordnance Survey and BD TOPO are known as well. Cities, \
-towns, villages and peaks with names become labels, the most important first. What is left is named in a comment, with \
+towns, villages and peaks with names become labels, the most important first. A layer of no known schema is drawn by its \
+shapes, its named points as labels, and is named in the legend; what is left of other layers is named in a comment, with \
 its properties.
 
 No file is overwritten, and none is copied.")]
@@ -38,7 +39,7 @@ pub struct NewArguments {
     /// several moments become phases
     #[arg(long, value_name = "FILE", num_args = 1..)]
     pub overlay: Vec<PathBuf>,
-    /// The picture's title [default: the place's name from the vectors, else the elevation file's]
+    /// The picture's title [default: the place's name from the vectors, else the position of its middle]
     #[arg(long, value_name = "TEXT")]
     pub title: Option<String>,
     /// The coordinate system of an elevation file that names none, for example EPSG:32616

@@ -366,7 +366,7 @@ table! {
         crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`";
         /// Of a camera without an eye: where it looks, clockwise from north; the upper border of a plan.
         azimuth: Option<f64> = key::number(Within(-360.0, 360.0), "°"),
-            otherwise "0; of one in perspective a quarter turn where that fills the picture much better";
+            otherwise "0; of one in perspective up to 45° from it where that fills the picture better";
         /// Of a camera without an eye: how far it looks down from the horizon.
         pitch: Option<f64> = key::number(Within(5.0, 89.0), "°"), otherwise "what fills the picture best, from 40 to 50; 45 of an orthographic one";
         /// Of a camera without an eye: points around what it shows, such as two corners of a map.

@@ -61,11 +61,17 @@ pub(super) fn cameras(scene: &SceneModel, vectors: Rect, exaggeration: f64) -> V
             shown: Some(shown),
         });
     }
-    cameras.extend(boldest_block(lattice).map(|block| {
+    let on_ground = vectors.intersection(&ground);
+    let in_world = Rect { min: on_ground.min - lattice.origin(), max: on_ground.max - lattice.origin() };
+    let subject = (!on_ground.is_empty()).then_some(in_world);
+    cameras.extend(boldest_block(lattice, subject).map(|block| {
         let shown = Rect { min: block.min + lattice.origin(), max: block.max + lattice.origin() };
         CameraDraft {
             name: "relief",
-            about: "The boldest relief, from low above the ground before it.",
+            about: match subject {
+                Some(_) => "The boldest relief among the features, from low above the ground before it.",
+                None => "The boldest relief, from low above the ground before it.",
+            },
             azimuth_deg: Some(best_approach(lattice, block, exaggeration)),
             pitch_deg: Some(LOW_PITCH_DEG),
             shown: Some(shown),
@@ -74,9 +80,9 @@ pub(super) fn cameras(scene: &SceneModel, vectors: Rect, exaggeration: f64) -> V
     cameras
 }
 
-/// The block of the ground with the greatest difference of heights and a block around it, from the south-west post on;
-/// `None` on level ground.
-fn boldest_block(lattice: &Lattice) -> Option<Rect> {
+/// The block of the ground with the greatest difference of heights and a block around it, from the south-west post on; of
+/// those whose middle lies in `subject`, where that is stated and holds any. `None` on level ground.
+fn boldest_block(lattice: &Lattice, subject: Option<Rect>) -> Option<Rect> {
     let side = (lattice.columns().max(lattice.rows()) / BLOCKS).max(2);
     let relief = |&(left, below): &(u32, u32)| {
         let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
@@ -92,7 +98,14 @@ fn boldest_block(lattice: &Lattice) -> Option<Rect> {
     let corners = (0..lattice.rows())
         .step_by(side as usize)
         .flat_map(|row| (0..lattice.columns()).step_by(side as usize).map(move |column| (column, row)));
-    let ((left, below), relief) = corners
+    let is_subject = |&(left, below): &(u32, u32)| {
+        let middle = DVec2::new(f64::from(left), f64::from(below)) + f64::from(side) / 2.0;
+        subject.is_none_or(|subject| subject.contains(middle * lattice.cell()))
+    };
+    let among: Vec<(u32, u32)> = corners.clone().filter(is_subject).collect();
+    let among = if among.is_empty() { corners.collect() } else { among };
+    let ((left, below), relief) = among
+        .into_iter()
         .map(|corner| (corner, relief(&corner)))
         .fold(((0, 0), 0.0), |best, next| if next.1 > best.1 { next } else { best });
     let min = lattice.position(Post { column: left, row: below }).as_dvec2();
@@ -173,7 +186,7 @@ mod tests {
     #[test]
     fn the_boldest_relief_is_seen_across_the_lowest_ground() {
         let lattice = hill();
-        let block = boldest_block(&lattice).expect("there is a hill");
+        let block = boldest_block(&lattice, None).expect("there is a hill");
         assert!(block.contains(DVec2::new(700.0, 600.0)), "{block:?}");
         assert_eq!(
             best_approach(&lattice, block, 1.0),
@@ -194,6 +207,6 @@ mod tests {
     #[test]
     fn level_ground_has_no_boldest_relief() {
         let level = Lattice::new(DVec2::ZERO, DVec2::splat(10.0), 9, vec![5.0; 81]).expect("sound");
-        assert_eq!(boldest_block(&level), None);
+        assert_eq!(boldest_block(&level, None), None);
     }
 }

@@ -3,6 +3,8 @@
 use glam::DVec2;
 
 use crate::stated;
+use crate::survey::SurveyedLayer;
+use crate::text::VectorDraft;
 use sandtable_geom::rect::Rect;
 use sandtable_raster::largest_rectangle::largest_rectangle;
 use sandtable_scene::scene_model::SceneModel;
@@ -23,24 +25,91 @@ impl ExtentDraft {
     }
 }
 
+/// The box of the features on the ground without strays, in the scene's system: along each axis it leaves out as much of
+/// their length on either side as little as a stray way has. Empty where there are none. Features that cannot be transformed to the
+/// system are left out.
+pub(super) fn main_extent(vectors: &[VectorDraft], scene: &SceneModel) -> Rect {
+    /// The share of the length on each side: in all, 98 % of it are kept. Less keeps single long ways that lead out of the
+    /// place, more cuts off its outskirts.
+    const TRIMMED: f64 = 0.005;
+    let ground = scene.lattice.map_extent();
+    let layers = vectors.iter().flat_map(|vector| &vector.layers);
+    let segments = layers.flat_map(|layer| {
+        layer.segments.iter().filter_map(|ends| {
+            let [from, to] = ends.map(|at| layer.crs.transform(&scene.crs, at).ok());
+            ground.clip_line(from?, to?)
+        })
+    });
+    let mut ends: Vec<WeighedPoint> = segments
+        .flat_map(|(from, to)| {
+            let length_m = from.distance(to);
+            [from, to].map(|at| WeighedPoint { at, weight: length_m })
+        })
+        .collect();
+    if ends.iter().all(|end| end.weight == 0.0) {
+        ends.iter_mut().for_each(|end| end.weight = 1.0);
+    }
+    ends.retain(|end| end.weight > 0.0);
+    let least = ends.iter().map(|end| end.weight).sum::<f64>() * TRIMMED;
+    let mut side = |axis: fn(DVec2) -> f64| {
+        ends.sort_by(|a, b| axis(a.at).total_cmp(&axis(b.at)));
+        Some((axis(beyond(ends.iter(), least)?), axis(beyond(ends.iter().rev(), least)?)))
+    };
+    match (side(|at| at.x), side(|at| at.y)) {
+        (Some((west, east)), Some((south, north))) => {
+            Rect { min: DVec2::new(west, south), max: DVec2::new(east, north) }
+        }
+        _ => Rect::EMPTY,
+    }
+}
+
+/// Whether a layer has a segment on the ground.
+pub(super) fn is_on_ground(layer: &SurveyedLayer, scene: &SceneModel) -> bool {
+    let ground = scene.lattice.map_extent();
+    layer.segments.iter().any(|ends| {
+        let [from, to] = ends.map(|at| layer.crs.transform(&scene.crs, at));
+        from.is_ok_and(|from| to.is_ok_and(|to| ground.clip_line(from, to).is_some()))
+    })
+}
+
+/// The first of `ends` with more than `least` weight up to it.
+fn beyond<'a>(mut ends: impl Iterator<Item = &'a WeighedPoint>, least: f64) -> Option<DVec2> {
+    let mut passed = 0.0;
+    let found = ends.find(|end| {
+        passed += end.weight;
+        passed > least
+    });
+    found.map(|end| end.at)
+}
+
+/// An end of a segment and the length that it stands for.
+struct WeighedPoint {
+    at: DVec2,
+    weight: f64,
+}
+
 /// The extent of a scene whose vectors cover little of the `ground`: theirs and a margin; `None` where they cover more, or
 /// where there are none.
 pub(super) fn around_vectors(vectors: Rect, ground: Rect) -> Option<ExtentDraft> {
     /// The share of the ground below which it is cropped.
     const LITTLE: f64 = 0.3;
     /// The margin on each side, as a share of the longer side.
-    const MARGIN: f64 = 0.15;
-    /// The shorter side as a share of the longer: a narrow block leaves most of a picture empty.
-    const NARROWEST: f64 = 0.8;
+    const MARGIN: f64 = 0.12;
+    /// The width from west to east as a share of the height from south to north, at least and at most: in a view toward
+    /// the north, a narrower or lower block leaves most of a picture empty.
+    const SHAPES: [f64; 2] = [1.3, 1.7];
     /// A smaller share of the ground along a side is a point on it, not a place to crop to.
     const LEAST: f64 = 0.01;
     let covered = vectors.intersection(&ground);
     let share = covered.size() / ground.size();
     let is_little = !covered.is_empty() && share.element_product() < LITTLE && share.min_element() > LEAST;
     is_little.then(|| {
-        let longer = covered.size().max_element();
-        let half = covered.size().max(DVec2::splat(longer * NARROWEST)) / 2.0 + longer * MARGIN;
-        let rect = Rect { min: covered.center() - half, max: covered.center() + half }.intersection(&ground);
+        let half = covered.size() / 2.0 + covered.size().max_element() * MARGIN;
+        let [narrowest, widest] = SHAPES;
+        let half = half.max(DVec2::new(half.y * narrowest, half.x / widest)).min(ground.size() / 2.0);
+        // Beside the border of the ground, the block is moved rather than made narrower.
+        let center = covered.center().clamp(ground.min + half, (ground.max - half).max(ground.min + half));
+        let rect = Rect { min: center - half, max: center + half }.intersection(&ground);
         ExtentDraft { rect, holds: "The features and a margin" }
     })
 }

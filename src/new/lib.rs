@@ -27,14 +27,13 @@ use std::path::{Path, PathBuf};
 use glam::DVec2;
 
 use crate::cameras::cameras;
-use crate::crop::{around_vectors, with_straight_edges};
+use crate::crop::{around_vectors, is_on_ground, main_extent, with_straight_edges};
 use crate::folder::{FolderError, SceneFolder};
 use crate::survey::{SurveyError, SurveyedLayer};
 use crate::text::{SceneDraft, VectorDraft};
 use sandtable_annotate::nice::NiceNumber;
 use sandtable_description::parse::parse;
 use sandtable_files::disk::{self, SystemError, WriteFileError};
-use sandtable_geom::crs::Crs;
 use sandtable_geom::rect::Rect;
 use sandtable_raster::undeclared::undeclared_nodata;
 use sandtable_remote::address::is_address_path;
@@ -61,8 +60,9 @@ pub struct NewSceneOptions {
     pub vectors: Vec<PathBuf>,
     /// Files of units and graphics, or their addresses.
     pub overlays: Vec<PathBuf>,
-    /// The title; where `None`, the name of the most important place or of the district of the vectors, else that of the
-    /// first elevation file or its folder.
+    /// The title; where `None`, the name of the most important settlement, of the district, of the park or of the highest
+    /// peak of the vectors, else the position of the ground's middle. A file's name is a title where features have it too,
+    /// and where the ground has no position on Earth.
     pub title: Option<String>,
     /// The coordinate system of elevation that names none, as a scene file states it.
     pub crs: Option<String>,
@@ -108,7 +108,7 @@ pub fn write(
     }
     let folder = SceneFolder::new(&options.folder)?;
     let dem = options.dem.iter().map(|file| folder.name_of(file)).collect::<Result<Vec<_>, _>>()?;
-    let vectors =
+    let mut vectors =
         options.vectors.iter().map(|file| survey_file(file, &folder)).collect::<Result<Vec<_>, _>>()?;
     let overlays =
         options.overlays.iter().map(|file| overlays::survey(file, &folder)).collect::<Result<Vec<_>, _>>()?;
@@ -125,7 +125,7 @@ pub fn write(
     let is_new = !options.folder.exists();
     let system = |error: io::Error| WriteFileError::new(&path, SystemError::from(error));
     fs::create_dir_all(&options.folder).map_err(system)?;
-    let mut draft = complete(&path, draft, &vectors, &allowed).inspect_err(|_| {
+    let mut draft = complete(&path, draft, &mut vectors, &allowed, &options.dem[0]).inspect_err(|_| {
         if is_new {
             // Does nothing where the folder is no longer empty.
             let _ = fs::remove_dir(&options.folder);
@@ -133,8 +133,6 @@ pub fn write(
     })?;
     if let Some(title) = &options.title {
         draft.title = title.clone();
-    } else if draft.title.is_empty() {
-        draft.title = title::of_file(&options.dem[0]);
     }
     disk::write(&path, text::scene(&draft, &vectors, &overlays).as_bytes())?;
     Ok(WrittenScene { path, allowed })
@@ -144,12 +142,13 @@ fn survey_file(file: &Path, folder: &SceneFolder) -> Result<VectorDraft, NewScen
     Ok(VectorDraft { file: folder.name_of(file)?, layers: survey::layers(file)? })
 }
 
-/// Completes the draft from the elevation: heights, extent and cameras, and the title where the vectors have one.
+/// Completes the draft from the elevation, whose first file is `dem`: heights, extent, cameras and title.
 fn complete(
     path: &Path,
     mut draft: SceneDraft,
-    vectors: &[VectorDraft],
+    vectors: &mut [VectorDraft],
     allowed: &[PathBuf],
+    dem: &Path,
 ) -> Result<SceneDraft, OpenSceneError> {
     let assets = Assets::new(path, allowed)?;
     // What is found of the ground is as fine as its first picture.
@@ -161,7 +160,7 @@ fn complete(
     let mut scene = built(&draft)?;
     draft.nodata = undeclared_nodata(scene.heights.snapshot().source());
     let surveyed = vectors;
-    let vectors = extent(surveyed, &scene.crs);
+    let vectors = main_extent(surveyed, &scene);
     let around_vectors = around_vectors(vectors, scene.lattice.map_extent());
     draft.extent = around_vectors.map(|extent| extent.stated_in(&scene));
     if !draft.nodata.is_empty() {
@@ -173,7 +172,10 @@ fn complete(
         scene = built(&draft)?;
     }
     draft.has_sea_bed = has_sea_bed(surveyed, &scene);
-    draft.title = title::of_vectors(surveyed, &scene).unwrap_or_default();
+    draft.title = title::of_scene(dem, surveyed, &scene);
+    for layer in surveyed.iter_mut().flat_map(|vector| &mut vector.layers) {
+        layer.is_on_ground = is_on_ground(layer, &scene);
+    }
     let (lattice, (low, high)) = (&scene.lattice, scene.height_range_m);
     let size_m = lattice.extent().size().max_element();
     draft.relief_m = f64::from(high - low);
@@ -224,13 +226,4 @@ fn exaggeration(relief: f64) -> f64 {
         _ if relief > 0.02 => 2.0,
         _ => 3.0,
     }
-}
-
-/// The box of all features, in the scene's system; empty where there are none. Features that cannot be transformed to it
-/// are left out.
-fn extent(vectors: &[VectorDraft], crs: &Crs) -> Rect {
-    let layers = vectors.iter().flat_map(|vector| &vector.layers);
-    Rect::around(
-        layers.flat_map(|layer| layer.corners.iter().filter_map(|at| layer.crs.transform(crs, *at).ok())),
-    )
 }

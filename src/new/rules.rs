@@ -86,6 +86,12 @@ pub(super) const LEAST_TITLE_RANK: f64 = 3.0;
 /// What boundaries of districts are called.
 pub(super) const BOUNDARIES: &str = "Boundaries";
 
+/// What summits are called.
+pub(super) const PEAKS: &str = "Peaks";
+
+/// The properties that name a feature, the likeliest first.
+pub(super) const NAMES: [&str; 8] = ["name", "NAME", "Name", "name:en", "title", "label", "NAMN", "nom"];
+
 /// Of a table that only the name of a layer suggests.
 const NEVER: &str = "false";
 
@@ -377,7 +383,7 @@ pub(super) static RULES: &[TableRule] = &[
         most: 15,
         is_title: true,
     }),
-    rule("label", "Peaks", "points", "has(name) and (natural ?? fclass) in ('peak', 'volcano')").keys(&[
+    rule("label", PEAKS, "points", "has(name) and (natural ?? fclass) in ('peak', 'volcano')").keys(&[
         "kind = \"summit\"",
     ])
     .label(LabelRule {

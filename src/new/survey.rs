@@ -5,7 +5,7 @@
 //! nothing. Where no rule matches a layer, its name may still say what it holds. The names of places and districts are
 //! kept, since one of them may be the scene's title.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::ptr;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use std::sync::Arc;
 use glam::DVec2;
 use serde_json::Value;
 
-use crate::rules::{BOUNDARIES, LabelRule, RULES, TableRule};
+use crate::rules::{BOUNDARIES, LabelRule, NAMES, PEAKS, RULES, TableRule};
 use sandtable_base::limits::ASSET_BYTES;
 use sandtable_description::expression::Expression;
 use sandtable_description::scalar::Scalar;
@@ -21,7 +21,7 @@ use sandtable_files::addressed;
 use sandtable_files::disk::{self, ReadFileError};
 use sandtable_files::error::FileError;
 use sandtable_geom::crs::Crs;
-use sandtable_geom::rect::Rect;
+use sandtable_geom::polygon;
 use sandtable_scene::attributes::Attributes;
 use sandtable_vector::error::VectorError;
 use sandtable_vector::feature::{Feature, Geometry, Polygon, VectorLayer};
@@ -46,9 +46,19 @@ pub(super) struct SurveyedLayer {
     pub has_fclass: bool,
     /// Its coordinate system.
     pub crs: Crs,
-    /// Corners and middles of the sides of the box of the features that tables draw, boundaries apart, in its system; of
-    /// all features where there are none of these, and none where it has no feature.
-    pub corners: Vec<DVec2>,
+    /// Segments of the features that tables draw, boundaries apart, in its system, and points as segments without length;
+    /// of all features where there are none of these. Evenly chosen, up to [`MOST_SEGMENTS`].
+    pub segments: Vec<[DVec2; 2]>,
+    /// Whether any of these segments meets the ground, once that is known.
+    pub is_on_ground: bool,
+    /// Peaks with names.
+    pub peaks: Vec<NamedPlace>,
+    /// Parks with names.
+    pub parks: Vec<NamedArea>,
+    /// The area of a layer that holds one named area and nothing else, of no known kind.
+    pub only_area: Option<NamedArea>,
+    /// Names of features of any kind, up to [`MOST_NAMES`].
+    pub names: Vec<String>,
 }
 
 /// A table and how many features it takes.
@@ -72,6 +82,8 @@ pub(super) struct LeftFeatures {
     /// `lines`, `polygons` or `points`.
     pub kind: &'static str,
     pub count: usize,
+    /// The property that most likely names them; `None` where none does.
+    pub name_property: Option<String>,
     /// The [`MOST_EXAMPLES`] properties that most of them have, each with a value.
     pub examples: Vec<(String, Value)>,
 }
@@ -91,6 +103,19 @@ pub(super) struct NamedDistrict {
     pub level: f64,
     pub polygons: Vec<Polygon>,
 }
+
+/// An area with a name.
+#[derive(Clone)]
+pub(super) struct NamedArea {
+    pub name: String,
+    pub polygons: Vec<Polygon>,
+}
+
+/// As many segments tell where the features of a layer lie: more would only take longer.
+const MOST_SEGMENTS: usize = 1 << 15;
+
+/// As many names tell whether a file is named after a place of its features.
+const MOST_NAMES: usize = 4096;
 
 /// As many properties as a reader looks over.
 const MOST_EXAMPLES: usize = 12;
@@ -181,7 +206,8 @@ fn distinct(names: Vec<String>) -> Vec<String> {
 fn survey(layer: Arc<VectorLayer>, name: Option<String>, title: &str) -> SurveyedLayer {
     let mut taken = vec![false; layer.features.len()];
     // What the scene is about: not what no table takes, nor boundaries, which reach far out to sea, nor distant names.
-    let mut around = Rect::EMPTY;
+    let mut around = vec![false; layer.features.len()];
+    let mut peaks = Vec::new();
     let mut matches = Vec::new();
     let mut places = Vec::new();
     for rule in RULES {
@@ -195,9 +221,11 @@ fn survey(layer: Arc<VectorLayer>, name: Option<String>, title: &str) -> Surveye
         if let Some(label) = rule.label.as_ref().filter(|label| label.is_title) {
             places.extend(indices.iter().filter_map(|&index| named_place(&layer, index, label)));
         }
+        if let Some(label) = rule.label.as_ref().filter(|_| rule.what == PEAKS) {
+            peaks.extend(indices.iter().filter_map(|&index| named_place(&layer, index, label)));
+        }
         if rule.what != BOUNDARIES && rule.label.is_none() {
-            let vertices = indices.iter().flat_map(|&index| layer.features[index].geometry.vertices());
-            around = vertices.fold(around, |around, vertex| around.with(*vertex));
+            indices.iter().for_each(|&index| around[index] = true);
         }
         indices.into_iter().for_each(|index| taken[index] = true);
         let selection =
@@ -212,14 +240,93 @@ fn survey(layer: Arc<VectorLayer>, name: Option<String>, title: &str) -> Surveye
     let left: Vec<&Feature> = left.collect();
     let rest = ["lines", "polygons", "points"].into_iter().filter_map(|kind| left_features(&left, kind));
     let rest = rest.collect();
-    let all = layer.features.iter().flat_map(|feature| feature.geometry.vertices().copied());
-    let bounds = if around.is_empty() { Rect::around(all) } else { around };
-    let corners = if bounds.is_empty() { Vec::new() } else { bounds.grid_points().collect() };
+    let is_around = |index: usize| around[index] || !around.contains(&true);
+    let shown = layer.features.iter().enumerate().filter(|(index, _)| is_around(*index));
+    let segments = segments(&shown.map(|(_, feature)| &feature.geometry).collect::<Vec<_>>());
+    let (parks, names) = (parks(&layer), names(&layer));
+    let only_area = only_area(&layer).filter(|_| matches.is_empty());
     let districts = districts(&layer);
     let coast = coast(&layer);
     let has_fclass = layer.features.iter().any(|feature| feature.properties.contains_key("fclass"));
     let crs = layer.crs.clone();
-    SurveyedLayer { name, matches, rest, places, districts, coast, has_fclass, crs, corners }
+    SurveyedLayer {
+        name,
+        matches,
+        rest,
+        places,
+        districts,
+        coast,
+        has_fclass,
+        crs,
+        segments,
+        is_on_ground: false,
+        peaks,
+        parks,
+        only_area,
+        names,
+    }
+}
+
+/// Evenly chosen segments of lines and outlines, and points as segments without length.
+fn segments(shapes: &[&Geometry]) -> Vec<[DVec2; 2]> {
+    let all = || shapes.iter().flat_map(|shape| segments_of(shape));
+    let step = all().count().div_ceil(MOST_SEGMENTS).max(1);
+    all().step_by(step).collect()
+}
+
+fn segments_of(shape: &Geometry) -> Box<dyn Iterator<Item = [DVec2; 2]> + '_> {
+    fn course(points: &[DVec2]) -> impl Iterator<Item = [DVec2; 2]> + '_ {
+        points.windows(2).map(|ends| [ends[0], ends[1]])
+    }
+    match shape {
+        Geometry::Points(points) => Box::new(points.iter().map(|&at| [at, at])),
+        Geometry::Lines(lines) => Box::new(lines.iter().flat_map(|line| course(line))),
+        Geometry::Polygons(polygons) => Box::new(
+            polygons
+                .iter()
+                .flat_map(|polygon| polygon::edges(&polygon.exterior))
+                .map(|(from, to)| [from, to]),
+        ),
+    }
+}
+
+/// The name of a feature; `None` where it has none.
+fn name_of(feature: &Feature) -> Option<&str> {
+    let names = NAMES.iter().filter_map(|key| feature.properties.get(*key)?.as_str());
+    names.map(str::trim).find(|name| !name.is_empty())
+}
+
+fn names(layer: &VectorLayer) -> Vec<String> {
+    layer.features.iter().filter_map(name_of).take(MOST_NAMES).map(str::to_owned).collect()
+}
+
+fn named_area(feature: &Feature) -> Option<NamedArea> {
+    let (name, polygons) = (name_of(feature)?, feature.polygons());
+    (!polygons.is_empty()).then(|| NamedArea { name: name.to_owned(), polygons: polygons.to_vec() })
+}
+
+/// Parks and reserves by the tags of OpenStreetMap.
+fn parks(layer: &VectorLayer) -> Vec<NamedArea> {
+    const TAGS: [(&str, &[&str]); 3] = [
+        ("boundary", &["national_park", "protected_area"]),
+        ("leisure", &["park", "nature_reserve"]),
+        ("fclass", &["park", "nature_reserve", "national_park"]),
+    ];
+    let is_park = |feature: &&Feature| {
+        TAGS.iter().any(|(key, words)| {
+            let word = feature.properties.get(*key).and_then(Value::as_str);
+            word.is_some_and(|word| words.contains(&word))
+        })
+    };
+    layer.features.iter().filter(is_park).filter_map(named_area).collect()
+}
+
+/// The area of a layer that holds nothing else.
+fn only_area(layer: &VectorLayer) -> Option<NamedArea> {
+    match &layer.features[..] {
+        [only] => named_area(only),
+        _ => None,
+    }
 }
 
 /// Evenly chosen vertices of coastlines.
@@ -266,7 +373,39 @@ fn left_features(left: &[&Feature], kind: &'static str) -> Option<LeftFeatures> 
     let example = |(name, (_, value)): (&str, (usize, &Value))| (name.to_owned(), value.clone());
     let examples = found.into_iter().take(MOST_EXAMPLES).map(example).collect();
     let count = of_kind().count();
-    (count > 0).then_some(LeftFeatures { kind, count, examples })
+    let name_property = name_property(&of_kind().copied().collect::<Vec<_>>());
+    (count > 0).then_some(LeftFeatures { kind, count, name_property, examples })
+}
+
+/// The property that most likely names features: one of [`NAMES`], one whose own name says so, or that whose texts differ
+/// most from feature to feature.
+fn name_property(features: &[&Feature]) -> Option<String> {
+    /// The least share of features with a text of its own.
+    const LEAST_DISTINCT: f64 = 0.8;
+    /// Longer texts are notes.
+    const LONGEST: usize = 40;
+    let mut texts: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+    for (key, value) in features.iter().flat_map(|feature| &feature.properties) {
+        if let Some(text) = value.as_str().map(str::trim).filter(|text| !text.is_empty()) {
+            texts.entry(key).or_default().insert(text);
+        }
+    }
+    let is_short = |texts: &BTreeSet<&str>| texts.iter().all(|text| text.chars().count() <= LONGEST);
+    let is_name = |key: &str| {
+        let key = key.to_lowercase();
+        ["name", "nom", "label", "title"].iter().any(|word| key.contains(word))
+    };
+    let keys = || texts.iter().filter(|(_, texts)| is_short(texts)).map(|(key, _)| *key);
+    let distinct = || {
+        let of_own = texts.iter().filter(|(key, texts)| {
+            let is_code = key.to_lowercase().ends_with("id")
+                || texts.iter().any(|text| !text.contains(char::is_alphabetic));
+            !is_code && is_short(texts) && texts.len() as f64 >= features.len() as f64 * LEAST_DISTINCT
+        });
+        of_own.max_by_key(|(_, texts)| texts.len()).map(|(key, _)| *key)
+    };
+    let known = NAMES.into_iter().find(|name| keys().any(|key| key == *name));
+    known.or_else(|| keys().find(|key| is_name(key))).or_else(distinct).map(str::to_owned)
 }
 
 fn named_place(layer: &Arc<VectorLayer>, index: usize, label: &LabelRule) -> Option<NamedPlace> {

@@ -10,6 +10,8 @@ use crate::crop::ExtentDraft;
 use crate::overlays::{self, OverlayDraft};
 use crate::rules::{self, RULES};
 use crate::survey::{FeatureSelection, LeftFeatures, SurveyedLayer, TableMatch};
+use crate::title;
+use sandtable_base::limits::SCENE_GRAPHICS;
 use sandtable_geom::rect::Rect;
 use sandtable_raster::undeclared::UndeclaredNodata;
 
@@ -67,7 +69,16 @@ pub(super) fn scene(draft: &SceneDraft, vectors: &[VectorDraft], overlays: &[Ove
             }
         }
     }
-    sources.iter().for_each(|&source| rest(&mut out, source));
+    if sources.iter().any(|source| is_drawn_plain(source.layer)) {
+        out.push_str("\n# A legend of all that is drawn.\n[furniture]\nclasses = true\n");
+    }
+    for &source in &sources {
+        if is_drawn_plain(source.layer) {
+            neutral(&mut out, source);
+        } else {
+            rest(&mut out, source);
+        }
+    }
     out.push_str(&overlays::text(overlays));
     out.push_str(
         "\n# A camera without `eye` and `look_at` is fitted to the ground that it shows. `eye`, `eye_height` and `look_at` put\n\
@@ -160,9 +171,43 @@ fn table(out: &mut String, source: LayerSource<'_>, found: &TableMatch) {
     }
 }
 
+/// Whether a layer of no known schema is drawn by its shapes: those off the ground, and too many, stay a comment.
+fn is_drawn_plain(layer: &SurveyedLayer) -> bool {
+    let count = layer.rest.iter().map(|rest| rest.count).sum::<usize>();
+    layer.is_on_ground && layer.matches.is_empty() && (1..=SCENE_GRAPHICS.count() / 2).contains(&count)
+}
+
+/// Tables for a layer of no known schema: names of its points, else its shapes in a neutral style.
+fn neutral(out: &mut String, source: LayerSource<'_>) {
+    /// The most names of points that are written.
+    const MOST_NAMES: u32 = 30;
+    let LayerSource { file, layer } = source;
+    let counts: Vec<String> = layer.rest.iter().map(|rest| format!("{} {}", rest.count, rest.kind)).collect();
+    let name = title::of_layer(layer.name.as_deref(), file);
+    let _ = writeln!(out, "\n# {name}: of no known kind ({}).", counts.join(", "));
+    let layer_key =
+        layer.name.as_ref().map_or_else(String::new, |name| format!("layer = {}\n", quoted(name)));
+    let file_key = format!("file = {}\n{layer_key}", quoted(file));
+    match &layer.rest[..] {
+        [points] if points.kind == "points" && name.to_lowercase().contains("tree") => {
+            let _ = write!(out, "[[model]]\nfile = \"broadleaf\"\n[model.instances]\n{file_key}");
+        }
+        [LeftFeatures { kind: "points", name_property: Some(property), .. }] => {
+            let text = if is_plain(property) { property.clone() } else { format!("`{property}`") };
+            let _ = write!(out, "[[label]]\n{file_key}text = {}\nmost = {MOST_NAMES}\n", quoted(&text));
+        }
+        _ => {
+            let legend = layer.only_area.as_ref().map_or(name.as_str(), |area| area.name.as_str());
+            let _ = write!(out, "[[overlay]]\nname = {}\n{file_key}", quoted(legend));
+        }
+    }
+    layer.rest.iter().for_each(|left| properties(out, left));
+}
+
 /// Tables, commented out, for the features that no table takes, with their properties.
 fn rest(out: &mut String, source: LayerSource<'_>) {
-    for LeftFeatures { kind, count, examples } in &source.layer.rest {
+    for left in &source.layer.rest {
+        let LeftFeatures { kind, count, examples, .. } = left;
         let named = examples.iter().map(|(name, _)| name).find(|name| name.eq_ignore_ascii_case("name"));
         let head = match (*kind, named) {
             ("lines", _) => "# [[fence]]\n# kind = \"boundary\"".to_owned(),
@@ -179,14 +224,18 @@ fn rest(out: &mut String, source: LayerSource<'_>) {
         if let Some(condition) = telling.find_map(|(name, value)| condition(name, value)) {
             let _ = writeln!(out, "# where = {}", quoted(&condition));
         }
-        if !examples.is_empty() {
-            let _ = writeln!(out, "# Their properties, each with a value that it has:");
-        }
-        for (name, value) in examples {
-            let shown: String = value.to_string().chars().take(MOST_SHOWN).collect();
-            let _ =
-                writeln!(out, "#   {} = {shown}", if is_plain(name) { name.clone() } else { quoted(name) });
-        }
+        properties(out, left);
+    }
+}
+
+/// A comment with the properties of features and examples of their values.
+fn properties(out: &mut String, LeftFeatures { examples, .. }: &LeftFeatures) {
+    if !examples.is_empty() {
+        let _ = writeln!(out, "# Their properties, each with a value that it has:");
+    }
+    for (name, value) in examples {
+        let shown: String = value.to_string().chars().take(MOST_SHOWN).collect();
+        let _ = writeln!(out, "#   {} = {shown}", if is_plain(name) { name.clone() } else { quoted(name) });
     }
 }
 

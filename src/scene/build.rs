@@ -204,7 +204,10 @@ pub fn build_with(
         ramp,
         latitude_deg: latitude_deg(&crs, lattice.map_extent().center()),
         land_cover: surroundings.land_cover,
-        is_base_map: surroundings.is_base_map,
+        // Plain lines and areas of an overlay leave the relief as strong as roads do.
+        is_base_map: surroundings.is_base_map
+            || !military.is_empty()
+            || collected.graphics.iter().any(|graphic| graphic.style.is_none()),
         imagery: imagery.map(Arc::new),
         contours: style::contours(document, height_range_m),
         preset: document.style.preset,

@@ -75,8 +75,8 @@ pub enum ViewAim {
 /// A view whose eye depends on the picture's shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FittedView {
-    /// Where it looks, clockwise from north, radians; `None` for north, or for the east or the west where ground that is
-    /// long from south to north fills the picture better so.
+    /// Where it looks, clockwise from north, radians; `None` for north, or for up to 45° from it where the ground fills the
+    /// picture better so.
     pub azimuth_rad: Option<f32>,
     /// How far it looks down from the horizon, radians; `None` for what fills the picture best.
     pub pitch_rad: Option<f32>,

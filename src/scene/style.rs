@@ -115,7 +115,7 @@ pub struct Surroundings {
     pub table: TableTop,
     /// Whether the ground's natural cover shows.
     pub land_cover: bool,
-    /// Whether the ground is a base map for symbols and graphics: its shade is lighter then.
+    /// Whether the ground is a base map by its preset, or by its own symbols and graphics: its shade is lighter then.
     pub is_base_map: bool,
 }
 
@@ -133,9 +133,7 @@ impl Surroundings {
             table: *style.table,
             land_cover: style.land_cover.stated().copied().unwrap_or(is_natural || *style.land_cover),
             is_base_map: matches!(style.preset, Some(StylePreset::Military | StylePreset::Print))
-                || !(document.graphics.is_empty()
-                    && document.symbols.is_empty()
-                    && document.overlays.is_empty()),
+                || !(document.graphics.is_empty() && document.symbols.is_empty()),
         }
     }
 }

@@ -1,8 +1,8 @@
-//! Views whose eye depends on the picture's shape: what they show fills it.
+//! Views whose eye depends on the picture's shape: what they show fills it, and they look north or nearly so.
 
-use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
+use std::f32::consts::FRAC_PI_4;
 
-use glam::{DVec2, DVec3, Vec2, Vec3};
+use glam::{DVec2, UVec2, Vec2, Vec3};
 
 use crate::framing::fit::{FitFrame, fitted_eye, projected};
 use crate::plinth::base_z;
@@ -11,7 +11,7 @@ use crate::scene_view::FittedView;
 use sandtable_geom::convex::hull;
 use sandtable_geom::polygon::doubled_area;
 use sandtable_geom::rect::Rect;
-use sandtable_terrain::lattice::Post;
+use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_view::axes::DirectionAxes;
 
 /// The share of the picture left free on each side: for the title above and the scale bar below.
@@ -22,48 +22,111 @@ pub(super) const ABOVE: f32 = 0.06;
 /// About as many posts as this along each side of what is shown stand for its silhouette.
 const POSTS: u32 = 128;
 
-/// The pitches between which the one is chosen that fills the picture best: 40°, 45° and 50°.
-pub(super) const PITCHES: [f32; 3] = [FRAC_PI_4 * 40.0 / 45.0, FRAC_PI_4, FRAC_PI_4 * 50.0 / 45.0];
+/// The pitches of which the one is chosen that fills the picture best: 40°, 45° and 50°.
+const PITCHES: [f32; 3] = [FRAC_PI_4 * 40.0 / 45.0, FRAC_PI_4, FRAC_PI_4 * 50.0 / 45.0];
 
-/// The share of the picture that a view toward the north fills at least; ground that is longer from south to north than
-/// the picture is high is seen from its long side instead. More of it turns more blocks out of their north.
+/// Pitches for ground that is long from south to north or from west to east, where those fill little: 30°, 35°, 55° and 60°.
+const MORE_PITCHES: [f32; 4] =
+    [FRAC_PI_4 * 30.0 / 45.0, FRAC_PI_4 * 35.0 / 45.0, FRAC_PI_4 * 55.0 / 45.0, FRAC_PI_4 * 60.0 / 45.0];
+
+/// The directions, from the north, of views that keep north in the upper part of the picture: people know their place so.
+const TURNS: [f32; 7] = [
+    0.0,
+    FRAC_PI_4 * -15.0 / 45.0,
+    FRAC_PI_4 * 15.0 / 45.0,
+    FRAC_PI_4 * -30.0 / 45.0,
+    FRAC_PI_4 * 30.0 / 45.0,
+    -FRAC_PI_4,
+    FRAC_PI_4,
+];
+
+/// The share of the picture that a view toward the north at a usual pitch fills at least; where it fills less, it looks
+/// aside or from another height. More of it turns more blocks out of their north.
 const LEAST_FILLED: f64 = 0.6;
 
-/// How many times as much a view from the long side fills at least, to be worth a north that is not up.
-const TURN_GAIN: f64 = 1.15;
+/// How many times as much a view that looks aside fills at least, to be worth a north that is not straight up.
+const TURN_GAIN: f64 = 1.1;
+
+/// The cells of a picture, across and down, that are told filled or empty where ground lacks data: coarse enough for the
+/// points of a silhouette to lie in each cell of the ground.
+const COVER_CELLS: [usize; 2] = [48, 30];
+
+/// The pitches among which a fitted view chooses.
+pub(super) fn pitches() -> impl Iterator<Item = f32> + Clone {
+    PITCHES.into_iter().chain(MORE_PITCHES)
+}
+
+/// The directions among which a fitted view chooses, clockwise from north.
+pub(super) fn turns() -> impl Iterator<Item = f32> + Clone {
+    TURNS.into_iter()
+}
 
 /// The eye and the target of a fitted view on a picture of `size` pixels.
 pub fn fitted_aim(scene: &SceneModel, view: &FittedView, fov_y_rad: f32, size: (u32, u32)) -> (Vec3, Vec3) {
     let points = silhouette(scene, view.shown);
     let half = half_picture(fov_y_rad, size);
     let frame = free_frame(half);
+    let lacks_data = lacks_data(&scene.lattice, view.shown);
     let aimed = |azimuth_rad: f32, pitch_rad: f32| {
         let axes = DirectionAxes::new(azimuth_rad, pitch_rad);
         let eye = fitted_eye(&points, &axes, &frame);
-        let corners: Vec<DVec2> = projected(&points, &axes, eye).map(|corner| corner.as_dvec2()).collect();
-        let filled = doubled_area(&hull(&corners)) / 2.0 / f64::from(4.0 * half.x * half.y);
+        let corners = projected(&points, &axes, eye).map(|corner| corner.as_dvec2());
+        let filled = if lacks_data {
+            covered(corners, half)
+        } else {
+            doubled_area(&hull(&corners.collect::<Vec<DVec2>>())) / 2.0 / f64::from(4.0 * half.x * half.y)
+        };
         Aimed { axes, eye, filled }
     };
-    let toward = |azimuth_rad: f32| match view.pitch_rad {
-        Some(pitch_rad) => aimed(azimuth_rad, pitch_rad),
-        None => {
-            let [first, others @ ..] = PITCHES.map(|pitch_rad| aimed(azimuth_rad, pitch_rad));
-            others.into_iter().fold(first, |best, next| if next.filled > best.filled { next } else { best })
-        }
+    let usual = |azimuth_rad: f32| {
+        let pitched = PITCHES.map(|pitch_rad| aimed(azimuth_rad, pitch_rad));
+        fullest(pitched)
     };
-    let Aimed { axes, eye, .. } = match view.azimuth_rad {
-        Some(azimuth_rad) => toward(azimuth_rad),
-        None => {
-            let north = toward(0.0);
-            let side = || toward(from_lower_side(&points));
+    let Aimed { axes, eye, .. } = match (view.azimuth_rad, view.pitch_rad) {
+        (Some(azimuth_rad), Some(pitch_rad)) => aimed(azimuth_rad, pitch_rad),
+        (Some(azimuth_rad), None) => usual(azimuth_rad),
+        (None, stated) => {
+            let north = stated.map_or_else(|| usual(0.0), |pitch_rad| aimed(0.0, pitch_rad));
             if north.filled < LEAST_FILLED {
-                Some(side()).filter(|side| side.filled > north.filled * TURN_GAIN).unwrap_or(north)
+                let toward = |turn_rad: f32| match stated {
+                    Some(pitch_rad) => aimed(turn_rad, pitch_rad),
+                    None => fullest(pitches().map(|pitch_rad| aimed(turn_rad, pitch_rad))),
+                };
+                let [north, aside @ ..] = TURNS.map(toward);
+                let least = north.filled * TURN_GAIN;
+                let aside = fullest(aside);
+                if aside.filled > least { aside } else { north }
             } else {
                 north
             }
         }
     };
     (eye, eye + axes.forward * scene.bounds.0.distance(scene.bounds.1).max(1.0))
+}
+
+/// The view that fills most of the picture, of equals the first; there is at least one.
+fn fullest(views: impl IntoIterator<Item = Aimed>) -> Aimed {
+    let best = views.into_iter().reduce(|best, next| if next.filled > best.filled { next } else { best });
+    best.expect("directions and pitches are listed")
+}
+
+/// The share of the cells of a picture that hold one of `points`, as tangents of angles from the axis of view.
+fn covered(points: impl Iterator<Item = DVec2>, half: Vec2) -> f64 {
+    let [columns, rows] = COVER_CELLS;
+    let mut is_covered = vec![false; columns * rows];
+    for point in points {
+        let share = (point / half.as_dvec2() + 1.0) / 2.0 * DVec2::new(columns as f64, rows as f64);
+        let cell = share.floor().clamp(DVec2::ZERO, DVec2::new(columns as f64 - 1.0, rows as f64 - 1.0));
+        is_covered[cell.y as usize * columns + cell.x as usize] = true;
+    }
+    is_covered.iter().filter(|is_covered| **is_covered).count() as f64 / is_covered.len() as f64
+}
+
+/// Whether posts lack data within `shown`.
+fn lacks_data(lattice: &Lattice, shown: Option<Rect>) -> bool {
+    let [low, high] = shown_posts(lattice, shown);
+    spread(low.y, high.y)
+        .any(|row| spread(low.x, high.x).any(|column| lattice.height(Post { column, row }).is_nan()))
 }
 
 /// Half of a picture of `size` pixels, as tangents of angles from the axis of view: across and down.
@@ -87,23 +150,11 @@ struct Aimed {
     filled: f64,
 }
 
-/// The azimuth, to the east or to the west, of a view from the side where the ground is lower: less of it is hidden.
-fn from_lower_side(points: &[Vec3]) -> f32 {
-    let count = points.len() as f64;
-    let mean = points.iter().map(|point| point.as_dvec3()).sum::<DVec3>() / count;
-    let rise: f64 = points.iter().map(|point| (point.as_dvec3() - mean).x * f64::from(point.z)).sum();
-    if rise < 0.0 { -FRAC_PI_2 } else { FRAC_PI_2 }
-}
-
 /// Points of the drawn ground within `shown`, its border among them; of the whole ground also the foot of the block.
 /// Where all posts shown lack data, the corners of its box.
 pub(super) fn silhouette(scene: &SceneModel, shown: Option<Rect>) -> Vec<Vec3> {
     let lattice = &scene.lattice;
-    let (cell, last) =
-        (lattice.cell(), DVec2::new(f64::from(lattice.columns() - 1), f64::from(lattice.rows() - 1)));
-    let within = shown.unwrap_or(Rect { min: DVec2::ZERO, max: lattice.extent().size() });
-    let low = (within.min / cell).floor().clamp(DVec2::ZERO, last).as_uvec2();
-    let high = (within.max / cell).ceil().clamp(DVec2::ZERO, last).as_uvec2();
+    let [low, high] = shown_posts(lattice, shown);
     let base_z = base_z(scene.bounds);
     let mut points = Vec::new();
     for row in spread(low.y, high.y) {
@@ -125,6 +176,15 @@ pub(super) fn silhouette(scene: &SceneModel, shown: Option<Rect>) -> Vec<Vec3> {
         points.extend([min, max, Vec3::new(min.x, max.y, min.z), Vec3::new(max.x, min.y, min.z)]);
     }
     points
+}
+
+/// The columns and rows of the first and the last post of the ground within `shown`.
+fn shown_posts(lattice: &Lattice, shown: Option<Rect>) -> [UVec2; 2] {
+    let (cell, last) =
+        (lattice.cell(), DVec2::new(f64::from(lattice.columns() - 1), f64::from(lattice.rows() - 1)));
+    let within = shown.unwrap_or(Rect { min: DVec2::ZERO, max: lattice.extent().size() });
+    let post = |at: DVec2| at.clamp(DVec2::ZERO, last).as_uvec2();
+    [post((within.min / cell).floor()), post((within.max / cell).ceil())]
 }
 
 /// About [`POSTS`] numbers from `low` to `high`, both among them.

@@ -15,12 +15,10 @@
 //! so squares are no wider than half a pixel there, and hills up to that height lose nothing that a pixel shows. Higher ground
 //! has a fitted eye move away.
 
-use std::f32::consts::FRAC_PI_2;
-
 use glam::{DVec2, Vec2, Vec3};
 
 use crate::framing::fit::{ParallelSpan, fitted_eye};
-use crate::framing::fitted_view::{PITCHES, free_frame, half_picture};
+use crate::framing::fitted_view::{free_frame, half_picture, pitches, turns};
 use crate::framing::parallel_view::pixels_per_meter;
 use crate::framing::shaped_page::pages;
 use crate::paper_sheet::{PaperSheet, SCREEN_PX};
@@ -146,8 +144,8 @@ fn stated_depth_m(
 /// The least depth at which a fitted camera sees level ground.
 fn fitted_depth_m(view: &FittedView, half: Vec2, plan: &Rect) -> Option<f64> {
     let corners = corners(&view.shown.unwrap_or(*plan));
-    let pitches = view.pitch_rad.map_or(PITCHES.to_vec(), |pitch| vec![pitch]);
-    let azimuths = view.azimuth_rad.map_or(vec![0.0, FRAC_PI_2, -FRAC_PI_2], |azimuth| vec![azimuth]);
+    let pitches: Vec<f32> = view.pitch_rad.map_or_else(|| pitches().collect(), |pitch| vec![pitch]);
+    let azimuths: Vec<f32> = view.azimuth_rad.map_or_else(|| turns().collect(), |azimuth| vec![azimuth]);
     let depth_m = |axes: DirectionAxes| {
         let eye = fitted_eye(&corners, &axes, &free_frame(half));
         let lower_border = axes.forward - axes.up * half.y;

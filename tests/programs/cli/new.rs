@@ -206,7 +206,11 @@ fn a_scene_is_named_after_its_place_and_cut_to_what_stands_in_it() {
     );
     std::fs::remove_dir_all(scratch.at("project/scene")).expect("it was written");
     new(&scratch, &[]).ok();
-    assert!(text_of(&scratch).contains("title = \"Valley\""));
+    assert!(
+        text_of(&scratch).contains("title = \"36.19° N 86.94° W\""),
+        "a file's name is no place\n{}",
+        text_of(&scratch)
+    );
 }
 
 #[test]
@@ -217,11 +221,10 @@ fn a_layer_without_properties_is_taken_for_what_its_name_says() {
     let vectors: Vec<&Path> = vectors.iter().map(|path| path.as_path()).collect();
     let (text, _) = of_data(&scratch, &folder.join("dtm.tif"), &vectors);
     for wanted in [
-        "title = \"Taunton UK\"",
+        "title = \"51.06° N 3.12° W\"",
         "# Buildings (401).\n[[building]]",
-        "# In no table of this file (4 lines)",
-        "# [[model]]",
-        "# where = \"Tree_speci = 'CEDAR OF LEBANON'\"",
+        "# Lines: of no known kind (4 lines).\n[[overlay]]\nname = \"Lines\"\n",
+        "# Trees: of no known kind (52 points).\n[[model]]\n",
         "#   Tree_speci = \"CEDAR OF LEBANON\"",
     ] {
         assert!(text.contains(wanted), "{wanted} in\n{text}");
