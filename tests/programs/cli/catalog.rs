@@ -24,7 +24,7 @@ fn the_catalog_is_printed_as_a_json_list_of_the_kinds() {
 fn tilted() -> Scratch {
     let scratch = Scratch::new();
     let head = "ncols 6\nnrows 4\nxllcorner 0\nyllcorner 0\ncellsize 10\n";
-    scratch.write("tilt.asc", &format!("{head}{}", "0 1 2 3 4 5\n".repeat(4)));
+    scratch.write("tilt.asc", format!("{head}{}", "0 1 2 3 4 5\n".repeat(4)));
     scratch
 }
 
