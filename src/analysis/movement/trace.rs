@@ -5,9 +5,9 @@
 //! fall with every piece. Where all that leads to a point is closed, though both ends of its side were reached, the trace
 //! takes the next best. Where nothing is left, it goes along sides that are too steep.
 //!
-//! Times on a side are those between its ends, and on rough ground the way takes longer. So it is searched again over fine
-//! points beside the trace, and its points are moved along their sides. Where it still takes longer than the search said, a
-//! way by steps might be quicker, and is looked for.
+//! Times on a side are those between its ends, and on rough ground the way takes longer. So its points are moved along their
+//! sides, and where that is not enough it is searched again over fine points beside the trace. Where it still takes longer
+//! than the search said, a way by steps might be quicker, and is looked for.
 
 use std::collections::BTreeSet;
 
@@ -26,6 +26,9 @@ const FINE_PARTS: usize = 4;
 
 /// How often the points of a way are moved along their sides.
 const PULLS: usize = 2;
+
+/// A way that takes at most this many times what the search said is not searched again over fine points.
+const CLOSE: f64 = 1.002;
 
 /// A way that takes no longer than this many times what the search said is as quick as one by steps, but for rounding.
 const ROUNDING: f64 = 1.0 + 1e-6;
@@ -59,8 +62,12 @@ impl TravelGround<'_> {
         }
         if self.has_triangles {
             self.pull(&mut way, PULLS);
-            let fine = WayChoice { parts: FINE_PARTS, posts: Some(self.posts_beside(&way)) };
-            let fine = quickest_way(self, times, end, self.seconds_along(&way), &fine);
+            let seconds = self.seconds_along(&way);
+            let mut fine = Vec::new();
+            if seconds > f64::from(times.time_s(end)) * CLOSE {
+                let choice = WayChoice { parts: FINE_PARTS, posts: Some(self.posts_beside(&way)) };
+                fine = quickest_way(self, times, end, seconds, &choice);
+            }
             if !fine.is_empty() {
                 way = fine;
                 self.pull(&mut way, PULLS);
