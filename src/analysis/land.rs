@@ -164,7 +164,8 @@ pub struct Crossing {
     pub name: String,
     /// What it is.
     pub kind: CrossingKind,
-    /// The way over it, map coordinates: the deck of a bridge, the ford's line, the road over a culvert.
+    /// Map coordinates of the way over it: the deck of a bridge, the ford's line, the road over an inferred culvert; of a culvert
+    /// that the data have, the water's line in it.
     pub line: Vec<DVec2>,
     /// Its width in meters.
     pub width_m: f64,
@@ -177,8 +178,10 @@ pub struct Crossing {
 pub enum CrossingKind {
     /// A bridge: its way is as good as its road, and water passes below.
     Bridge,
-    /// A culvert: water passes below the road.
+    /// A culvert that the data have: water passes along the line below what lies on it.
     Culvert,
+    /// A culvert that no data have, inferred where a road crosses a stream: water passes below the road.
+    InferredCulvert,
     /// A ford: a way through the water.
     Ford,
 }

@@ -6,7 +6,7 @@ use crate::parameter::{AnalysisParameter, ParameterDefault, ParameterForm};
 /// What no kind of water knows.
 const LIMITS: &[&str] = &[
     "Water flows over the ground alone, and nothing soaks into it: soil, pipes and sluices are unknown to it.",
-    "Below bridges and culverts of the scene the ground is cut through, straight from the lowest post within 30 m of the way on one side to that on the other; without them an embankment dams its valley. A road that crosses a stream narrower than 3 m without a bridge is taken to have a culvert.",
+    "Below bridges of the scene the ground is cut through, straight from the lowest post within 30 m of the way on one side to that on the other, and along its culverts from the lowest post within 30 m before the start to that after the end; without them an embankment dams its valley. A road that crosses a stream narrower than 3 m without either is taken to have a culvert; a note counts these apart.",
     "Posts beside a hole in the data are outlets, as those at the border are: a hole swallows the water that reaches it.",
     "Flow has eight directions, but for `dinf` of `flow`; level ground and filled depressions drain away from higher and toward lower ground (Barnes, Lehman and Mulla 2014b), which is a guess at the channels in them.",
 ];

@@ -136,6 +136,9 @@ table! {
         /// the valley of the elevation model, the ground stays as it is, and the report lists the place. 10 is the relative
         /// error that the makers of global elevation models promise (Farr et al. 2007).
         max_cut: f64 = key::number(WIDTH, "m"), default 10;
+        /// Whether a line runs in a culvert: analyses of water let it pass below what lies on it.
+        culvert: Option<Expression> = key::expression(),
+            otherwise "whether one of its properties `tunnel` and `culvert` is there and not `no`";
     }
     check(reader) {
         check_widths(reader, source.as_ref(), widths.as_ref().and_then(Option::as_ref));

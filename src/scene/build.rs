@@ -239,6 +239,7 @@ pub fn build_with(
         graphics: collected.graphics,
         sight,
         barriers: fences::barriers(&shaped.lines),
+        culverts: collected.culverts,
         vehicles,
         analyses: Vec::new(),
         solids: collected.solids,

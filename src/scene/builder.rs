@@ -11,6 +11,7 @@ use crate::scene_findings::SceneFindings;
 use crate::scene_graphic::SceneGraphic;
 use crate::symbols::LineSymbol;
 use crate::tag_notes::TagNotes;
+use crate::water::culvert::Culvert;
 use crate::water::lake_level::LakeSurface;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::FeatureId;
@@ -40,6 +41,8 @@ pub struct SceneBuilder {
     pub decks: Vec<SurfaceTriangle>,
     /// Lakes with their levels.
     pub lakes: Vec<LakeSurface>,
+    /// Reaches of rivers in culverts.
+    pub culverts: Vec<Culvert>,
     /// The findings so far, for the user.
     pub findings: SceneFindings,
     /// The errors so far, each of which keeps the scene from being built.
@@ -69,6 +72,7 @@ impl SceneBuilder {
             uprights: Vec::new(),
             decks: Vec::new(),
             lakes: Vec::new(),
+            culverts: Vec::new(),
             errors: BuildErrorSink::new(findings.source()),
             findings,
             default_counts: DefaultCounts::new(),

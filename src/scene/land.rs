@@ -64,6 +64,7 @@ pub fn land_of(scene: &SceneModel, layers: &[LandPart]) -> Land {
             LandPart::Crossings => {
                 land.crossings = bridges(scene);
                 land.crossings.extend(culverts(scene));
+                land.crossings.extend(inferred_culverts(scene));
                 land.knows_crossings = true;
             }
             LandPart::Water => land.water = Some(waters(scene)),
@@ -165,11 +166,15 @@ fn waters(scene: &SceneModel) -> Vec<WaterPost> {
             RibbonSurface::Lake => WaterKind::Lake,
             _ => continue,
         };
+        if is_in_culvert(scene, ribbon.feature) {
+            continue;
+        }
         for triangle in ribbon.plan.corners() {
             posts_in(&scene.lattice, corners(triangle), |index, _| waters[index] = post(kind));
         }
     }
-    for symbol in scene.symbols.iter().filter(|symbol| is_river(symbol)) {
+    let is_open = |symbol: &&LineSymbol| is_river(symbol) && !is_in_culvert(scene, symbol.feature);
+    for symbol in scene.symbols.iter().filter(is_open) {
         along_line(&scene.lattice, &on_map(scene, symbol.alignment.line.points()), 0.0, |index| {
             if waters[index].kind == WaterKind::None {
                 waters[index] = post(WaterKind::River);
@@ -230,9 +235,26 @@ fn bridges(scene: &SceneModel) -> Vec<Crossing> {
     ways(scene).filter_map(bridge).collect()
 }
 
-/// The roads on the ground over streams narrower than [`CULVERT_M`]: each runs through a pipe, which no map shows.
-fn culverts(scene: &SceneModel) -> Vec<Crossing> {
-    let streams: Vec<&LineSymbol> = scene.symbols.iter().filter(|symbol| is_river(symbol)).collect();
+/// Whether a river runs in a culvert that the data have.
+fn is_in_culvert(scene: &SceneModel, river: FeatureId) -> bool {
+    // In the order of their features.
+    scene.culverts.binary_search_by_key(&river.0, |culvert| culvert.feature.0).is_ok()
+}
+
+/// The culverts that the data have.
+fn culverts(scene: &SceneModel) -> impl Iterator<Item = Crossing> {
+    scene.culverts.iter().map(|culvert| {
+        let feature = culvert.feature.index().and_then(|index| scene.features.get(index));
+        let name = feature.map_or_else(String::new, |feature| feature.name.clone());
+        let (line, width_m) = (on_map(scene, culvert.line.points()), culvert.width_m);
+        Crossing { name, kind: CrossingKind::Culvert, line, width_m, load_t: None }
+    })
+}
+
+/// The roads on the ground over streams narrower than [`CULVERT_M`]: each of these runs through a pipe, which no map shows.
+fn inferred_culverts(scene: &SceneModel) -> Vec<Crossing> {
+    let is_open = |symbol: &&LineSymbol| is_river(symbol) && !is_in_culvert(scene, symbol.feature);
+    let streams: Vec<&LineSymbol> = scene.symbols.iter().filter(is_open).collect();
     let legs =
         streams.iter().enumerate().flat_map(|(index, symbol)| LineLeg::all(index, &symbol.alignment.line));
     let legs = LegTree::new(legs.collect());
@@ -258,7 +280,7 @@ fn culverts(scene: &SceneModel) -> Vec<Crossing> {
                 }
                 let station_m = leg.stations[0] + (leg.stations[1] - leg.stations[0]) * part;
                 let over = line.between(station_m - CULVERT_ROAD_M, station_m + CULVERT_ROAD_M);
-                let (kind, line) = (CrossingKind::Culvert, on_map(scene, &over));
+                let (kind, line) = (CrossingKind::InferredCulvert, on_map(scene, &over));
                 culverts.push(Crossing { name: name.clone(), kind, line, width_m, load_t: None });
             }
         }

@@ -26,6 +26,7 @@ use crate::style::RampSource;
 use crate::sunlight::Sunlight;
 use crate::symbols::LineSymbol;
 use crate::vertical_scale::VerticalScale;
+use crate::water::culvert::Culvert;
 use sandtable_analysis::movement::vehicle::Vehicle;
 use sandtable_description::document::FurnitureTable;
 use sandtable_description::finding::Finding;
@@ -118,6 +119,8 @@ pub struct SceneModel {
     pub sight: SightLayers,
     /// Walls, belts of obstacles and trenches, as lines.
     pub barriers: Vec<Barrier>,
+    /// Reaches of rivers that run in culverts, as the data have them.
+    pub culverts: Vec<Culvert>,
     /// The vehicles that it describes.
     pub vehicles: Vec<Vehicle>,
     /// What the ground allows.

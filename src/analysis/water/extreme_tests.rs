@@ -11,13 +11,14 @@ use sandtable_catalog::kind::{AnalysisFamily, AnalysisKind};
 use sandtable_catalog::parameter::{AnalysisParameter, ParameterForm};
 use sandtable_terrain::stop_flag::StopFlag;
 
-/// Odd lands, all with a bridge across them.
+/// Odd lands, all with a bridge and a culvert across them.
 fn lands() -> Vec<Land> {
     let land = |columns: u32, heights: Vec<f32>| {
         let mut land = bare((DVec2::ZERO, DVec2::splat(10.0)), columns, heights);
         let line = vec![DVec2::new(5.0, -5.0), DVec2::new(15.0, 45.0)];
-        let kind = CrossingKind::Bridge;
-        land.crossings = vec![Crossing { name: String::new(), kind, line, width_m: 4.0, load_t: None }];
+        let crossing =
+            |kind| Crossing { name: String::new(), kind, line: line.clone(), width_m: 4.0, load_t: None };
+        land.crossings = [CrossingKind::Bridge, CrossingKind::Culvert].map(crossing).to_vec();
         land
     };
     let mut one = vec![f32::NAN; 25];

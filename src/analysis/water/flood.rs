@@ -209,7 +209,7 @@ mod tests {
     fn a_culvert_floods_the_other_side_of_a_bank() {
         let mut land = hollows();
         let line = vec![DVec2::new(30.0, 5.0), DVec2::new(30.0, 25.0)];
-        let kind = CrossingKind::Culvert;
+        let kind = CrossingKind::InferredCulvert;
         land.crossings = vec![Crossing { name: String::new(), kind, line, width_m: 4.0, load_t: None }];
         let arguments = vec![
             ("from", ArgumentValue::Points(vec![DVec2::new(10.0, 10.0)])),

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::breach::{BreachLimits, breach};
-use super::carve::{carved, cut_note};
+use super::carve::carved;
 use super::drainage::{Drainage, drain};
 use super::fill::filled;
 use crate::arguments::AnalysisArguments;
@@ -34,7 +34,7 @@ impl<'a> WaterGround<'a> {
     /// [`AnalysisError::Memory`] and [`AnalysisError::Stopped`].
     pub fn of(land: &'a Land, arguments: &AnalysisArguments, stop: &StopFlag) -> Result<Self, AnalysisError> {
         let (mut heights, cuts) = carved(land);
-        let mut notes = cut_note(cuts);
+        let mut notes = cuts.note();
         let is_breached = arguments.word("depressions") == "breach";
         if is_breached {
             let limits = BreachLimits {

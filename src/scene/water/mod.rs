@@ -2,6 +2,7 @@
 //!
 //! Lakes come first: a river that runs through one takes its level.
 
+pub mod culvert;
 pub mod lake_level;
 pub mod lakes;
 pub mod network;

@@ -45,6 +45,8 @@ pub struct Stream {
     pub name: String,
     /// Its order along its centerline; see [`order`].
     pub order: Profile,
+    /// Whether it runs in a culvert.
+    pub is_culvert: bool,
 }
 
 /// The document's rivers that come near the ground, in the order of its tables.
@@ -122,6 +124,10 @@ fn stream(
 ) -> Stream {
     let name = attributes.name(river.name.as_deref());
     let feature = collected.add(FeatureKind::River, name.clone(), attributes.origin(&river.source));
+    let is_culvert = match &river.culvert {
+        Some(expression) => attributes.holds(expression),
+        None => ["tunnel", "culvert"].into_iter().any(|property| attributes.affirm(property)),
+    };
     let counts = &mut collected.default_counts;
     let width = widths.map(Width::Varying).unwrap_or_else(|| {
         let width_m = attributes.number(&river.width, counts);
@@ -136,5 +142,5 @@ fn stream(
     let alignment = Alignment { line, level: None, width, support: Support::Ground };
     let options = StrokeOptions::of(RibbonSurface::River, width_m);
     let street = Street { alignment, width_m, options, level: 0, surface: RibbonSurface::River };
-    Stream { street, bank_m, water: river.water, max_cut_m: river.max_cut, feature, name, order }
+    Stream { street, bank_m, water: river.water, max_cut_m: river.max_cut, feature, name, order, is_culvert }
 }

@@ -16,6 +16,7 @@ use crate::near::Clipped;
 use crate::report::RiverRow;
 use crate::sources::Sources;
 use crate::symbols::LineSymbol;
+use crate::water::culvert::Culvert;
 use crate::water::network::{self, Stream};
 use sandtable_base::message::numbers::{counted, fixed};
 use sandtable_description::diagnostic::Diagnostic;
@@ -67,6 +68,12 @@ pub fn lay(
     let symbol =
         |stream: &Stream| LineSymbol::of_river(&stream.street, stream.bank_m, &stream.order, stream.feature);
     collected.symbols.extend(streams.iter().map(symbol));
+    let culverts = streams.iter().filter(|stream| stream.is_culvert);
+    collected.culverts.extend(culverts.map(|stream| Culvert {
+        line: stream.street.alignment.line.clone(),
+        width_m: stream.street.width_m,
+        feature: stream.feature,
+    }));
     Ok(())
 }
 
