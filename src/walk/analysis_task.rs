@@ -221,10 +221,7 @@ mod tests {
         let arguments = written(&[("posts", "751800,4020500"), ("range", "4000")]);
         let dataset = Dataset::from_scene("scene", &of_command);
         let land = land_of(&of_command, kind.layers);
-        assert!(
-            land.obstacles_m.iter().flatten().any(|height_m| *height_m > 3.0),
-            "a building stands there"
-        );
+        assert!(land.obstacles_m.iter().flatten().any(|height_m| *height_m > 3.0), "a building stands there");
         let stop = StopFlag::default();
         let wanted = analyze(&dataset, land, (kind, &arguments), &of_command.crs, &stop).expect("an outcome");
         let walk = Walk::new(Arc::new(source.build(&|_| ()).expect("sound")), WalkOptions::default());
