@@ -36,6 +36,21 @@ fn printed(ran: Ran) -> Option<String> {
 }
 
 #[test]
+fn the_gpu_backend_shows_the_phases_of_a_scene_by_name_and_by_key() {
+    let scratch = Scratch::new();
+    let script = "wait 60\nsnapshot morning.png\nphase noon\nwait 2\nsnapshot noon.png\nkey ,\nwait 2\nsnapshot back.png\n\
+                  key .\nkey .\nwait 2\nsnapshot dusk.png\nphase night\nquit\n";
+    let ran = view(&scratch, &project("scenes/phases.toml"), script, &["--size", "256x144"]);
+    let Some(printed) = printed(ran) else { return };
+    let bytes = |name: &str| image::open(scratch.at(name)).expect("a picture").into_rgb8().into_raw();
+    let [morning, noon, back, dusk] =
+        ["morning", "noon", "back", "dusk"].map(|name| bytes(&format!("{name}.png")));
+    assert!(morning != noon && noon != dusk && morning != dusk, "each phase has a picture of its own");
+    assert!(morning == back, "the phase before is the same again");
+    assert!(printed.contains("night"), "a phase that the scene does not have is named: {printed}");
+}
+
+#[test]
 fn the_gpu_backend_draws_frames_without_a_display() {
     let scratch = Scratch::new();
     let ran = view(&scratch, &project("scenes/road.toml"), SCRIPT, &["--size", "256x144"]);
