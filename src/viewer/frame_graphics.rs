@@ -7,10 +7,10 @@ use egui::{ClippedPrimitive, Context, PlatformOutput, RawInput, TexturesDelta};
 use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
 
 use crate::app::{ViewerApp, WindowRequest};
+use crate::drawn_size::{DrawnSize, FramePurpose};
 use crate::frame_times::{FrameLoad, FrameTime};
 use crate::opened::SceneFrame;
 use crate::picture_paint::{PictureFit, PicturePaint};
-use crate::picture_size::{FramePurpose, PictureSize};
 use crate::scene_graphics::{SceneGraphics, milliseconds};
 use sandtable_base::message::chain::error_text;
 use sandtable_gpu::adapter::Gpu;
@@ -26,7 +26,7 @@ pub struct FrameGraphics {
     scene: Option<SceneGraphics>,
     timer: Option<Arc<PassTimer>>,
     /// The sizes of the scene's pictures; `None` where all of them are whole.
-    size: Option<PictureSize>,
+    size: Option<DrawnSize>,
 }
 
 /// The input for painting the panels of one frame.
@@ -68,7 +68,7 @@ impl FrameGraphics {
         let options = RendererOptions { dithering: false, ..RendererOptions::default() };
         let mut painter = Renderer::new(gpu.device(), format, options);
         painter.callback_resources.insert(PicturePaint::new(gpu.device(), format));
-        let size = gpu.is_software().then(PictureSize::new);
+        let size = gpu.is_software().then(DrawnSize::new);
         Self { gpu, painter, scene: None, timer: None, size }
     }
 
@@ -133,7 +133,7 @@ impl FrameGraphics {
         let purpose = if is_kept { FramePurpose::Kept } else { FramePurpose::Shown };
         let mut frame = app.scene_frame();
         let drawn = frame.as_mut().and_then(|frame| self.draw_scene(&mut encoder, (frame, purpose), app));
-        if self.size.as_ref().is_some_and(PictureSize::is_lowered) {
+        if self.size.as_ref().is_some_and(DrawnSize::is_lowered) {
             context.request_repaint();
         }
         let drawn = drawn.map(|(time, load)| (FrameTime { panels_ms, ..time }, load));

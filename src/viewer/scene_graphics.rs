@@ -1,16 +1,16 @@
 //! The scene in a texture that the panels show in the view.
 //!
 //! Its camera's picture is as large as the view, so that the pointer's place there is one of its pixels; the texture may have
-//! fewer (`picture_size`).
+//! fewer (`drawn_size`).
 
 use std::sync::Arc;
 use std::time::Instant;
 
+use crate::drawn_size::FramePurpose;
 use crate::frame_graphics::FrameGraphics;
 use crate::frame_times::{FrameLoad, FrameTime};
 use crate::opened::SceneFrame;
 use crate::picture_paint::PictureFit;
-use crate::picture_size::FramePurpose;
 use crate::scene_load::SceneLoad;
 use sandtable_gpu::adapter::Gpu;
 use sandtable_gpu::error::GpuError;

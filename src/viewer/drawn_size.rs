@@ -28,7 +28,7 @@ pub enum FramePurpose {
 
 /// Chooses the sizes of pictures by what the frames before took.
 #[derive(Debug)]
-pub struct PictureSize {
+pub struct DrawnSize {
     /// The index of the share while the camera moves.
     step: usize,
     /// The camera of the frame before.
@@ -45,7 +45,7 @@ pub struct PictureSize {
     longest_ms: f32,
 }
 
-impl PictureSize {
+impl DrawnSize {
     /// All pixels, until frames are late.
     pub fn new() -> Self {
         let resting = RESTING_FRAMES;
@@ -117,7 +117,7 @@ mod tests {
     }
 
     /// The sizes of frames on a way, on a machine of this speed.
-    fn flight(size: &mut PictureSize, frames: u16, whole_ms: f32, besides_ms: f32) -> Vec<(u32, u32)> {
+    fn flight(size: &mut DrawnSize, frames: u16, whole_ms: f32, besides_ms: f32) -> Vec<(u32, u32)> {
         let frame = |number| {
             let drawn = size.of_next(&camera(f32::from(number)), FramePurpose::Shown);
             size.note_time(taken_ms(drawn, whole_ms, besides_ms));
@@ -128,7 +128,7 @@ mod tests {
 
     #[test]
     fn a_fast_machine_draws_all_pixels_of_every_frame() {
-        let mut size = PictureSize::new();
+        let mut size = DrawnSize::new();
         assert!(flight(&mut size, 200, 20.0, 5.0).iter().all(|drawn| *drawn == (800, 600)));
         assert!(!size.is_lowered());
     }
@@ -136,7 +136,7 @@ mod tests {
     #[test]
     fn a_slow_machine_soon_draws_in_time_and_stays_there() {
         for (whole_ms, besides_ms) in [(40.0, 2.0), (120.0, 6.0), (160.0, 12.0), (250.0, 4.0)] {
-            let mut size = PictureSize::new();
+            let mut size = DrawnSize::new();
             let drawn = flight(&mut size, 300, whole_ms, besides_ms);
             let late =
                 drawn[8..].iter().filter(|drawn| taken_ms(**drawn, whole_ms, besides_ms) > LATE_MS).count();
@@ -149,7 +149,7 @@ mod tests {
 
     #[test]
     fn one_late_frame_changes_nothing() {
-        let mut size = PictureSize::new();
+        let mut size = DrawnSize::new();
         for number in 0..60u16 {
             assert_eq!(size.of_next(&camera(f32::from(number)), FramePurpose::Shown), (800, 600));
             size.note_time(if number % 9 == 5 { 400.0 } else { 12.0 });
@@ -158,7 +158,7 @@ mod tests {
 
     #[test]
     fn a_picture_at_rest_or_for_a_file_is_whole() {
-        let mut size = PictureSize::new();
+        let mut size = DrawnSize::new();
         flight(&mut size, 30, 160.0, 5.0);
         assert!(size.is_lowered());
         assert_eq!(size.of_next(&camera(30.0), FramePurpose::Kept), (800, 600));
@@ -171,7 +171,7 @@ mod tests {
 
     #[test]
     fn a_machine_that_gets_faster_draws_more_pixels_again() {
-        let mut size = PictureSize::new();
+        let mut size = DrawnSize::new();
         flight(&mut size, 30, 160.0, 5.0);
         let drawn = flight(&mut size, 120, 15.0, 2.0);
         assert_eq!(drawn.last(), Some(&(800, 600)));
