@@ -192,22 +192,22 @@ fn pictures_reduce_elevation_that_is_too_large_and_heights_do_not() {
         (is_reduced, number("/ground_lightness/mean"), number("/ground_fraction"))
     };
     let few = ["--limit", "pictured-samples=100k"];
-    let [whole, reduced] = [picture("", "160x90", &[]), picture("", "160x90", &few)];
+    let [whole, reduced] = [picture("", "128x72", &[]), picture("", "128x72", &few)];
     assert!(!whole.0 && reduced.0, "{whole:?} {reduced:?}");
     assert!((whole.1 - reduced.1).abs() < 0.5 && (whole.2 - reduced.2).abs() < 0.01, "{whole:?} {reduced:?}");
     assert!(!picture("", "640x360", &few).0, "a larger picture shows all samples");
     let label = "[[label]]\nat = [510000, 4009000]\ntext = \"{height} m\"\n";
-    assert!(picture(label, "160x90", &few).0, "heights that are printed are read apart from the picture");
+    assert!(picture(label, "128x72", &few).0, "heights that are printed are read apart from the picture");
     let near = "[[camera]]\nname = \"near\"\neye = [509000, 4008000]\nlook_at = [510000, 4009000]\n";
-    assert!(!picture(near, "160x90", &few).0, "a camera near the ground sees samples");
+    assert!(!picture(near, "128x72", &few).0, "a camera near the ground sees samples");
     let high = near.replace("look_at", "eye_elevation = 200000\nlook_at");
-    assert!(picture(&high, "160x90", &few).0, "from 200 km above, no ground is near");
+    assert!(picture(&high, "128x72", &few).0, "from 200 km above, no ground is near");
     let part = "[[camera]]\nname = \"part\"\nshows = [[508000, 4008000], [509000, 4009000]]\n";
-    assert!(!picture(part, "160x90", &few).0, "a kilometer of it fills the picture");
+    assert!(!picture(part, "128x72", &few).0, "a kilometer of it fills the picture");
     let plan = "[[camera]]\nname = \"plan\"\nprojection = \"plan\"\nscale = 900000\n";
-    assert!(picture(plan, "160x90", &few).0, "a pixel of a plan at 1 : 900,000 is 238 m wide");
-    assert!(picture(&format!("{plan}{near}"), "160x90", &few).0);
-    assert!(!picture(&format!("{plan}{near}"), "160x90", &[&few[..], &["--camera", "near"]].concat()).0);
+    assert!(picture(plan, "128x72", &few).0, "a pixel of a plan at 1 : 900,000 is 238 m wide");
+    assert!(picture(&format!("{plan}{near}"), "128x72", &few).0);
+    assert!(!picture(&format!("{plan}{near}"), "128x72", &[&few[..], &["--camera", "near"]].concat()).0);
     scratch.write("s.toml", "[terrain]\ndem = \"hill.tif\"\n");
     let refused =
         run_in(scratch.folder(), &[&["height", "s.toml", "--at", "500100,4000100"][..], &limits].concat());
