@@ -91,14 +91,15 @@ def run(arguments, on_progress=lambda text, percent: None, is_canceled=lambda: F
     for reader in readers:
         reader.start()
     while True:
+        if is_canceled():
+            _end(process)
+            _close(process, readers)
+            raise ProgramCanceled
         try:
             process.wait(LOOK_AGAIN_S)
             break
         except subprocess.TimeoutExpired:
-            if is_canceled():
-                _end(process)
-                _close(process, readers)
-                raise ProgramCanceled from None
+            pass
     _close(process, readers)
     if is_canceled():
         raise ProgramCanceled

@@ -155,8 +155,7 @@ class AnalysesTest(QgisTest):
                 if one["required"]:
                     parameters[one["name"].upper()] = self.value(one)
             if kind["name"] == "dam-break":
-                # The line is no dam: the ground behind it holds nothing.
-                parameters.update(VOLUME_M3=1e6, HEIGHT_M=10)
+                parameters.update(GROUND=self.valley(), LEVEL_M=350)
             outputs = {key: str(self.folder / f"{name}.{end}") for key, end in [("RASTER", "tif"), ("FEATURES", "gpkg")]}
             parameters.update({key: path for key, path in outputs.items() if key.lower() in kind["gives"]})
             try:
@@ -169,6 +168,22 @@ class AnalysesTest(QgisTest):
                 raster = QgsRasterLayer(made["RASTER"], name)
                 self.assertEqual(raster.renderer().type(), "singlebandpseudocolor", name)
         self.assertEqual(wrong, {}, str(wrong))
+
+    def valley(self):
+        """A valley across which the line of `SHAPES` is a dam; it rises toward the south-east."""
+        path = str(self.folder / "valley.tif")
+        copy = gdal.GetDriverByName("GTiff").CreateCopy(path, gdal.Open(self.dem))
+        west, cell, _, north, _, step = copy.GetGeoTransform()
+        band = copy.GetRasterBand(1)
+        values = band.ReadAsArray()
+        for row in range(values.shape[0]):
+            for column in range(values.shape[1]):
+                east, up = west + (column + 0.5) * cell - 20.435, north + (row + 0.5) * step + 34.02
+                across, onward = 0.832 * east + 0.555 * up, 0.555 * east - 0.832 * up
+                values[row, column] = 300 + 5000 * abs(across) + 4000 * onward
+        band.WriteArray(values)
+        del band, copy
+        return path
 
     def value(self, parameter):
         """A value of a parameter that must be stated."""
