@@ -45,8 +45,8 @@ use crate::elevation_file::{ElevationFile, elevation_files};
 use crate::feature_source::FeatureSource;
 use crate::feature_value::DefaultedValue;
 use crate::features::{
-    AreaTable, BridgeTable, BuildingTable, FenceTable, LakeTable, ModelPlacement, RiverTable, RoadTable,
-    ScatterTable,
+    AreaTable, BridgeTable, BuildingTable, CoastTable, FenceTable, LakeTable, ModelPlacement, RiverTable,
+    RoadTable, ScatterTable,
 };
 use crate::finding_code::FindingCode;
 use crate::graphics::{GraphicTable, RangeTable, SightTable, ViewshedTable};
@@ -99,6 +99,8 @@ table! {
         bridges as "bridge": Vec<BridgeTable> = table_key::styled_tables::<BridgeTable>(), default [];
         /// Rivers, in drawing order.
         rivers as "river": Vec<RiverTable> = table_key::styled_tables::<RiverTable>(), default [];
+        /// Coastlines: the ground is level with the sea on one side of them, and above it on the other.
+        coasts as "coast": Vec<CoastTable> = table_key::styled_tables::<CoastTable>(), default [];
         /// Still water: level, and cut out of the ground or filled up to it.
         lakes as "lake": Vec<LakeTable> = table_key::styled_tables::<LakeTable>(), default [];
         /// What covers the ground, in drawing order.

@@ -148,6 +148,15 @@ table! {
         }
     }
 
+    /// `[[coast]]`: lines with the land on their left, as OpenStreetMap's `natural=coastline` has them.
+    ///
+    /// Ground in the sea lies at `sea_level` of `[terrain]`, else at 0 m; land that would be drawn as sea, or lies beside it, half
+    /// a meter above it. Ground below a stated level keeps its depths.
+    struct CoastTable {
+        /// The coastline; lines that share an end are one.
+        source: FeatureSource = table_key::source::<LINE>(), inline;
+    }
+
     /// `[[lake]]`.
     struct LakeTable {
         /// Name for messages and the feature list.

@@ -211,6 +211,9 @@ finding_codes! {
         "The ground rises along a river by more than its bed may be cut, so that water could not flow there. Either the line \
          does not follow the valley of the elevation model, or it is drawn from mouth to source, or the cells are too wide. \
          Move the line, or raise `max_cut`.";
+    CoastLaid = "coast-laid", Note,
+        "Where the sea ends at a coastline, the earth that was moved for it, and how many posts of land were raised above the \
+         sea.";
     LakeLevel = "lake-level", Note,
         "The level at which a lake lies, and the earth that was moved for it.";
     LakesShareCells = "lakes-share-cells", Note,

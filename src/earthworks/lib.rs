@@ -3,6 +3,7 @@
 pub mod alignment;
 pub mod brush;
 pub mod channel;
+pub mod coast;
 pub mod earthwork;
 pub mod falling_levels;
 pub mod grading;

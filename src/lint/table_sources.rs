@@ -38,6 +38,7 @@ pub fn table_sources(document: &Document) -> Vec<TableSource<'_>> {
     all.extend(document.roads.iter().map(|table| own("roads", Along, &table.source)));
     all.extend(document.bridges.iter().map(|table| own("bridges", Above, &table.source)));
     all.extend(document.rivers.iter().map(|table| own("rivers", Along, &table.source)));
+    all.extend(document.coasts.iter().map(|table| own("coastlines", Over, &table.source)));
     all.extend(document.lakes.iter().map(|table| own("lakes", Over, &table.source)));
     all.extend(document.areas.iter().map(|table| own("areas", Over, &table.source)));
     all.extend(document.earthworks.iter().map(|table| own("earthworks", Over, &table.source)));

@@ -168,6 +168,8 @@ pub(super) static RULES: &[TableRule] = &[
     )
     .keys(PAVED)
     .named(&["wegdeel"]),
+    // The sea.
+    rule("coast", "Coastline", "lines", "(natural ?? fclass) = 'coastline'").named(&["coastline"]),
     // Still water.
     rule(
         "lake",

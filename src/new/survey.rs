@@ -46,7 +46,7 @@ pub(super) struct SurveyedLayer {
     pub has_fclass: bool,
     /// Its coordinate system.
     pub crs: Crs,
-    /// Segments of the features that tables draw, boundaries apart, in its system, and points as segments without length;
+    /// Segments of the features that tables draw, boundaries and coasts apart, in its system, and points as segments without length;
     /// of all features where there are none of these. Evenly chosen, up to [`MOST_SEGMENTS`].
     pub segments: Vec<[DVec2; 2]>,
     /// Whether any of these segments meets the ground, once that is known.
@@ -205,7 +205,7 @@ fn distinct(names: Vec<String>) -> Vec<String> {
 /// Surveys a layer; `title` is its own name or that of its file.
 fn survey(layer: Arc<VectorLayer>, name: Option<String>, title: &str) -> SurveyedLayer {
     let mut taken = vec![false; layer.features.len()];
-    // What the scene is about: not what no table takes, nor boundaries, which reach far out to sea, nor distant names.
+    // What the scene is about: not what no table takes, nor boundaries and coasts, which lead far away, nor distant names.
     let mut around = vec![false; layer.features.len()];
     let mut peaks = Vec::new();
     let mut matches = Vec::new();
@@ -224,7 +224,8 @@ fn survey(layer: Arc<VectorLayer>, name: Option<String>, title: &str) -> Surveye
         if let Some(label) = rule.label.as_ref().filter(|_| rule.what == PEAKS) {
             peaks.extend(indices.iter().filter_map(|&index| named_place(&layer, index, label)));
         }
-        if rule.what != BOUNDARIES && rule.label.is_none() {
+        let leads_away = rule.what == BOUNDARIES || rule.table == "coast";
+        if !leads_away && rule.label.is_none() {
             indices.iter().for_each(|&index| around[index] = true);
         }
         indices.into_iter().for_each(|index| taken[index] = true);

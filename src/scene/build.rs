@@ -1,7 +1,7 @@
 //! Builds a scene from a document and its assets, pass by pass, in two stages.
 //!
 //! ```text
-//!  elevation ─► lakes, rivers, roads, pads, trenches, bridges ─► earthworks ─┬─► pads of models ─► SceneGround: heights
+//!  elevation ─► sea, lakes, rivers, roads, pads, trenches, bridges ─► earthworks ─┬─► pads of models ─► SceneGround: heights
 //!                                                                            └─► networks, fences, models, views ─► Scene
 //! ```
 //!
@@ -38,6 +38,7 @@ use crate::spot_heights::spot_heights;
 use crate::style::{self, RampSource, Surroundings};
 use crate::sunlight::Sunlight;
 use crate::views;
+use crate::water::coast;
 use crate::world_frame::WorldFrame;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
@@ -49,7 +50,6 @@ use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::query::deck::Deck;
 use sandtable_terrain::query::service::HeightService;
 use sandtable_terrain::triangle_surface::SurfaceTriangle;
-use sandtable_terrain::water_cover::WaterRules;
 
 /// The ground of a scene: all that height queries, profiles and lines of sight need.
 pub struct SceneGround {
@@ -217,10 +217,7 @@ pub fn build_with(
         haze_m: surroundings.haze_m,
         table: surroundings.table,
         maps: Default::default(),
-        water_rules: WaterRules {
-            infers_level: document.terrain.infer_water,
-            sea_level_m: document.terrain.sea_level.map(|level_m| level_m as f32),
-        },
+        water_rules: coast::water_rules(&document.terrain),
         water: OnceLock::new(),
         has_voids: OnceLock::new(),
         lattice,

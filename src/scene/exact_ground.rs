@@ -51,7 +51,10 @@ fn shapes_ground(document: &Document) -> bool {
         Some(FeatureValue::Computed { .. }) => true,
         None => fence.source.file.is_some(),
     };
-    !(document.lakes.is_empty() && document.rivers.is_empty() && document.earthworks.is_empty())
+    !(document.coasts.is_empty()
+        && document.lakes.is_empty()
+        && document.rivers.is_empty()
+        && document.earthworks.is_empty())
         || document.roads.iter().any(|road| road.profile != ProfileMode::Drape)
         || document.buildings.iter().any(|building| building.base == Some(BaseRule::Pad))
         || document.fences.iter().any(may_be_dug)

@@ -1,4 +1,4 @@
-//! The ground of a document after all features that shape it: lakes, rivers, roads, pads, earthworks.
+//! The ground of a document after all features that shape it: the sea, lakes, rivers, roads, pads, earthworks.
 //!
 //! Parts of a ground are shaped by the same passes as the whole, so that they are the same where they overlap.
 
@@ -16,7 +16,7 @@ use crate::planned_pictures::ElevationNeed;
 use crate::roads::centerline::{self, Centerline};
 use crate::roads::conform;
 use crate::sources::Sources;
-use crate::water::{lakes, rivers};
+use crate::water::{coast, lakes, rivers};
 use crate::world_frame::WorldFrame;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
@@ -71,6 +71,8 @@ pub(super) fn shape(
     collected: &mut SceneBuilder,
 ) -> ShapedFeatures {
     let extent = lattice.extent();
+    let coasts = coast::lay(document, sources, lattice, collected);
+    collected.errors.keep(coasts);
     let lakes = lakes::lay(document, sources, lattice, collected);
     if collected.errors.keep(lakes).is_some() {
         let rivers = rivers::lay(document, sources, lattice, collected);

@@ -12,6 +12,7 @@ mod check_built;
 mod check_data;
 mod check_walk;
 mod city_buildings;
+mod coast;
 mod conform;
 mod earthworks;
 mod fences;

@@ -33,7 +33,7 @@ const PLACES: [Choices; 5] = [
         vectors: &["monaco/monaco.osm.gz"],
         title: "Monaco",
         filled: 0.6,
-        holds: &["[[building]]", "# The boldest relief among the features"],
+        holds: &["[[coast]]", "[[building]]", "# The boldest relief among the features"],
     },
     // The model is a strip aslant in its box: seen whole it fills no more from any direction near north.
     Choices {

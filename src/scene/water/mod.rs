@@ -1,7 +1,8 @@
 //! Water: lakes level the ground they lie on, rivers cut it so that they fall.
 //!
-//! Lakes come first: a river that runs through one takes its level.
+//! The sea comes first, then lakes: a river that runs into one takes its level.
 
+pub mod coast;
 pub mod culvert;
 pub mod lake_level;
 pub mod lakes;
