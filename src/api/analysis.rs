@@ -6,6 +6,7 @@ use crate::api::dem::Dem;
 use crate::api::elevation::Elevation;
 use crate::api::error::Error;
 use crate::api::scene::Scene;
+use sandtable_analysis::land::Land;
 use sandtable_analysis::outcome::PostValues;
 use sandtable_base::message::suggest::{quoted, remedy};
 use sandtable_catalog::kind::AnalysisKind;
@@ -101,8 +102,7 @@ impl Elevation {
     ) -> Result<Analysis, Error> {
         let (kind, arguments) = asked(kind, arguments)?;
         let land = bare_land(&self.dataset, (kind, &arguments), crs).map_err(failed)?;
-        let analyzed = analyze(&self.dataset, land, (kind, &arguments), crs, stop);
-        Ok(Analysis { kind, analyzed: analyzed.map_err(failed)?, arguments })
+        Analysis::of(&self.dataset, land, (kind, arguments), crs, stop)
     }
 }
 
@@ -135,8 +135,7 @@ impl Scene {
         let model = self.true_to_scale()?;
         let dataset = Dataset::from_scene(&self.path.display().to_string(), model);
         let land = land_of(model, kind.layers);
-        let analyzed = analyze(&dataset, land, (kind, &arguments), crs, stop);
-        Ok(Analysis { kind, analyzed: analyzed.map_err(failed)?, arguments })
+        Analysis::of(&dataset, land, (kind, arguments), crs, stop)
     }
 }
 
@@ -156,6 +155,17 @@ impl Scene {
 }
 
 impl Analysis {
+    fn of(
+        dataset: &Dataset,
+        land: Land,
+        (kind, arguments): (&'static AnalysisKind, Vec<WrittenArgument>),
+        crs: &Crs,
+        stop: &StopFlag,
+    ) -> Result<Self, Error> {
+        let analyzed = analyze(dataset, land, (kind, &arguments), crs, stop).map_err(failed)?;
+        Ok(Self { kind, arguments, analyzed })
+    }
+
     /// Its kind, source, limits, arguments, figures, tables and notes, as a JSON object.
     pub fn json(&self) -> String {
         outcome_json(self.kind, &self.arguments, &self.analyzed.outcome).to_string()

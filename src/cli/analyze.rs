@@ -165,7 +165,9 @@ pub fn run(command: &AnalyzeCommand) -> Result<(), CliError> {
                 }
                 None => {}
             }
-            let outcome = analyzed.outcome.with_classes();
+            // Only JSON says how a picture divides the values.
+            let outcome =
+                if command.dataset.json { analyzed.outcome.with_classes() } else { analyzed.outcome };
             let classes = outcome.raster.as_ref().map(|raster| raster.classes.clone());
             (outcome, classes.unwrap_or_default())
         }
