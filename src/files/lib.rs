@@ -15,6 +15,8 @@ pub mod output_files;
 pub mod part_file;
 mod part_name;
 pub mod png;
+mod png_filter;
+mod png_strips;
 pub mod raster_file;
 pub mod scratch_file;
 mod set_record;

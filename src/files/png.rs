@@ -1,8 +1,13 @@
 //! Pictures as PNG files, with notes on their print.
 
-use image::{ExtendedColorType, ImageEncoder};
-
+use crate::png_strips::{PngChannels, packed_pixels};
 use sandtable_draw::pixels::Pixels;
+
+/// What every file begins with.
+const SIGNATURE: &[u8; 8] = b"\x89PNG\r\n\x1a\n";
+
+/// The most bytes of a chunk.
+const MOST_CHUNK: usize = (u32::MAX >> 1) as usize;
 
 /// The metadata of a PNG file.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -16,7 +21,7 @@ pub struct PngNotes {
 /// [`encode_png`] with notes in chunks `pHYs` and `iTXt` (PNG 3rd edition, sections 11.3.3 and 11.3.4).
 pub fn encode_png_with(pixels: &Pixels, notes: &PngNotes) -> Vec<u8> {
     /// The signature, and the chunk IHDR with its length, name and check.
-    const HEAD: usize = 8 + 25;
+    const HEAD: usize = SIGNATURE.len() + 25;
     let mut png = encode_png(pixels);
     let resolution = notes.dpi.map(|dpi| {
         let per_meter = (libm::round(dpi / 0.0254).clamp(1.0, 2e9) as u32).to_be_bytes();
@@ -38,21 +43,23 @@ fn png_chunk(name: &[u8; 4], data: &[u8]) -> Vec<u8> {
     [&(data.len() as u32).to_be_bytes()[..], name, data, &check.sum().to_be_bytes()].concat()
 }
 
-/// The bytes of a PNG file, without alpha where all pixels are opaque. `pixels` must not be empty.
+/// The bytes of a PNG file, without alpha where all pixels are opaque. `pixels` must not be empty. Spread over all threads;
+/// the same for any number of them.
 pub fn encode_png(pixels: &Pixels) -> Vec<u8> {
-    let mut png = Vec::new();
-    let encoder = image::codecs::png::PngEncoder::new(&mut png);
-    let (width, height) = (pixels.width(), pixels.height());
-    let written = if pixels.data().iter().all(|color| color.0[3] == 255) {
-        let mut rgb = vec![0; pixels.data().len() * 3];
-        for (channels, color) in rgb.chunks_exact_mut(3).zip(pixels.data()) {
-            channels.copy_from_slice(&color.0[..3]);
-        }
-        encoder.write_image(&rgb, width, height, ExtendedColorType::Rgb8)
-    } else {
-        encoder.write_image(pixels.bytes(), width, height, ExtendedColorType::Rgba8)
+    /// Eight bits a channel; the one packing, filtering and order of rows there is but for interlaced ones.
+    const DEPTH: u8 = 8;
+    let channels = PngChannels::of(pixels);
+    let color_type = match channels {
+        PngChannels::Opaque => 2,
+        PngChannels::WithAlpha => 6,
     };
-    written.expect("memory takes all bytes, and there are as many as the size says");
+    let size = [pixels.width().to_be_bytes(), pixels.height().to_be_bytes()].concat();
+    let mut png = SIGNATURE.to_vec();
+    png.extend(png_chunk(b"IHDR", &[&size[..], &[DEPTH, color_type, 0, 0, 0]].concat()));
+    for data in packed_pixels(pixels, channels).chunks(MOST_CHUNK) {
+        png.extend(png_chunk(b"IDAT", data));
+    }
+    png.extend(png_chunk(b"IEND", &[]));
     png
 }
 
@@ -74,5 +81,64 @@ mod tests {
         let mut data = vec![0; 5 * 3 * 3];
         reader.next_frame(&mut data).expect("sound");
         assert_eq!(data[..3], [1, 2, 3]);
+    }
+    /// Pixels of a picture as it is drawn: plain parts, slopes and grain.
+    fn drawn(width: u32, height: u32, alpha: u8) -> Pixels {
+        Pixels::from_fn(width, height, |x, y| {
+            let grain = (x.wrapping_mul(2_654_435_761) ^ y.wrapping_mul(40_503)).count_ones();
+            let slope = (x / 3 + y / 2) as u8;
+            match (x / 40 + y / 30) % 3 {
+                0 => Srgba([247, 247, 244, 255]),
+                1 => Srgba([slope, slope.wrapping_add(20), grain as u8, 255]),
+                _ => Srgba([slope.wrapping_add(grain as u8), 90, 40, alpha]),
+            }
+        })
+    }
+
+    fn noise(width: u32, height: u32) -> Pixels {
+        Pixels::from_fn(width, height, |x, y| {
+            let mixed = (u64::from(x) << 32 | u64::from(y)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            Srgba(
+                (mixed ^ mixed >> 29).wrapping_mul(0xbf58_476d_1ce4_e5b9).to_be_bytes()[..4]
+                    .try_into()
+                    .expect("4"),
+            )
+        })
+    }
+
+    #[test]
+    fn strips_on_any_number_of_threads_have_the_bytes_of_one_stream() {
+        let pictures = [
+            drawn(1, 1, 255),
+            drawn(1, 700, 7),
+            drawn(640, 480, 255),
+            drawn(641, 479, 128),
+            drawn(200_000, 3, 255),
+            Pixels::filled(900, 600, Srgba::WHITE),
+            noise(500, 300),
+        ];
+        for pixels in pictures {
+            let expected = of_image(&pixels);
+            for threads in [1, 2, 3, 16] {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+                let own = pool.install(|| encode_png(&pixels));
+                assert!(own == expected, "{}×{} on {threads}", pixels.width(), pixels.height());
+            }
+        }
+    }
+
+    /// The file that the crate `image` writes.
+    fn of_image(pixels: &Pixels) -> Vec<u8> {
+        let mut png = Vec::new();
+        let encoder = image::codecs::png::PngEncoder::new(&mut png);
+        let is_opaque = pixels.data().iter().all(|color| color.0[3] == 255);
+        let opaque = pixels.data().iter().flat_map(|color| [color.0[0], color.0[1], color.0[2]]);
+        let (bytes, color) = match is_opaque {
+            true => (opaque.collect(), image::ExtendedColorType::Rgb8),
+            false => (pixels.bytes().to_vec(), image::ExtendedColorType::Rgba8),
+        };
+        image::ImageEncoder::write_image(encoder, &bytes, pixels.width(), pixels.height(), color)
+            .expect("memory");
+        png
     }
 }
