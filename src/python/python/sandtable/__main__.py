@@ -1,0 +1,7 @@
+"""``python -m sandtable``: the program."""
+
+import sys
+
+from ._program import main
+
+sys.exit(main())
