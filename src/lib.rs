@@ -67,6 +67,9 @@ pub use crate::api::program::run_program;
 pub use crate::api::scene::{Picture, Scene, SceneOptions, View};
 pub use crate::api::symbol::Symbol;
 pub use crate::api::terrain::Terrain;
+pub use sandtable_annotate::chart::ChartText;
+pub use sandtable_annotate::chart_ground::ChartPoint;
+pub use sandtable_annotate::chart_sight::{SightBlocker, SightChart};
 pub use sandtable_base::limits::set_limit::set_limit;
 pub use sandtable_base::limits::work_limit::LimitError;
 #[cfg(feature = "cli")]

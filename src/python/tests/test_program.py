@@ -11,10 +11,9 @@ import time
 from pathlib import Path
 
 import pytest
-from conftest import JACKSBORO, ROAD, ROOT
+from conftest import EXE, JACKSBORO, PROGRAM, ROAD
 
-SCRIPT = Path(sysconfig.get_path("scripts")) / ("sandtable.exe" if os.name == "nt" else "sandtable")
-RUST = Path(os.environ.get("SANDTABLE_PROGRAM", ROOT / "target/debug/sandtable"))
+SCRIPT = Path(sysconfig.get_path("scripts")) / f"sandtable{EXE}"
 # A small picture of a scene with roads.
 PICTURE = ["render", ROAD, "--camera", "front", "--size", "320x180", "-o"]
 
@@ -27,7 +26,7 @@ def run(program, *arguments, **options):
 def test_pictures_and_sidecars_are_those_of_the_rust_program(program, tmp_path):
     # Beside one another: the sidecar states the scene's path.
     files = []
-    for name, command in [("wheel", program), ("rust", [RUST])]:
+    for name, command in [("wheel", program), ("rust", [PROGRAM])]:
         (tmp_path / name).mkdir()
         ended = run(command, *PICTURE, tmp_path / name / "road.png", "--buffers", tmp_path / name)
         assert ended.returncode == 0, ended.stderr
@@ -61,7 +60,7 @@ def test_pictures_and_sidecars_are_those_of_the_rust_program(program, tmp_path):
 def test_answers_errors_and_exit_codes_are_those_of_the_rust_program(arguments, tmp_path):
     (tmp_path / "wrong.toml").write_text(ROAD.read_text().replace("[terrain]", "[terrain]\nnonsense = 1", 1))
     (tmp_path / "ground.tif").write_bytes(b"II*\0")
-    wheel, rust = (run(program, *arguments, cwd=tmp_path) for program in [[SCRIPT], [RUST]])
+    wheel, rust = (run(program, *arguments, cwd=tmp_path) for program in [[SCRIPT], [PROGRAM]])
     assert (wheel.stdout, wheel.stderr, wheel.returncode) == (rust.stdout, rust.stderr, rust.returncode)
     assert wheel.stdout or wheel.stderr
 
@@ -123,7 +122,7 @@ def test_a_limit_of_the_address_space_is_kept_as_by_the_rust_program(tmp_path):
     (tmp_path / "rust").mkdir()
     (tmp_path / "wheel").mkdir()
     # It starts itself again, twice, by the interpreter of its environment.
-    for program, folder in [(SCRIPT, "wheel"), (RUST, "rust")]:
+    for program, folder in [(SCRIPT, "wheel"), (PROGRAM, "rust")]:
         ended = run([program], *PICTURE, tmp_path / folder / "road.png", **limited(600))
         assert ended.returncode == 0, ended.stderr
     assert (tmp_path / "wheel/road.png").read_bytes() == (tmp_path / "rust/road.png").read_bytes()

@@ -133,8 +133,8 @@ def _text(name: str, value: Any) -> str:
     return ("," if are_numbers else ";").join(texts)
 
 
-def _positions(name: str, shape: dict[str, Any]) -> list:
-    kind, coordinates = shape.get("type"), shape.get("coordinates")
+def _positions(name: str, shape: dict[str, Any]) -> list[Any]:
+    kind, coordinates = shape.get("type"), shape.get("coordinates", [])
     if kind == "Point":
         return [coordinates]
     if kind in ("LineString", "MultiPoint"):
