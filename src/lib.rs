@@ -62,11 +62,18 @@ pub use crate::api::dem::Dem;
 pub use crate::api::elevation::Elevation;
 pub use crate::api::error::Error;
 pub use crate::api::plan::{GatheredPlan, WorkPlan};
+#[cfg(feature = "cli")]
+pub use crate::api::program::run_program;
 pub use crate::api::scene::{Picture, Scene, SceneOptions, View};
 pub use crate::api::symbol::Symbol;
 pub use crate::api::terrain::Terrain;
+pub use sandtable_annotate::chart::ChartText;
+pub use sandtable_annotate::chart_ground::ChartPoint;
+pub use sandtable_annotate::chart_sight::{SightBlocker, SightChart};
 pub use sandtable_base::limits::set_limit::set_limit;
 pub use sandtable_base::limits::work_limit::LimitError;
+#[cfg(feature = "cli")]
+pub use sandtable_cli::invocation::{Invocation, RestartCommand};
 pub use sandtable_dem::hints::DemOptions;
 pub use sandtable_description::finding::{Finding, Severity};
 pub use sandtable_geom::crs::Crs;

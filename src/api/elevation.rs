@@ -8,6 +8,7 @@ use glam::DVec2;
 use crate::api::dem::Dem;
 use crate::api::error::Error;
 use crate::api::terrain::Terrain;
+use sandtable_annotate::chart_sight::SightChart;
 use sandtable_dem::hints::DemOptions;
 use sandtable_geom::crs::Crs;
 use sandtable_query::dataset::{Dataset, DatasetOptions, QueryError, transform};
@@ -141,6 +142,17 @@ impl Elevation {
         let at = query.ends.map(|end| end.at);
         let ground = self.dataset.ground(&GroundReach { crs: &query.crs, at: &at, around_m: 0.0 })?;
         Ok(SightReport::new(&ground, query)?)
+    }
+
+    /// What a chart of the line of sight shows, as `sandtable los -o` draws it: the ground and its visible parts, all heights
+    /// less the drop of the curved Earth, so that the line is straight.
+    ///
+    /// # Errors
+    /// [`Error::Query`].
+    pub fn sight_chart(&self, query: SightQuery, title: String) -> Result<SightChart, Error> {
+        let at = query.ends.map(|end| end.at);
+        let ground = self.dataset.ground(&GroundReach { crs: &query.crs, at: &at, around_m: 0.0 })?;
+        Ok(SightReport::new(&ground, query)?.chart(&ground, title)?)
     }
 
     /// The viewshed of an observer whose position is in coordinates of `crs`, as [`Terrain::viewshed`]. Where the file stays

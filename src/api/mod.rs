@@ -5,6 +5,8 @@ pub mod dem;
 pub mod elevation;
 pub mod error;
 pub mod plan;
+#[cfg(feature = "cli")]
+pub mod program;
 pub mod scene;
 pub mod symbol;
 pub mod terrain;

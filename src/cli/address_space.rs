@@ -13,6 +13,7 @@ use std::fs;
 
 use crate::arguments::{Command, DemCommand};
 use crate::error::CliError;
+use crate::invocation::RestartCommand;
 use crate::threads;
 
 const MIB: u64 = 1 << 20;
@@ -66,7 +67,7 @@ fn floor_of(command: &Command) -> Option<u64> {
 ///
 /// # Errors
 /// The command does not fit with one thread.
-pub fn threads_for(command: &Command) -> Result<usize, CliError> {
+pub fn threads_for(command: &Command, restart: Option<&RestartCommand>) -> Result<usize, CliError> {
     let wanted = match command {
         Command::Render(arguments) => threads::wanted(arguments.threads.map(usize::from)),
         _ => threads::wanted(None),
@@ -75,15 +76,14 @@ pub fn threads_for(command: &Command) -> Result<usize, CliError> {
         return Ok(wanted);
     };
     let threads = |arena| space.threads(wanted, floor * MIB, arena);
-    threads(arena_bytes(|arena| threads(arena).is_ok_and(|count| count == wanted)))
+    threads(arena_bytes(|arena| threads(arena).is_ok_and(|count| count == wanted), restart))
 }
 
 /// What the arena of each thread takes; where `fits` does not hold for that, the program starts itself again with one.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
-fn arena_bytes(fits: impl Fn(u64) -> bool) -> u64 {
+fn arena_bytes(fits: impl Fn(u64) -> bool, restart: Option<&RestartCommand>) -> u64 {
     use std::env;
     use std::os::unix::process::CommandExt;
-    use std::process::Command;
 
     const ARENAS: &str = "MALLOC_ARENA_MAX";
     match env::var_os(ARENAS) {
@@ -91,16 +91,15 @@ fn arena_bytes(fits: impl Fn(u64) -> bool) -> u64 {
         Some(_) => return ARENA,
         None => {}
     }
-    let mut arguments = env::args_os();
-    if let (false, Some(name), Ok(program)) = (fits(ARENA), arguments.next(), env::current_exe()) {
+    if let (false, Some(restart)) = (fits(ARENA), restart) {
         // It returns only where the system refuses: then the arenas stay.
-        let _ = Command::new(program).arg0(name).args(arguments).env(ARENAS, "1").exec();
+        let _ = restart.command().env(ARENAS, "1").exec();
     }
     ARENA
 }
 
 #[cfg(not(all(target_os = "linux", target_env = "gnu")))]
-fn arena_bytes(_: impl Fn(u64) -> bool) -> u64 {
+fn arena_bytes(_: impl Fn(u64) -> bool, _: Option<&RestartCommand>) -> u64 {
     0
 }
 

@@ -2,7 +2,6 @@
 
 use std::error::Error;
 use std::fmt::Display;
-use std::process::ExitCode;
 
 use crate::output::warn;
 use sandtable_base::message::chain::error_text;
@@ -39,17 +38,17 @@ impl CliError {
     }
 
     /// Prints the message on standard error and returns the exit code.
-    pub fn report(&self) -> ExitCode {
+    pub fn report(&self) -> u8 {
         match self {
             Self::Usage(message) => {
                 warn(&format!("error: {message}"));
-                ExitCode::from(2)
+                2
             }
-            Self::Reported => ExitCode::from(1),
+            Self::Reported => 1,
             Self::Input { error, hint } => {
                 warn(&message(error.as_ref()));
                 hint.iter().for_each(|hint| warn(hint));
-                ExitCode::from(1)
+                1
             }
         }
     }

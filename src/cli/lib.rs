@@ -19,6 +19,7 @@ mod fly;
 mod gather;
 mod grid;
 mod height;
+pub mod invocation;
 mod licenses;
 mod limit;
 mod lod;
@@ -54,12 +55,12 @@ mod viewshed;
 mod work;
 
 use std::error::Error;
-use std::process::ExitCode;
 
 use clap::Parser;
 
 use crate::arguments::{Arguments, Command, DemCommand, ModelCommand};
 use crate::error::CliError;
+use crate::invocation::Invocation;
 use sandtable_editing::viewing::ViewerOptions;
 use sandtable_query::service::ServiceOptions;
 use sandtable_render::OtherRenderer;
@@ -81,34 +82,46 @@ pub struct BuiltInPrograms {
     pub gpu: Option<OtherRenderer>,
 }
 
-/// Runs the program: parses the arguments, runs the command, reports errors.
+/// Runs the program: parses the arguments, runs the command, reports errors. Returns the exit code: 0 done, 1 the input is
+/// wrong, 2 usage.
 ///
-/// Exit codes: 0 done, 1 the input is wrong, 2 usage.
-pub fn main(programs: BuiltInPrograms) -> ExitCode {
-    let arguments = Arguments::parse();
+/// It handles signals and starts threads for the whole process, so a process runs it once.
+pub fn main(invocation: &Invocation, programs: BuiltInPrograms) -> u8 {
+    let arguments = match Arguments::try_parse_from(&invocation.arguments) {
+        Ok(arguments) => arguments,
+        Err(help_or_error) => {
+            let _nobody_reads = help_or_error.print();
+            return u8::try_from(help_or_error.exit_code()).unwrap_or(2);
+        }
+    };
     if arguments.quiet {
         output::be_quiet();
     }
     #[cfg(unix)]
-    if let Some(code) = supervisor::supervise() {
+    if let Some(code) = invocation.restart.as_ref().and_then(supervisor::supervise) {
         return code;
     }
     let Some(command) = &arguments.command else {
-        return first_steps::print_first_steps().map_or_else(|error| error.report(), |()| ExitCode::SUCCESS);
+        return first_steps::print_first_steps().map_or_else(|error| error.report(), |()| 0);
     };
-    let done = run(&arguments, command, programs);
+    let done = run(&arguments, command, invocation, programs);
     remote::note_traffic();
     match done {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => 0,
         Err(error) => first_steps::with_next_command(error, command).report(),
     }
 }
 
-fn run(arguments: &Arguments, command: &Command, programs: BuiltInPrograms) -> Result<(), CliError> {
+fn run(
+    arguments: &Arguments,
+    command: &Command,
+    invocation: &Invocation,
+    programs: BuiltInPrograms,
+) -> Result<(), CliError> {
     // Before anything is read: what reads a limit holds it.
-    limit::set(&arguments.limit)?;
-    remote::set(&arguments.allow_remote)?;
-    let threads = address_space::threads_for(command)?;
+    limit::set(&arguments.limit, &invocation.arguments)?;
+    remote::set(&arguments.allow_remote, &invocation.arguments)?;
+    let threads = address_space::threads_for(command, invocation.restart.as_ref())?;
     // A picture has threads of its own.
     if !matches!(command, Command::Render(_) | Command::Demo(_)) {
         threads::start(threads)?;

@@ -1,6 +1,5 @@
 //! The option `--limit` of all commands.
 
-use std::env::args_os;
 use std::ffi::OsString;
 
 use crate::error::CliError;
@@ -33,29 +32,29 @@ fn count(text: &str) -> Option<u64> {
     is_count.then(|| digits.parse::<u64>().ok()?.checked_mul(scale)).flatten()
 }
 
-/// Checks that every stated option called `name` was parsed: options of all commands are parsed only on one side of the
-/// command.
+/// Checks that every option called `name` among the `stated` arguments was parsed: options of all commands are parsed only on
+/// one side of the command.
 ///
 /// # Errors
 /// They are stated both before and after the command.
-pub fn check_side(name: &str, parsed: usize) -> Result<(), CliError> {
+pub fn check_side(name: &str, parsed: usize, stated: &[OsString]) -> Result<(), CliError> {
     let with_value = format!("{name}=");
-    let is_option = |argument: &OsString| {
-        argument == name || argument.as_encoded_bytes().starts_with(with_value.as_bytes())
+    let is_option = |argument: &&OsString| {
+        *argument == name || argument.as_encoded_bytes().starts_with(with_value.as_bytes())
     };
-    match args_os().filter(is_option).count() > parsed {
+    match stated.iter().filter(is_option).count() > parsed {
         true => Err(CliError::usage(format!("state every {name} after the command"))),
         false => Ok(()),
     }
 }
 
-/// Sets the limits, before anything is read.
+/// Sets the limits, before anything is read. `stated` are all arguments of the program.
 ///
 /// # Errors
 /// A name is unknown, a limit is fixed or stated twice, a value is out of range, or limits are stated both before and after
 /// the command.
-pub fn set(limits: &[StatedLimit]) -> Result<(), CliError> {
-    check_side("--limit", limits.len())?;
+pub fn set(limits: &[StatedLimit], stated: &[OsString]) -> Result<(), CliError> {
+    check_side("--limit", limits.len(), stated)?;
     for (index, StatedLimit { name, value }) in limits.iter().enumerate() {
         if limits[..index].iter().any(|before| before.name == *name) {
             return Err(CliError::usage(format!("--limit {} is stated twice", quoted(name))));

@@ -1,6 +1,7 @@
 //! The option `--allow-remote` of all commands, and the note of what was fetched.
 
 use std::env;
+use std::ffi::OsString;
 
 use crate::error::CliError;
 use crate::limit::check_side;
@@ -9,12 +10,12 @@ use sandtable_remote::access::RemoteAccess;
 use sandtable_remote::address::AllowedHost;
 use sandtable_remote::traffic::Traffic;
 
-/// Sets which hosts may be read from, before anything is read.
+/// Sets which hosts may be read from, before anything is read. `stated` are all arguments of the program.
 ///
 /// # Errors
 /// Hosts are stated both before and after the command.
-pub fn set(hosts: &[AllowedHost]) -> Result<(), CliError> {
-    check_side("--allow-remote", hosts.len())?;
+pub fn set(hosts: &[AllowedHost], stated: &[OsString]) -> Result<(), CliError> {
+    check_side("--allow-remote", hosts.len(), stated)?;
     if !hosts.is_empty() {
         let blocks = RemoteAccess::blocks_folder(|name| env::var_os(name));
         RemoteAccess { hosts: hosts.to_vec(), blocks }.add_to_run();

@@ -7,8 +7,8 @@
 
 use std::env;
 use std::io;
-use std::os::unix::process::{CommandExt, ExitStatusExt, parent_id};
-use std::process::{Child, Command, ExitCode, ExitStatus, id};
+use std::os::unix::process::{ExitStatusExt, parent_id};
+use std::process::{Child, ExitStatus, id};
 use std::thread;
 use std::time::Duration;
 
@@ -19,6 +19,7 @@ use signal_hook::low_level::emulate_default_handler;
 
 use crate::address_space::AddressSpace;
 use crate::error::CliError;
+use crate::invocation::RestartCommand;
 use crate::signals;
 
 /// The number of the process that supervises this one, in its environment.
@@ -30,15 +31,15 @@ const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Runs this program again in a child process if its address space is limited, and returns the exit code of the child;
 /// `None` without a limit, in the child itself, and where no child can be started.
-pub fn supervise() -> Option<ExitCode> {
+pub fn supervise(restart: &RestartCommand) -> Option<u8> {
     let space = AddressSpace::of_this_process()?;
     let is_supervised = env::var(SUPERVISOR).is_ok_and(|supervisor| supervisor == parent_id().to_string());
     if is_supervised {
         return None;
     }
-    let status = supervised().ok()?;
+    let status = supervised(restart).ok()?;
     Some(match (status.code(), status.signal()) {
-        (Some(code), _) => ExitCode::from(u8::try_from(code).unwrap_or(1)),
+        (Some(code), _) => u8::try_from(code).unwrap_or(1),
         (None, Some(SIGABRT)) => CliError::input(format!(
             "the command ended because it needs more than the {} MB of address space that `ulimit -v` lets it have; allow it \
              more, or ask for less at once",
@@ -49,19 +50,15 @@ pub fn supervise() -> Option<ExitCode> {
             let signal = signal.unwrap_or(0);
             // Where this process does not end by the same signal, its code is that of a shell.
             let _ = emulate_default_handler(signal);
-            ExitCode::from(u8::try_from(128 + signal).unwrap_or(1))
+            u8::try_from(128 + signal).unwrap_or(1)
         }
     })
 }
 
 /// How this program ends in a process of its own.
-fn supervised() -> io::Result<ExitStatus> {
-    let mut arguments = env::args_os();
-    let mut command = Command::new(env::current_exe()?);
-    if let Some(name) = arguments.next() {
-        command.arg0(name);
-    }
-    command.args(arguments).env(SUPERVISOR, id().to_string());
+fn supervised(restart: &RestartCommand) -> io::Result<ExitStatus> {
+    let mut command = restart.command();
+    command.env(SUPERVISOR, id().to_string());
     // A signal that comes before there is a process to pass it on to waits.
     let signals = Signals::new(signals::heeded())?;
     let mut child = command.spawn()?;

@@ -18,7 +18,7 @@ use crate::arguments::{
 };
 use crate::error::{failed, wrong_value};
 use crate::rasters::{PyMesh, PyRaster, shaped};
-use crate::results::{PyLineOfSight, PyProfile};
+use crate::results::{PyLineOfSight, PyProfile, sight_chart};
 
 /// An elevation model. Made by `Dem.open` or `Dem.from_array`.
 #[pyclass(name = "Dem", module = "sandtable", frozen)]
@@ -267,6 +267,29 @@ impl PyDem {
         let query = SightQuery { ends, crs, curvature: curvature(refraction, flat)? };
         let report = py.detach(|| self.elevation.line_of_sight(query)).map_err(failed)?;
         Ok(PyLineOfSight::new(&report))
+    }
+
+    /// What a chart of the line of sight shows, for `sandtable.plot`; the arguments are those of `line_of_sight`. All heights are
+    /// less the drop of the curved Earth.
+    #[pyo3(signature = (observer, target, *, observer_height = 2.0, target_height = 0.0, refraction = None, flat = false, crs = None))]
+    #[expect(clippy::too_many_arguments, reason = "they are keywords of Python")]
+    fn _sight_chart<'py>(
+        &self,
+        py: Python<'py>,
+        observer: &Bound<'py, PyAny>,
+        target: &Bound<'py, PyAny>,
+        observer_height: f64,
+        target_height: f64,
+        refraction: Option<f64>,
+        flat: bool,
+        crs: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let crs = crs_or(crs, || self.elevation.crs())?;
+        let ends =
+            [end("observer", observer, observer_height, &crs)?, end("target", target, target_height, &crs)?];
+        let query = SightQuery { ends, crs, curvature: curvature(refraction, flat)? };
+        let chart = py.detach(|| self.elevation.sight_chart(query, String::new())).map_err(failed)?;
+        sight_chart(py, &chart)
     }
 
     /// What is seen from `observer`, (x, y) in `crs` or a text as in `heights`: a Raster of 1 in sight, 0 hidden, 255 not looked at or without data.

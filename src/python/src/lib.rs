@@ -16,6 +16,7 @@ mod dem;
 mod error;
 mod findings;
 mod plan;
+mod program;
 mod rasters;
 mod remote;
 mod results;
@@ -35,6 +36,8 @@ mod _sandtable {
     use crate::findings::PyFinding;
     #[pymodule_export]
     use crate::plan::PyPlan;
+    #[pymodule_export]
+    use crate::program::run_in_process;
     #[pymodule_export]
     use crate::rasters::{PyMesh, PyRaster};
     #[pymodule_export]

@@ -2,7 +2,8 @@
 
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use sandtable::{Blocker, GroundProfile, Rise, SightReport};
+use pyo3::types::PyDict;
+use sandtable::{Blocker, GroundProfile, Rise, SightChart, SightReport};
 
 use crate::rasters::shaped;
 
@@ -101,4 +102,23 @@ impl PyLineOfSight {
         let seen = if self.visible { "visible" } else { "blocked" };
         format!("<LineOfSight {seen}, {:.1} m>", self.distance)
     }
+}
+
+/// What a chart of a line of sight shows: `stations` and `ground`, float64 of shape (N,), meters; `visible`, float64 of shape
+/// (K, 2), the stretches in sight; the heights `eye` and `target`; `blocker`, its station and height, or None; `title`.
+pub fn sight_chart<'py>(py: Python<'py>, chart: &SightChart) -> PyResult<Bound<'py, PyDict>> {
+    let stations = chart.points.iter().map(|point| point.along_m).collect();
+    let ground = chart.points.iter().map(|point| point.ground.parts().0).collect();
+    let visible = chart.visible_m.iter().flat_map(|&(from_m, to_m)| [from_m, to_m]).collect();
+    let blocker = chart.blocker.as_ref().map(|blocker| (blocker.along_m, blocker.height_m));
+    let said = PyDict::new(py);
+    said.set_item("stations", PyArray1::<f64>::from_vec(py, stations))?;
+    said.set_item("ground", PyArray1::<f64>::from_vec(py, ground))?;
+    said.set_item("visible", shaped::<f64>(py, visible, (2, chart.visible_m.len() as u32))?)?;
+    said.set_item("eye", chart.eye_m)?;
+    said.set_item("target", chart.target_m)?;
+    said.set_item("blocker", blocker)?;
+    said.set_item("title", &chart.text.subtitle)?;
+    said.set_item("axis", &chart.text.height_axis)?;
+    Ok(said)
 }

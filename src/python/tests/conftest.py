@@ -9,16 +9,17 @@ import pytest
 ROOT = Path(__file__).resolve().parents[3]
 JACKSBORO = ROOT / "assets/jacksboro/dem.tif"
 ROAD = ROOT / "scenes/road.toml"
+EXE = ".exe" if os.name == "nt" else ""
+PROGRAM = Path(os.environ.get("SANDTABLE_PROGRAM", ROOT / f"target/debug/sandtable{EXE}"))
 
 
 @pytest.fixture(scope="session")
 def program():
     """Runs the program of this repository and returns what it prints."""
-    path = Path(os.environ.get("SANDTABLE_PROGRAM", ROOT / "target/debug/sandtable"))
-    assert path.is_file(), f"{path} is not built: run `cargo build`, or set SANDTABLE_PROGRAM"
+    assert PROGRAM.is_file(), f"{PROGRAM} is not built: run `cargo build`, or set SANDTABLE_PROGRAM"
 
     def run(*arguments, input=None, cwd=None):
-        command = [path, *map(str, arguments)]
+        command = [PROGRAM, *map(str, arguments)]
         ended = subprocess.run(command, input=input, capture_output=True, text=True, cwd=cwd)
         assert ended.returncode == 0, f"{command}\n{ended.stderr}"
         return ended.stdout

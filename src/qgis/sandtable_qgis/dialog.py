@@ -69,7 +69,7 @@ class PictureDialog(QDialog):
         self.pitch.setSpecialValueText("what fills the picture best")
         self.with_page = QCheckBox("Also a page for browsers")
         self.program = QLineEdit()
-        self.program.setPlaceholderText("found on the path, or in the Python package")
+        self.program.setPlaceholderText("found on the path, or where pip has put it")
         self.layers = self._layer_table()
         size = QHBoxLayout()
         for widget in (self.width, QLabel("×"), self.height, QLabel("px")):

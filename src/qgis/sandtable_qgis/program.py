@@ -48,7 +48,7 @@ class ProgramCanceled(Exception):
 
 
 def find_program():
-    """The path of the program: by the setting, on the path, or among the scripts of Python's packages."""
+    """The path of the program: by the setting, on the path, or where pip has put it, for all users or for this one."""
     stated = QgsSettings().value(SETTING, "", type=str)
     if stated:
         return stated
@@ -57,7 +57,7 @@ def find_program():
     found = shutil.which("sandtable", path=os.pathsep.join(folders))
     if found is None:
         raise ProgramError(
-            "The program `sandtable` was not found. Install it from its folder (`cargo install --path .`), or state its path in the dialog "
+            "The program `sandtable` was not found. Install it (`pip install sandtable`), or state its path in the dialog "
             "“3D picture of this map”."
         )
     return found

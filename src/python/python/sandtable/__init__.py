@@ -10,6 +10,7 @@ interpreter's lock; arrays are NumPy's. ``import sandtable.xarray`` adds the acc
 and ``sandtable.dask`` does plans on a Dask cluster.
 """
 
+from . import plot
 from ._analysis import Analysis, kinds
 from ._errors import SandtableError
 from ._sandtable import Dem, Finding, LineOfSight, Mesh, Plan, Profile, Raster, Scene, Symbol, licenses, set_limit
@@ -30,5 +31,6 @@ __all__ = [
     "__version__",
     "kinds",
     "licenses",
+    "plot",
     "set_limit",
 ]

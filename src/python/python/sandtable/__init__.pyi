@@ -5,6 +5,7 @@ from typing import Any, Literal, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import plot as plot
 from ._analysis import Analysis as Analysis
 from ._analysis import kinds as kinds
 
@@ -169,6 +170,17 @@ class Dem:
         flat: bool = False,
         crs: _Crs | None = None,
     ) -> LineOfSight: ...
+    def _sight_chart(
+        self,
+        observer: Sequence[float] | str,
+        target: Sequence[float] | str,
+        *,
+        observer_height: float = 2.0,
+        target_height: float = 0.0,
+        refraction: float | None = None,
+        flat: bool = False,
+        crs: _Crs | None = None,
+    ) -> dict[str, Any]: ...
     def viewshed(
         self,
         observer: Sequence[float] | str,

@@ -1,4 +1,7 @@
-"""Terrain analyses: what Python gives as arguments, and what it gets."""
+"""Terrain analyses: what Python gives as arguments, and what it gets.
+
+NumPy is imported where it is used: the program, which starts by this package, does without.
+"""
 
 from __future__ import annotations
 
@@ -8,8 +11,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from os import PathLike, fspath
 from typing import Any
-
-import numpy as np
 
 from ._sandtable import _analysis_kinds
 
@@ -110,6 +111,8 @@ def made(said: dict[str, Any]):
 
 
 def _text(name: str, value: Any) -> str:
+    import numpy as np
+
     if isinstance(value, str):
         return value
     if isinstance(value, PathLike):
@@ -130,8 +133,8 @@ def _text(name: str, value: Any) -> str:
     return ("," if are_numbers else ";").join(texts)
 
 
-def _positions(name: str, shape: dict[str, Any]) -> list:
-    kind, coordinates = shape.get("type"), shape.get("coordinates")
+def _positions(name: str, shape: dict[str, Any]) -> list[Any]:
+    kind, coordinates = shape.get("type"), shape.get("coordinates", [])
     if kind == "Point":
         return [coordinates]
     if kind in ("LineString", "MultiPoint"):
@@ -142,6 +145,8 @@ def _positions(name: str, shape: dict[str, Any]) -> list:
 
 
 def _data_array(raster: dict[str, Any], analysis: Analysis):
+    import numpy as np
+
     try:
         import xarray as xr
     except ImportError as error:

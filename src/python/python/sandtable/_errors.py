@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from . import Finding
+
 
 class SandtableError(Exception):
     """What the library refuses, with the file and the place where it knows them.
@@ -16,7 +22,14 @@ class SandtableError(Exception):
         All errors of a scene file, each with its place.
     """
 
-    def __init__(self, message, file=None, line=None, column=None, findings=()):
+    def __init__(
+        self,
+        message: str,
+        file: str | None = None,
+        line: int | None = None,
+        column: int | None = None,
+        findings: Sequence[Finding] = (),
+    ) -> None:
         super().__init__(message)
         self.file = file
         self.line = line
