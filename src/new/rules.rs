@@ -170,6 +170,8 @@ pub(super) static RULES: &[TableRule] = &[
     .named(&["wegdeel"]),
     // The sea.
     rule("coast", "Coastline", "lines", "(natural ?? fclass) = 'coastline'").named(&["coastline"]),
+    rule("road", "Piers and breakwaters", "lines", "man_made in ('pier', 'breakwater', 'groyne') and not highway and not natural")
+        .keys(&["width = 4", "surface = \"gravel\""]),
     // Still water.
     rule(
         "lake",
