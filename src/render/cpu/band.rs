@@ -30,6 +30,8 @@ pub fn draw_band<const N: usize>(frame: &TileContext<N>, number: u32, rows: Band
         |tile: u32| PixelWindow { from: [tile * TILE, top], to: [(tile * TILE + TILE).min(width), bottom] };
     let tiles: Vec<_> = (0..width.div_ceil(TILE))
         .into_par_iter()
+        // Tiles differ in cost: a thread that is done takes any that is left, one at a time.
+        .with_max_len(1)
         .map_init(TileScratch::new, |scratch, tile| {
             (window(tile), draw_tile(frame, &pieces, window(tile), scratch))
         })

@@ -24,7 +24,7 @@
 //! # Cost
 //! Shading takes two thirds of the time and more, shadows where solids are a tenth of that; the rest is triangles (three
 //! corners projected, three planes) and one depth test per covered sample. Eight samples per pixel take a third more time
-//! than one. Memory: 12 bytes per pixel for the picture; 150 bytes per visible triangle of a strip; for each band of 64 rows in work
+//! than one. Memory: 12 bytes per pixel for the picture; 150 bytes per visible triangle of two strips; for each band of 64 rows in work
 //! 12 bytes per pixel and 52 per triangle in it; for each thread 0.3 MiB, and up to 2 MiB more under transparent
 //! surfaces; a third of each texture and of the ground map for their coarser levels, and as much again of a texture with
 //! holes for its alpha; the shadow maps.
@@ -176,19 +176,25 @@ fn draw<const N: usize>(
     let mut pixels = Pixels::filled(width, height, Srgba::WHITE);
     let mut depth_m = vec![f32::INFINITY; count];
     let mut features = vec![FeatureId::NONE; count];
-    for rows in &strips.rows {
-        let geometry = source.geometry(rows, &strips.chunk_rows);
+    // While a strip is drawn, the faces of the next are made: threads that find no tile left in one go on with the other.
+    let faces = |rows| source.geometry(rows, &strips.chunk_rows);
+    let mut made = strips.rows.first().map(faces);
+    for (number, rows) in strips.rows.iter().enumerate() {
+        let Some(geometry) = made else { break };
         let frame = TileContext { screen, geometry: &geometry, shader, pattern, is_colored };
         let first = rows.start / TILE;
         let strip = (rows.start * width) as usize..(rows.end * width) as usize;
-        pixels.data_mut()[strip.clone()]
+        let bands = pixels.data_mut()[strip.clone()]
             .par_chunks_mut(band)
             .zip(depth_m[strip.clone()].par_chunks_mut(band))
             .zip(features[strip].par_chunks_mut(band))
-            .enumerate()
-            .for_each(|(number, ((colors, depths_m), features))| {
+            .enumerate();
+        let draw = || {
+            bands.for_each(|(number, ((colors, depths_m), features))| {
                 draw_band(&frame, first + number as u32, BandRows { colors, depths_m, features });
             });
+        };
+        ((), made) = rayon::join(draw, || strips.rows.get(number + 1).map(faces));
     }
     Rendering { pixels, depth_m, features }
 }

@@ -1,4 +1,5 @@
-//! Strips of rows that are drawn one after the other, so that the faces of a long list do not lie in memory all at once.
+//! Strips of rows that are drawn one after the other, so that the faces of a long list do not lie in memory all at once: those
+//! of the strip that is drawn, and of the next.
 //!
 //! ```text
 //!   pieces by band of 64 rows:   begins  120  80  900  40      a strip of bands a..b shows what begins before b
@@ -13,8 +14,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::cpu::geometry::GeometrySource;
 use crate::cpu::visibility::TILE;
 
-/// The most pieces of a strip of several bands: 40 MB of faces and pieces. Fewer would have triangles projected more often.
+/// The most pieces of a picture in one strip: 40 MB of faces and pieces.
 const MOST_PIECES: u64 = 1 << 18;
+
+/// The most pieces of one of several strips, two of which are in memory. Fewer would have triangles projected more often.
+const STRIP_PIECES: u64 = MOST_PIECES / 2;
 
 /// The strips of a picture.
 pub struct RowStrips {
@@ -27,7 +31,8 @@ pub struct RowStrips {
 impl RowStrips {
     /// The strips that a source needs.
     pub fn new(source: &GeometrySource) -> Self {
-        Self::of(source, MOST_PIECES)
+        let is_one = source.triangle_count() <= MOST_PIECES;
+        Self::of(source, if is_one { MOST_PIECES } else { STRIP_PIECES })
     }
 
     /// Strips of up to `most` pieces, or of one band.
