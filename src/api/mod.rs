@@ -6,5 +6,6 @@ pub mod elevation;
 pub mod error;
 pub mod plan;
 pub mod scene;
+pub mod scene_data;
 pub mod symbol;
 pub mod terrain;

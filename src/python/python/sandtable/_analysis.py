@@ -9,8 +9,6 @@ from dataclasses import dataclass
 from os import PathLike, fspath
 from typing import Any
 
-import numpy as np
-
 from ._sandtable import _analysis_kinds
 
 
@@ -110,6 +108,8 @@ def made(said: dict[str, Any]):
 
 
 def _text(name: str, value: Any) -> str:
+    import numpy as np
+
     if isinstance(value, str):
         return value
     if isinstance(value, PathLike):
@@ -142,6 +142,8 @@ def _positions(name: str, shape: dict[str, Any]) -> list:
 
 
 def _data_array(raster: dict[str, Any], analysis: Analysis):
+    import numpy as np
+
     try:
         import xarray as xr
     except ImportError as error:

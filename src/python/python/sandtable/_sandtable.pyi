@@ -1,0 +1,66 @@
+"""What the library gives to the package's own modules; `__init__.pyi` has what is public."""
+
+from collections.abc import Callable, Sequence
+from os import PathLike
+from typing import Any, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import Dem as Dem
+from . import Finding as Finding
+
+@final
+class _Features:
+    def __len__(self) -> int: ...
+    @property
+    def crs(self) -> str: ...
+
+@final
+class _BuiltScene:
+    @staticmethod
+    def open(
+        path: str | PathLike[str],
+        *,
+        allow: Sequence[str | PathLike[str]] = (),
+        allow_remote: Sequence[str] = (),
+    ) -> _BuiltScene: ...
+    @staticmethod
+    def build(
+        text: str,
+        given: Sequence[tuple[str, Any]],
+        *,
+        allow: Sequence[str | PathLike[str]] = (),
+        allow_remote: Sequence[str] = (),
+    ) -> _BuiltScene: ...
+    @property
+    def cameras(self) -> tuple[str, ...]: ...
+    @property
+    def notes(self) -> tuple[str, ...]: ...
+    @property
+    def built_findings(self) -> tuple[Finding, ...]: ...
+    @property
+    def findings(self) -> tuple[Finding, ...]: ...
+    def render(
+        self, camera: str | None = None, size: tuple[int, int] | None = None
+    ) -> NDArray[np.uint8]: ...
+    def png(
+        self,
+        camera: str | None = None,
+        size: tuple[int, int] | None = None,
+        *,
+        longest: int | None = None,
+    ) -> bytes: ...
+    def analyze(
+        self,
+        kind: str,
+        *,
+        crs: Any | None = None,
+        progress: bool | Callable[[float], object] | None = None,
+        **arguments: Any,
+    ) -> Any: ...
+
+def _features(
+    shapes: Sequence[bytes | None], columns: Sequence[tuple[str, Any]], crs: Any
+) -> _Features: ...
+def _analysis_kinds() -> str: ...
