@@ -7,5 +7,6 @@ pub mod error;
 pub mod plan;
 pub mod scene;
 pub mod scene_data;
+pub mod scene_files;
 pub mod symbol;
 pub mod terrain;

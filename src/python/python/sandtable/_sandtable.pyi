@@ -13,6 +13,7 @@ from . import Finding as Finding
 @final
 class _Features:
     def __len__(self) -> int: ...
+    def geojson(self) -> str: ...
     @property
     def crs(self) -> str: ...
 
@@ -51,6 +52,13 @@ class _BuiltScene:
         *,
         longest: int | None = None,
     ) -> bytes: ...
+    def save(
+        self,
+        path: str | PathLike[str],
+        camera: str | None = None,
+        size: tuple[int, int] | None = None,
+    ) -> None: ...
+    def page(self) -> bytes: ...
     def analyze(
         self,
         kind: str,
