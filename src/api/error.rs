@@ -9,6 +9,7 @@ use crate::api::dem::SamplesError;
 use sandtable_base::message::chain::error_text;
 use sandtable_dem::formats::WRITTEN_EXTENSIONS;
 use sandtable_description::finding::Finding;
+use sandtable_export::scene_page::ExportPageError;
 use sandtable_files::disk::WriteFileError;
 use sandtable_files::error::diagnostics_text;
 use sandtable_files::raster_file::WriteRasterError;
@@ -21,6 +22,7 @@ use sandtable_raster::answer::Status;
 use sandtable_scene::scene_file::OpenSceneError;
 use sandtable_shards::error::ShardError;
 use sandtable_sheet::picture::PictureError;
+use sandtable_sheet::sheet_file::WriteSheetError;
 use sandtable_symbology::labeled::LabeledSymbolError;
 use sandtable_vector::error::VectorError;
 use sandtable_view::camera::CameraError;
@@ -80,6 +82,15 @@ pub enum Error {
     /// No raster format has this extension.
     #[error("{}: rasters are written as {WRITTEN_EXTENSIONS}; name a file that ends so", .0.display())]
     NoFormat(PathBuf),
+    /// No file of a scene has this extension.
+    #[error("{}: a scene is saved as .png, .pdf, .svg, .glb, .obj or .html; name a file that ends so", .0.display())]
+    NoSceneFormat(PathBuf),
+    /// A picture cannot be written as a sheet.
+    #[error(transparent)]
+    WriteSheet(#[from] WriteSheetError),
+    /// A page cannot be made.
+    #[error(transparent)]
+    ExportPage(#[from] ExportPageError),
     /// A raster cannot be written.
     #[error(transparent)]
     WriteRaster(#[from] WriteRasterError),
@@ -122,7 +133,7 @@ impl Error {
             Self::OpenScene(error) => error.file(),
             Self::Query(error) | Self::Profile(ProfileError::Query(error)) => error.dataset().map(Path::new),
             Self::Plan(error) => error.file(),
-            Self::NoFormat(path) => Some(path),
+            Self::NoFormat(path) | Self::NoSceneFormat(path) => Some(path),
             Self::WriteFile(error) => Some(&error.path),
             _ => None,
         }

@@ -9,5 +9,6 @@ pub mod plan;
 pub mod program;
 pub mod scene;
 pub mod scene_data;
+pub mod scene_files;
 pub mod symbol;
 pub mod terrain;

@@ -55,8 +55,8 @@ impl Default for SceneOptions<'_> {
 /// The view of a scene and the size of its picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
-    view: scene::scene_view::SceneView,
-    size: PictureSize,
+    pub(in crate::api) view: scene::scene_view::SceneView,
+    pub(in crate::api) size: PictureSize,
 }
 
 /// An annotated picture.

@@ -8,6 +8,7 @@ use sandtable_geom::crs::Crs;
 use sandtable_scene::given_data::GivenData;
 use sandtable_vector::feature::VectorLayer;
 use sandtable_vector::feature_table::{FeatureColumn, layer_of_wkb};
+use sandtable_vector::geojson::write::geojson_text;
 
 /// Features in memory: shapes with properties, in one coordinate system. Cheap to clone.
 #[derive(Clone, Debug)]
@@ -28,6 +29,11 @@ impl FeatureLayer {
         columns: Vec<FeatureColumn>,
     ) -> Result<Self, Error> {
         Ok(Self { layer: Arc::new(layer_of_wkb(crs, shapes, columns)?) })
+    }
+
+    /// The features as the text of a GeoJSON file, which is read as the same features.
+    pub fn geojson(&self) -> String {
+        geojson_text(&self.layer)
     }
 
     /// How many features there are; one for each kind of shape of a row.

@@ -13,14 +13,11 @@ use crate::progress::StepTimer;
 use crate::values::number;
 use sandtable_export::features::{ExportedFeatures, FeatureFormat, export_features};
 use sandtable_export::print_model::{self, PrintFormat, PrintModel, PrintSize, print_model};
-use sandtable_export::scene_export::{ExportFormat, export};
+use sandtable_export::scene_export::{DEFAULT_MAX_ERROR_M, ExportFormat, export};
 use sandtable_export::scene_page::export_page;
 use sandtable_files::disk;
 use sandtable_geom::crs::Crs;
 use sandtable_scene::scene_file::{open_scene, open_scene_true_to_scale};
-
-/// The largest error of exported ground in meters, where none is stated.
-const MAX_ERROR_M: f64 = 1.0;
 
 /// The longer side of a printed model, and the bed it is printed on, in millimeters, where none is stated: most printers
 /// have a bed of 220 mm or more.
@@ -120,7 +117,7 @@ fn run_scene(arguments: &ExportArguments, format: ExportFormat) -> Result<(), Cl
     let steps = StepTimer::default();
     let progress = |step| steps.begin(step);
     let scene = open_scene_true_to_scale(&scene.scene, &scene.access.allow, &progress)?;
-    let max_error_m = arguments.max_error.unwrap_or(MAX_ERROR_M);
+    let max_error_m = arguments.max_error.unwrap_or(DEFAULT_MAX_ERROR_M);
     let exported = export(&scene, out, format, max_error_m, &progress)?;
     steps.finish();
     let facts = [

@@ -10,6 +10,9 @@ use sandtable_mesh::write::remarks::Remarks;
 use sandtable_picture as picture;
 use sandtable_scene::scene_model::SceneModel;
 
+/// The largest error of exported ground in meters, where none is stated.
+pub const DEFAULT_MAX_ERROR_M: f64 = 1.0;
+
 /// A format of exported scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExportFormat {

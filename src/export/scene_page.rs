@@ -76,6 +76,20 @@ pub fn export_page(
     progress: &dyn Fn(&'static str),
 ) -> Result<ExportedPage, ExportPageError> {
     disk::check_output(path, &scene.files)?;
+    let (bytes, exported) = page_bytes(scene, max_error_m, progress)?;
+    disk::write(path, &bytes)?;
+    Ok(exported)
+}
+
+/// The bytes of the page that [`export_page`] writes, and what it holds.
+///
+/// # Errors
+/// See [`ExportPageError`].
+pub fn page_bytes(
+    scene: &mut SceneModel,
+    max_error_m: Option<f64>,
+    progress: &dyn Fn(&'static str),
+) -> Result<(Vec<u8>, ExportedPage), ExportPageError> {
     let first = camera(scene, &scene.cameras[0], VIEW_SIZE)?;
     SceneFlight::hold_light(scene, &first);
     progress("refining terrain");
@@ -84,9 +98,9 @@ pub fn export_page(
     progress("writing");
     let facts = facts(scene, &all, max_error_m)?;
     let bytes = page(&PageScene { drawn: &all, lattice: &scene.lattice, facts: &facts })?;
-    disk::write(path, &bytes)?;
     let ground_triangles = all.list.items.first().map_or(0, |ground| ground.triangles.len());
-    Ok(ExportedPage { bytes: bytes.len(), ground_triangles, max_error_m })
+    let exported = ExportedPage { bytes: bytes.len(), ground_triangles, max_error_m };
+    Ok((bytes, exported))
 }
 
 /// The ground, and its greatest error in meters of elevation.

@@ -222,8 +222,20 @@ pub fn open_scene_exaggerated(
     factor: f64,
     progress: &dyn Fn(&'static str),
 ) -> Result<SceneModel, OpenSceneError> {
+    build_exaggerated(&SceneOrigin::file(path, allowed), factor, progress)
+}
+
+/// [`open_scene_exaggerated`] of a scene of any origin.
+///
+/// # Errors
+/// See [`OpenSceneError`].
+pub fn build_exaggerated(
+    origin: &SceneOrigin,
+    factor: f64,
+    progress: &dyn Fn(&'static str),
+) -> Result<SceneModel, OpenSceneError> {
     progress("reading the scene file");
-    let (mut document, assets) = open_document(path, allowed, None)?;
+    let (mut document, assets) = origin.document(None)?;
     document.terrain.vertical_exaggeration = factor;
     Ok(build(&document, &assets, progress)?)
 }

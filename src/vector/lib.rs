@@ -11,7 +11,7 @@ pub mod feature;
 pub mod feature_table;
 pub mod filter;
 mod flatgeobuf;
-mod geojson;
+pub mod geojson;
 #[cfg(feature = "vector-db")]
 mod geopackage;
 mod gpx;

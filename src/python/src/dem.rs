@@ -154,6 +154,12 @@ impl PyDem {
         Ok(Some((path.clone(), keys)))
     }
 
+    /// Writes the samples of an array as a raster, in the format of the path's extension.
+    fn _save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let samples = self.samples.as_ref().ok_or_else(|| wrong_value("it was opened of a file"))?;
+        py.detach(|| samples.save(&path)).map_err(failed)
+    }
+
     /// (rows, columns).
     #[getter]
     fn shape(&self) -> (u32, u32) {

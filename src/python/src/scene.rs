@@ -129,6 +129,26 @@ impl PyScene {
         Ok(PyBytes::new(py, &png))
     }
 
+    /// Writes a file in the format of its extension: a picture as `.png`, `.pdf` or `.svg`, a model as `.glb` or `.obj`, a page as
+    /// `.html`. `camera` and `size` are those of a picture, as in `render`.
+    #[pyo3(signature = (path, camera = None, size = None))]
+    fn save(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        camera: Option<&str>,
+        size: Option<(u32, u32)>,
+    ) -> PyResult<()> {
+        let view = self.view(camera, size)?;
+        py.detach(|| self.scene.save(&view, &path)).map_err(failed)
+    }
+
+    /// The page for browsers, as the bytes of an HTML file that needs no network.
+    fn page<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let page = py.detach(|| self.scene.page()).map_err(failed)?;
+        Ok(PyBytes::new(py, &page))
+    }
+
     /// Analyzes the ground, as `sandtable analyze`: `kind` and the keywords are those of `sandtable.kinds()`.
     ///
     /// Positions are (x, y) in `crs`, by default the scene's, texts that state places, lists or arrays of them, or shapes of

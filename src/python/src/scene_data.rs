@@ -4,7 +4,7 @@ use numpy::PyReadonlyArray1;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
-use pyo3::types::{PyBool, PyBytes, PyFloat, PyInt, PyString};
+use pyo3::types::{PyBool, PyBytes, PyFloat, PyInt, PyList, PyString};
 use sandtable::{ColumnValues, FeatureColumn, FeatureLayer, SceneData};
 use serde_json::{Number, Value};
 
@@ -23,6 +23,11 @@ impl PyFeatureLayer {
         self.layer.feature_count()
     }
 
+    /// The features as the text of a GeoJSON file, which is read as the same features.
+    fn geojson(&self, py: Python<'_>) -> String {
+        py.detach(|| self.layer.geojson())
+    }
+
     /// The name of the system of their coordinates.
     #[getter]
     fn crs(&self) -> String {
@@ -30,8 +35,8 @@ impl PyFeatureLayer {
     }
 }
 
-/// The features of `shapes`, well-known binary or None, and of `columns`, pairs of a name and an array or a list with a value a
-/// shape, in the system `crs`.
+/// The features of `shapes`, well-known binary or None, and of `columns`, pairs of a name and an array with a value a shape, or the
+/// rows of those that have a value and a list of these values, in the system `crs`.
 #[pyfunction(name = "_features")]
 pub fn features(
     py: Python<'_>,
@@ -41,7 +46,7 @@ pub fn features(
 ) -> PyResult<PyFeatureLayer> {
     let crs = crate::arguments::crs(crs)?;
     let columns = columns.into_iter().map(|(name, values)| {
-        let values = column_values(&values)?;
+        let values = column_values(&values, shapes.len())?;
         if values.row_count() != shapes.len() {
             let (rows, count) = (values.row_count(), shapes.len());
             return Err(wrong_value(format!("column {name} has {rows} values for {count} shapes")));
@@ -54,8 +59,8 @@ pub fn features(
     Ok(PyFeatureLayer { layer: made.map_err(failed)? })
 }
 
-/// A column of NumPy, or a list of values of any type.
-fn column_values(values: &Bound<'_, PyAny>) -> PyResult<ColumnValues> {
+/// A column of NumPy, or the rows that have a value and their values of any type.
+fn column_values(values: &Bound<'_, PyAny>, row_count: usize) -> PyResult<ColumnValues> {
     if let Ok(numbers) = values.extract::<PyReadonlyArray1<'_, f64>>() {
         return Ok(ColumnValues::Numbers(numbers.as_array().to_vec()));
     }
@@ -65,8 +70,14 @@ fn column_values(values: &Bound<'_, PyAny>) -> PyResult<ColumnValues> {
     if let Ok(switches) = values.extract::<PyReadonlyArray1<'_, bool>>() {
         return Ok(ColumnValues::Switches(switches.as_array().to_vec()));
     }
-    let mixed: PyResult<Vec<Value>> = values.try_iter()?.map(|value| property(&value?)).collect();
-    Ok(ColumnValues::Mixed(mixed?))
+    let (rows, stated): (PyReadonlyArray1<'_, i64>, Bound<'_, PyList>) = values.extract()?;
+    let mut mixed = vec![Value::Null; row_count];
+    for (row, value) in rows.as_array().iter().zip(stated.iter()) {
+        let place = usize::try_from(*row).ok().and_then(|row| mixed.get_mut(row));
+        let place = place.ok_or_else(|| wrong_value(format!("row {row} is none of {row_count}")))?;
+        *place = property(&value)?;
+    }
+    Ok(ColumnValues::Mixed(mixed))
 }
 
 /// A value of a property: a text, number or truth as such, what is missing as null, and everything else as its text.

@@ -231,6 +231,47 @@ def test_notebooks_show_a_picture():
     assert max(int.from_bytes(png[16:20]), int.from_bytes(png[20:24])) == 1280
 
 
+def test_files_are_those_of_the_program(program, tmp_path):
+    scene = st.Scene(ROAD)
+    for name in ["a.png", "a.pdf", "a.svg"]:
+        program("render", ROAD, "--camera", scene.cameras[0], "--size", "320x200", "-o", tmp_path / f"program-{name}")
+        scene.save(tmp_path / name, camera=scene.cameras[0], size=SIZE)
+        assert (tmp_path / name).read_bytes() == (tmp_path / f"program-{name}").read_bytes(), name
+    for name in ["a.glb", "a.html"]:
+        program("export", ROAD, "-o", tmp_path / f"program-{name}")
+        scene.save(tmp_path / name)
+        assert (tmp_path / name).read_bytes() == (tmp_path / f"program-{name}").read_bytes(), name
+    with pytest.raises(st.SandtableError, match=r"a scene is saved as .png, .pdf"):
+        scene.save(tmp_path / "a.gif")
+
+
+@pytest.mark.filterwarnings("ignore::sandtable.SandtableWarning")
+def test_a_saved_scene_file_with_its_data_gives_the_same_picture(frames, program, tmp_path):
+    pandas = pytest.importorskip("pandas")
+    with rasterio.open(JACKSBORO) as dataset:
+        array, transform, crs, nodata = dataset.read(1), dataset.transform, dataset.crs, dataset.nodata
+    line = shapely.LineString([(749_000.1, 4_017_000.2, 300), (751_500.3, 4_018_000.4, 400)])
+    roads = geopandas.GeoDataFrame({"lanes": [4]}, geometry=[line], crs=32616)
+    units = pandas.DataFrame({"code": ["10031000161211000000"], "mgrs": ["16S GF 50000 18000"]})
+    scene = st.Scene(array, transform=transform, crs=crs, nodata=nodata).roads(roads, width="lanes * 50")
+    scene = scene.symbols(units, sidc="code", at="mgrs").labels(at=(750_000, 4_018_000), text="Here")
+    folder = tmp_path / "scene"
+    folder.mkdir()
+    scene.save(folder / "hill.toml")
+    names = {"hill.toml", "hill-terrain.tif", "hill-road.geojson", "hill-symbol.csv"}
+    assert {path.name for path in folder.iterdir()} == names and "memory:" not in (folder / "hill.toml").read_text()
+    program("render", folder / "hill.toml", "--size", "320x200", "-o", tmp_path / "out.png")
+    np.testing.assert_array_equal(scene.render(size=SIZE), np.asarray(Image.open(tmp_path / "out.png")))
+
+
+def test_a_page_is_shown_in_a_frame_and_too_large_a_one_is_not(monkeypatch):
+    page = st.Scene(ROAD).show()
+    shown = page._repr_html_()
+    assert page.html.startswith("<!") and shown.startswith("<iframe srcdoc=") and "<script" not in shown
+    monkeypatch.setattr("sandtable._saved._MOST_PAGE_BYTES", 1000)
+    assert "scene.save('scene.html')" in page._repr_html_()
+
+
 def test_keys_that_python_reserves_end_in_an_underscore():
     scene = st.Scene(JACKSBORO).graphics([(750_000, 4_018_000)], kind="target", from_="010600Z", style="red 1")
     scene = scene.styles("red 1", side="hostile").vehicle("car", built_up_kmh=20)

@@ -6,6 +6,7 @@
 //! it. `serde_json` limits nesting to 128 levels. Where it refuses a text, [`record`] reads the features one by one.
 
 pub(crate) mod record;
+pub mod write;
 
 use geojson::{Feature, GeoJson, GeometryValue, JsonObject, Position};
 use serde::Deserialize;

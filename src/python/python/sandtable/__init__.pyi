@@ -116,6 +116,7 @@ class LineOfSight:
 class Dem:
     @property
     def _source(self) -> tuple[Any, dict[str, Any]] | None: ...
+    def _save(self, path: str | PathLike[str]) -> None: ...
     @staticmethod
     def open(
         path: str | PathLike[str],

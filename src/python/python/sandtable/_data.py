@@ -151,12 +151,13 @@ def _geo_frame(frame: Any, crs: Any) -> Any:
 
 
 def _column(values: Any) -> Any:
-    """The values of a column as an array of numbers or truths, or as a list of what they are."""
+    """The values of a column as an array of numbers or truths, or those that are there with their rows."""
     # Types of pandas have values that are missing.
     is_plain = type(values.dtype).__module__.startswith("numpy")
     wanted = {"f": "float64", "i": "int64", "u": "int64", "b": "bool"}.get(getattr(values.dtype, "kind", "O"))
     if not is_plain or wanted is None:
-        return values.tolist()
+        rows = values.notna().to_numpy(dtype="bool").nonzero()[0].astype("int64")
+        return rows, values.iloc[rows].tolist()
     return values.to_numpy(dtype="float64" if str(values.dtype) == "uint64" else wanted)
 
 

@@ -23,6 +23,7 @@ __VERSION__: str
 @final
 class _Features:
     def __len__(self) -> int: ...
+    def geojson(self) -> str: ...
     @property
     def crs(self) -> str: ...
 
@@ -61,6 +62,13 @@ class _BuiltScene:
         *,
         longest: int | None = None,
     ) -> bytes: ...
+    def save(
+        self,
+        path: str | PathLike[str],
+        camera: str | None = None,
+        size: tuple[int, int] | None = None,
+    ) -> None: ...
+    def page(self) -> bytes: ...
     def analyze(
         self,
         kind: str,

@@ -12,7 +12,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from . import _data, _toml
+from . import _data, _saved, _toml
 from ._errors import SandtableWarning
 from ._sandtable import _BuiltScene
 from ._tables import SceneTables
@@ -176,11 +176,11 @@ class Scene(SceneTables):
     def toml(self) -> str:
         """The scene file that says the same.
 
-        Data in memory are named ``memory:…``; a comment says so.
+        Data in memory are named ``memory:…``; a comment says so, and ``save("folder/scene.toml")`` writes them beside the file.
         """
         if self._file is not None and not self._tables and not self._top:
             return self._file.read_text(encoding="utf-8")
-        comment = '# memory:… is data of Python, which is in no file\n\n'
+        comment = '# memory:… is data of Python: Scene.save("folder/scene.toml") writes it beside the scene file\n\n'
         return (comment if self._given else "") + self._text(lambda value: value)
 
     def _text(self, named: Callable[[Any], Any]) -> str:
@@ -238,6 +238,34 @@ class Scene(SceneTables):
         ``sandtable render``.
         """
         return self._build().render(camera, size)
+
+    def save(
+        self, path: str | PathLike[str], *, camera: str | None = None, size: tuple[int, int] | None = None
+    ) -> None:
+        """Writes a file in the format of its extension.
+
+        ========================  ===============================================================
+        ``.png``                  the picture of ``render``
+        ``.pdf``, ``.svg``        the same, with letters and lines as vectors
+        ``.html``                 a page for browsers, which needs no network
+        ``.glb``, ``.obj``        a model, true to scale
+        ``.toml``                 the scene file, with GeoTIFF and GeoJSON of data in memory beside it
+        ========================  ===============================================================
+
+        ``camera`` and ``size`` are those of a picture, as in ``render``. Raises SandtableError.
+        """
+        path = Path(path)
+        if path.suffix.lower() != ".toml":
+            self._build().save(path, camera, size)
+            return
+        text = self.toml()
+        if self._file is None or self._tables or self._top:
+            text = self._text(_saved.relative_names(path, _saved.write_data(self._given, path)))
+        path.write_text(text, encoding="utf-8")
+
+    def show(self) -> _saved.ScenePage:
+        """The scene as a page that a notebook shows in a frame: turned, zoomed and asked for heights with the mouse."""
+        return _saved.ScenePage(self._build().page())
 
     def analyze(self, kind: str, *, crs: Any = None, progress: Any = None, **arguments: Any) -> Any:
         """Analyzes the ground, as ``sandtable analyze``: ``kind`` and the keywords are those of ``sandtable.kinds()``.
