@@ -36,7 +36,7 @@ pub fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: Gr
     let beside_light =
         || (&scene.water().is_water, WaterShore::new(lattice, scene.water()), undergrowth(scene));
     let (light, (water, shore, woods)) =
-        rayon::join(|| TerrainLight::new(scene.ground().lattice(), to_sun), beside_light);
+        rayon::join(|| TerrainLight::new(scene.ground().lattice(), to_sun, number), beside_light);
     let columns = lattice.columns() as usize;
     let is_water = |index: usize| water.get(index).copied().unwrap_or_default();
     let is_rounded = holds_whole_meters(&scene.heights.snapshot().source().samples);

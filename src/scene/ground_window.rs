@@ -35,7 +35,7 @@ pub fn ground_window(
     to_sun: Vec3,
 ) -> GroundWindow {
     let drawn = (scene.scale.0 != 1.0).then(|| lattice.stretched(scene.scale.0));
-    let light = TerrainLight::new(drawn.as_ref().unwrap_or(lattice), to_sun);
+    let light = TerrainLight::new(drawn.as_ref().unwrap_or(lattice), to_sun, 0);
     let smooth = is_whole_meters(lattice.heights()).then(|| without_terraces(lattice, 1.0, &|_| false));
     let shaded = smooth.as_ref().unwrap_or(lattice);
     let columns = inner.first.column..=inner.last.column;

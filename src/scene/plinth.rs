@@ -55,7 +55,7 @@ pub fn floor_z(lattice: &Lattice, bounds: (Vec3, Vec3)) -> f32 {
 
 /// Whether the block has a rectangular base though its ground is none.
 fn has_plate(lattice: &Lattice) -> bool {
-    let missing = lattice.heights().iter().filter(|height| height.is_nan()).count();
+    let missing = lattice.missing_posts();
     missing > 0 && missing as f64 <= MOST_MISSING * lattice.heights().len() as f64
 }
 

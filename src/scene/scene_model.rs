@@ -222,8 +222,7 @@ impl SceneModel {
         /// Posts without data, as a share of all.
         const RAGGED: f64 = 0.002;
         *self.has_voids.get_or_init(|| {
-            let missing = self.lattice.heights().iter().filter(|height| height.is_nan()).count();
-            missing as f64 > RAGGED * self.lattice.heights().len() as f64
+            self.lattice.missing_posts() as f64 > RAGGED * self.lattice.heights().len() as f64
         })
     }
 

@@ -18,6 +18,21 @@ pub(crate) fn range(heights: &[f32]) -> (f32, f32) {
     scanned(heights, range_of, wider)
 }
 
+/// How many heights are NaN.
+pub(crate) fn missing(heights: &[f32]) -> usize {
+    let count = |heights: &[f32]| {
+        vectorized(
+            #[inline(always)]
+            || {
+                // Few enough together that their count fits into 32 bits.
+                let count = |few: &[f32]| few.iter().map(|height| u32::from(height.is_nan())).sum::<u32>();
+                heights.chunks(SCANNED_TOGETHER).map(|few| count(few) as usize).sum::<usize>()
+            },
+        )
+    };
+    scanned(heights, count, |one, other| one + other)
+}
+
 /// The first height above `limit` or below `-limit`.
 pub(crate) fn first_beyond(heights: &[f32], limit: f32) -> Option<f32> {
     let is_beyond = |height: &&f32| height.abs() > limit;
@@ -84,6 +99,8 @@ mod tests {
                 (low.min(height), high.max(height))
             });
             assert_eq!(range(&heights), plain, "{count}");
+            let holes = heights.iter().filter(|height| height.is_nan()).count();
+            assert_eq!(missing(&heights), holes, "{count}");
             let found = heights.iter().find(|height| height.abs() > 450.0).copied();
             assert_eq!(first_beyond(&heights, 450.0), found, "{count}");
         }

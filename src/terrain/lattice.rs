@@ -17,6 +17,7 @@
 //! ```
 
 use glam::{DVec2, Vec2, Vec3};
+use rayon::prelude::*;
 
 use crate::height_scan;
 use crate::post_rect::PostRect;
@@ -117,10 +118,8 @@ impl Lattice {
         Self::check_memory(raster.width, raster.height)?;
         let columns = raster.width;
         let heights = match &raster.samples {
-            Samples::F32(values) => values.chunks(columns as usize).rev().collect::<Vec<_>>().concat(),
-            Samples::F64(values) => {
-                values.chunks(columns as usize).rev().flatten().map(|&height| height as f32).collect()
-            }
+            Samples::F32(values) => turned(values, columns as usize, |height| height),
+            Samples::F64(values) => turned(values, columns as usize, |height| height as f32),
         };
         Self::new(origin, cell, columns, heights)
     }
@@ -445,6 +444,11 @@ impl Lattice {
         height_scan::range(&self.heights)
     }
 
+    /// The number of posts without data.
+    pub fn missing_posts(&self) -> usize {
+        height_scan::missing(&self.heights)
+    }
+
     /// Map coordinates of a post.
     pub fn map_position(&self, post: Post) -> DVec2 {
         self.origin + (post.grid() + self.first.grid()) * self.cell
@@ -488,6 +492,14 @@ impl Lattice {
         let (columns, rows) = (self.columns, self.rows);
         (0..rows).flat_map(move |row| (0..columns).map(move |column| Post { column, row }))
     }
+}
+
+/// Rows in the reverse order, as heights; on all threads.
+fn turned<T: Copy + Sync>(values: &[T], columns: usize, height: impl Fn(T) -> f32 + Sync) -> Vec<f32> {
+    let mut heights = vec![0.0; values.len()];
+    let rows = heights.par_chunks_mut(columns).zip(values.par_chunks(columns).rev());
+    rows.for_each(|(to, from)| to.iter_mut().zip(from).for_each(|(to, &from)| *to = height(from)));
+    heights
 }
 
 /// Sets heights that are NaN to the one before.

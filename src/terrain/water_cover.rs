@@ -14,6 +14,7 @@
 //! Ground below 0 m alone is no sea: polders, the Jordan valley and the plains of Mars are dry.
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use crate::lattice::Lattice;
 
@@ -201,6 +202,12 @@ impl WaterSearch<'_> {
         })
     }
 
+    /// The rows of heights of which something holds: all threads look, so that a search on one passes most rows over.
+    fn rows_where(&self, holds: impl Fn(&[f32]) -> bool + Sync) -> Vec<usize> {
+        let rows = self.lattice.heights().par_chunks_exact(self.lattice.columns() as usize).enumerate();
+        rows.filter(|(_, row)| holds(row)).map(|(number, _)| number).collect()
+    }
+
     /// Marks what lies at or below a stated level and is connected to the border as water; the number of its posts.
     fn sea_at(&mut self, level_m: f32) -> usize {
         let mut count = 0;
@@ -216,9 +223,11 @@ impl WaterSearch<'_> {
     /// Parts the ground below 0 m into pits and low ground, which is counted; that at the border first.
     fn sort_low_ground(&mut self, cover: &mut WaterCover) {
         let is_low = |height: f32| height <= -LEVEL_M;
-        let count = self.lattice.heights().len();
+        let columns = self.lattice.columns() as usize;
+        let rows = self.rows_where(|row| row.iter().fold(false, |any, &height| any | is_low(height)));
+        let inner = rows.into_iter().flat_map(|row| row * columns..(row + 1) * columns);
         let at_border = self.border().map(|index| (index, true));
-        for (index, is_open) in at_border.chain((0..count).map(|index| (index, false))) {
+        for (index, is_open) in at_border.chain(inner.map(|index| (index, false))) {
             if !is_low(self.lattice.heights()[index]) || self.state[index] != PostState::New {
                 continue;
             }
@@ -250,8 +259,9 @@ impl WaterSearch<'_> {
     fn lakes(&mut self) -> Vec<usize> {
         let (heights, columns) = (self.lattice.heights(), self.lattice.columns() as usize);
         let mut lakes = Vec::new();
-        for (row, line) in heights.chunks_exact(columns).enumerate() {
-            for (column, pair) in line.windows(2).enumerate() {
+        let has_level = |row: &[f32]| row.windows(2).fold(false, |any, pair| any | (pair[0] == pair[1]));
+        for row in self.rows_where(has_level) {
+            for (column, pair) in heights[row * columns..][..columns].windows(2).enumerate() {
                 let (level, index) = (pair[0], row * columns + column);
                 if level != pair[1] || !self.state[index].is_open() {
                     continue;

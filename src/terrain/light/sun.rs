@@ -17,6 +17,7 @@
 use glam::{Vec2, Vec2Swizzles, Vec3, Vec3Swizzles};
 
 use crate::light::field::{CoarseField, Reduction};
+use crate::vectorized::vectorized;
 
 /// Half the sun's breadth, radians: 0.75°. The true sun's is 0.27°, whose penumbra a picture of the whole ground shows as
 /// a hard edge with the stairs of the lattice.
@@ -63,11 +64,16 @@ impl SunShadow {
     pub fn visibility(&self, row: usize, heights: &[f32]) -> Vec<f32> {
         let [mut full, partial] =
             [&self.full, &self.partial].map(|sheet| sheet.finer_row(row, sheet.every, heights.len()));
-        for ((full, partial), &height) in full.iter_mut().zip(partial).zip(heights) {
-            let middle = 0.5 * (*full + partial);
-            let share = (height - middle) / (partial - *full).max(self.least_penumbra_m) + 0.5;
-            *full = if share < 1.0 { share.max(0.0) } else { 1.0 };
-        }
+        vectorized(
+            #[inline(always)]
+            || {
+                for ((full, partial), &height) in full.iter_mut().zip(partial).zip(heights) {
+                    let middle = 0.5 * (*full + partial);
+                    let share = (height - middle) / (partial - *full).max(self.least_penumbra_m) + 0.5;
+                    *full = if share < 1.0 { share.max(0.0) } else { 1.0 };
+                }
+            },
+        );
         full
     }
 }
