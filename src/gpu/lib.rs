@@ -28,6 +28,7 @@ pub mod live;
 mod materials;
 mod memory;
 mod merged_vertex;
+pub mod painting;
 mod parts;
 pub mod pass_timer;
 mod passes;
