@@ -35,8 +35,9 @@ pub struct PatchTriangles {
 /// A part of a draped feature within a patch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrapedPiece {
-    /// Vertices in world space, and triangles.
-    pub mesh: DrawMesh,
+    /// Vertices in world space, and triangles; the same memory as long as it is not cut again, so that a renderer sends it
+    /// once.
+    pub mesh: Arc<DrawMesh>,
     /// A material of the draw list that was loaded last.
     pub material: MaterialId,
     /// The order among the features draped on the ground.

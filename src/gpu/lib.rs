@@ -18,6 +18,8 @@
 //! instance, all of a scene at most two gibibytes.
 
 pub mod adapter;
+mod culling;
+mod draped_vertex;
 pub mod error;
 mod formats;
 mod frame;
@@ -28,6 +30,7 @@ pub mod live;
 mod materials;
 mod memory;
 mod merged_vertex;
+pub mod painting;
 mod parts;
 pub mod pass_timer;
 mod passes;
@@ -37,6 +40,8 @@ mod pipelines;
 mod plan;
 pub mod readback;
 mod shadow;
+mod tiled_picture;
+mod tiles;
 mod uniforms;
 mod windows;
 

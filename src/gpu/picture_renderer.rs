@@ -1,12 +1,16 @@
 //! Pictures on a device that stays open: what one picture needs and the next does too is made once.
 //!
+//! A picture that is larger than a texture may be is drawn in tiles (`tiles`): while the adapter draws one, the processor reads the
+//! one before.
+//!
 //! The device, the shaders and their pipelines stay, the textures that are drawn to, and the ground map as long as its scene
 //! has it. Materials, items and shadow maps are those of each picture, and are sent anew.
 
 use std::sync::{Arc, Weak};
 
 use crate::adapter::Gpu;
-use crate::error::GpuError;
+use crate::culling::seen_items;
+use crate::error::{DriverError, GpuError};
 use crate::formats::{COLOR, FEATURE};
 use crate::frame::{FrameGroup, FrameTextures};
 use crate::geometry::GpuGeometry;
@@ -19,8 +23,10 @@ use crate::passes::{PassStage, PassViews, ScenePass};
 use crate::pipeline_key::PipelineKey;
 use crate::pipelines::{GpuPass, PassTarget, Pipelines, shader};
 use crate::plan::Plan;
-use crate::readback::Targets;
+use crate::readback::{DrawnTile, Targets};
 use crate::shadow::{ShadowTextures, ShadowView};
+use crate::tiled_picture::TiledPicture;
+use crate::tiles::{PictureTile, PictureTiles};
 use crate::uniforms::{FrameScene, FrameUniforms};
 use sandtable_draw::ground::GroundMap;
 use sandtable_draw::list::DrawList;
@@ -37,6 +43,8 @@ pub struct PictureRenderer {
     features: Pipelines,
     targets: Option<KeptTargets>,
     ground: Option<KeptGround>,
+    /// The longest side of a tile in pixels.
+    longest_tile: u32,
 }
 
 /// The textures that the picture before was drawn to.
@@ -70,8 +78,14 @@ impl PictureRenderer {
             };
             let colors = pipelines(GpuPass::Color, COLOR, gpu.samples);
             let features = pipelines(GpuPass::Feature, FEATURE, 1);
-            Ok(Self { gpu: gpu.clone(), layouts, colors, features, targets: None, ground: None })
+            let (gpu, longest_tile) = (gpu.clone(), gpu.longest_side());
+            Ok(Self { gpu, layouts, colors, features, targets: None, ground: None, longest_tile })
         })
+    }
+
+    /// Lets tiles of pictures be no larger than `longest_px` pixels a side, where the adapter allows for more.
+    pub fn limit_tiles(&mut self, longest_px: u32) {
+        self.longest_tile = longest_px.clamp(1, self.gpu.longest_side());
     }
 
     /// The picture of `list` as `camera` sees it. `progress` is called with the name of each step as it begins.
@@ -87,7 +101,8 @@ impl PictureRenderer {
         list.check()?;
         let gpu = self.gpu.clone();
         let places = TexturePlaces::new(list, TextureScope::Items, &gpu.limits);
-        let plan = Plan::new(list, &places, |_| true);
+        let is_seen = seen_items(list, camera);
+        let plan = Plan::new(list, &places, |item| is_seen[item]);
         progress("casting shadows");
         let shadows = Shadows::new(list, camera)?;
         let has_shadows = [&shadows.sun, &shadows.sky].map(Option::is_some);
@@ -101,7 +116,8 @@ impl PictureRenderer {
         })?;
         progress("sending the scene");
         let ground = self.ground.take().filter(|ground| ground.is_of(list.ground.as_ref()));
-        let targets = self.targets.take().filter(|targets| targets.textures.size() == camera.size());
+        let tiles = PictureTiles::new(camera.size(), self.longest_tile);
+        let targets = self.targets.take().filter(|targets| targets.textures.size() == tiles.tile_size());
         let loaded = gpu.guarded("loading the scene", || {
             let loader = Loader::new(&gpu);
             let targets = match targets {
@@ -110,7 +126,7 @@ impl PictureRenderer {
                     targets
                 }
                 None => {
-                    let textures = Targets::new(&loader, camera.size())?;
+                    let textures = Targets::new(&loader, tiles.tile_size())?;
                     KeptTargets { textures, bytes: loader.taken() }
                 }
             };
@@ -132,40 +148,75 @@ impl PictureRenderer {
             let row_bits = row_bits(gpu.limits.max_texture_dimension_2d);
             let map = list.ground.as_deref();
             let scene = FrameScene { ground: map, windows: &[], lighting: &list.lighting, shadows, row_bits };
-            frame.write(&gpu, &FrameUniforms::new(scene, camera));
+            let constants = FrameUniforms::new(scene, camera);
             let materials = GpuMaterials::upload(&loader, &self.layouts, list, &places)?;
             let geometry = GpuGeometry::upload(&loader, list, &plan, Some(camera))?;
-            Ok((targets, ground, frame, materials, geometry))
+            Ok((targets, ground, frame, constants, materials, geometry))
         });
-        let (targets, ground, frame, materials, geometry) = loaded?;
+        let (targets, ground, frame, constants, materials, geometry) = loaded?;
         progress("drawing on the adapter");
+        let scene = PictureScene { frame, constants, materials, geometry, plan, parts };
         let picture = gpu.guarded("drawing the picture", || {
-            let mut encoder = gpu.encoder("picture");
-            let is_multisampled = gpu.samples > 1;
-            let [samples, resolved, sample_depth, seen, depth] = targets.textures.all().map(view);
-            let colors = PassViews {
-                stage: PassStage::Whole,
-                label: "colors",
-                color: if is_multisampled { &samples } else { &resolved },
-                resolved: is_multisampled.then_some(&resolved),
-                depth: &sample_depth,
-                timer: None,
-            };
-            let mut pass = ScenePass::new(colors.begin(&mut encoder, &frame.group), &self.colors, &materials);
-            pass.sky();
-            pass.draw(&geometry, plan.color.iter().chain(plan.transparent(camera)), parts);
-            drop(pass);
-            let features =
-                PassViews { label: "features", color: &seen, resolved: None, depth: &depth, ..colors };
-            let mut pass =
-                ScenePass::new(features.begin(&mut encoder, &frame.group), &self.features, &materials);
-            pass.draw(&geometry, &plan.features, parts);
-            drop(pass);
-            targets.textures.read(&gpu, encoder, progress)
+            let mut picture = TiledPicture::new(camera.size());
+            let mut before: Option<(PictureTile, DrawnTile)> = None;
+            for tile in tiles.tiles() {
+                let drawn = self.draw_tile(&scene, &targets.textures, camera, tile)?;
+                if let Some((tile, drawn)) = before.replace((tile, drawn)) {
+                    picture.add(tile, drawn.read(&gpu, progress)?);
+                }
+            }
+            if let Some((tile, drawn)) = before {
+                picture.add(tile, drawn.read(&gpu, progress)?);
+            }
+            picture
+                .whole()
+                .ok_or_else(|| gpu.driver_error("reading the picture back", DriverError::TooFewPixels))
         })?;
         (self.targets, self.ground) = (Some(targets), Some(ground));
         Ok(picture)
     }
+
+    /// Submits the drawing of a tile to textures of its size.
+    fn draw_tile(
+        &self,
+        scene: &PictureScene,
+        targets: &Targets,
+        camera: &Camera,
+        tile: PictureTile,
+    ) -> Result<DrawnTile, GpuError> {
+        let (gpu, PictureScene { frame, materials, geometry, plan, parts, .. }) = (&self.gpu, scene);
+        frame.write(gpu, &scene.constants.in_tile(tile.projection(camera.size())));
+        let mut encoder = gpu.encoder("picture");
+        let is_multisampled = gpu.samples > 1;
+        let [samples, resolved, sample_depth, seen, depth] = targets.all().map(view);
+        let colors = PassViews {
+            stage: PassStage::Whole,
+            label: "colors",
+            color: if is_multisampled { &samples } else { &resolved },
+            resolved: is_multisampled.then_some(&resolved),
+            depth: &sample_depth,
+            timer: None,
+        };
+        let mut pass = ScenePass::new(colors.begin(&mut encoder, &frame.group), &self.colors, materials);
+        pass.sky();
+        pass.draw(geometry, plan.color.iter().chain(plan.transparent(camera)), *parts);
+        drop(pass);
+        let features = PassViews { label: "features", color: &seen, resolved: None, depth: &depth, ..colors };
+        let mut pass = ScenePass::new(features.begin(&mut encoder, &frame.group), &self.features, materials);
+        pass.draw(geometry, &plan.features, *parts);
+        drop(pass);
+        targets.submit(gpu, encoder)
+    }
+}
+
+/// A scene on the device, for one picture.
+struct PictureScene {
+    frame: FrameGroup,
+    constants: FrameUniforms,
+    materials: GpuMaterials,
+    geometry: GpuGeometry,
+    plan: Plan,
+    parts: ShaderParts,
 }
 
 impl KeptGround {

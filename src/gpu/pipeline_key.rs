@@ -25,6 +25,8 @@ pub enum DepthRule {
 pub enum VertexSource {
     /// Many items, in world space.
     Merged,
+    /// What lies on patches of ground, in world space.
+    Draped,
     /// A mesh, placed by instances.
     Placed,
     /// Positions of bare ground.

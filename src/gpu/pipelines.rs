@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::adapter::{Gpu, GpuApi};
+use crate::draped_vertex::DrapedVertex;
 use crate::formats::DEPTH;
 use crate::layouts::Layouts;
 use crate::merged_vertex::MergedVertex;
@@ -47,6 +48,15 @@ const MERGED_BUFFERS: [Option<wgpu::VertexBufferLayout>; 1] = [Some(wgpu::Vertex
     step_mode: wgpu::VertexStepMode::Vertex,
     attributes: &wgpu::vertex_attr_array![
         0 => Float32x3, 1 => Float32x3, 2 => Float32x2, 3 => Unorm8x4, 4 => Uint32, 5 => Uint32,
+    ],
+})];
+
+/// Corners of what lies on the ground.
+const DRAPED_BUFFERS: [Option<wgpu::VertexBufferLayout>; 1] = [Some(wgpu::VertexBufferLayout {
+    array_stride: size_of::<DrapedVertex>() as u64,
+    step_mode: wgpu::VertexStepMode::Vertex,
+    attributes: &wgpu::vertex_attr_array![
+        0 => Float32x3, 1 => Float32x2, 2 => Unorm16x4, 3 => Snorm8x4, 4 => Uint32,
     ],
 })];
 
@@ -173,6 +183,7 @@ impl Pipelines {
         };
         let (vertex, buffers) = match key.source {
             VertexSource::Merged => ("merged_vertex", &MERGED_BUFFERS[..]),
+            VertexSource::Draped => ("draped_vertex", &DRAPED_BUFFERS[..]),
             VertexSource::Placed => ("placed_vertex", &PLACED_BUFFERS[..]),
             VertexSource::Patch if key.rule == DepthRule::DepthOnly => ("patch_depth", &PATCH_BUFFERS[..]),
             VertexSource::Patch => ("patch_vertex", &PATCH_BUFFERS[..]),
@@ -282,6 +293,7 @@ mod tests {
             names,
             [
                 "merged_vertex",
+                "draped_vertex",
                 "placed_vertex",
                 "patch_vertex",
                 "patch_depth",

@@ -10,18 +10,23 @@
 //! opaque ones with an alpha of one, so that the order of the list is all that counts: thousands of roads with their
 //! markings are one call.
 //!
+//! A window's plan has its solids in groups of neighbors (`culling`), whose order in depth the depth rule alone decides.
+//!
 //! Items of a mesh of their own are copied into one buffer, in the list's order and in world space, so that those that
 //! follow each other there are drawn at once. A mesh at many places is drawn once with an instance a place.
 
 use std::ops::Range;
 
 use glam::Vec3;
+use rayon::prelude::*;
 
+use crate::culling::{CullingView, GroupId, ItemCells, ItemGroup, mesh_bounds, placed_bounds};
 use crate::materials::{ArrayId, TexturePlaces};
 use crate::parts::ShaderParts;
 use crate::pipeline_key::{DepthRule, PipelineKey, VertexSource};
 use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, MeshId};
 use sandtable_draw::material::AlphaMode;
+use sandtable_geom::aabb::Aabb;
 use sandtable_view::camera::Camera;
 
 /// The most triangles that one merged buffer holds: 72 MiB at the most, where no two triangles share a corner. Larger
@@ -47,6 +52,8 @@ pub struct DrawCall {
     rule: DepthRule,
     two_sided: bool,
     masked: bool,
+    /// The group of what it draws; `None` in a plan without groups.
+    group: Option<GroupId>,
 }
 
 /// A range of an item's triangles in a merged buffer; parts lie there one after the other.
@@ -67,15 +74,20 @@ pub struct Plan {
     pub merged: Vec<MergedPart>,
     /// The items that instances place, in order.
     pub placed: Vec<usize>,
+    /// The groups that are drawn or left out together.
+    groups: Vec<ItemGroup>,
     transparent: Vec<TransparentCall>,
 }
 
-/// A transparent solid and the middle of its bounds in world space.
+/// A transparent solid and what it takes up.
 #[derive(Debug)]
 struct TransparentCall {
-    center: Vec3,
+    place: ItemGroup,
     call: DrawCall,
 }
+
+/// What calls must share to follow each other in a sorted plan.
+type SortKey = (bool, ArrayId, bool, bool, ShaderParts);
 
 impl DrawCall {
     /// The key of its pipeline in a picture that has the parts `picture`.
@@ -95,13 +107,32 @@ impl DrawCall {
         let is_alike = (self.rule, self.two_sided, self.masked) == (next.rule, next.two_sided, next.masked);
         let array = self.array.max(next.array);
         let shares_array = [self.array, next.array].iter().all(|&own| own == array || own == ArrayId::NONE);
-        match (&mut self.shape, &next.shape) {
+        // What is seen in one frame and not in the next must not need another pipeline.
+        let is_same = self.group.is_none() || (self.array, self.parts) == (next.array, next.parts);
+        let joins = is_alike && shares_array && is_same && self.shape.extend(&next.shape);
+        if joins {
+            self.array = array;
+            self.parts = self.parts.with(next.parts);
+        }
+        joins
+    }
+}
+
+impl DrawShape {
+    /// Adds `next` if it goes on where this one ends.
+    fn extend(&mut self, next: &Self) -> bool {
+        match (self, next) {
+            (Self::Merged { chunk, indices }, Self::Merged { chunk: next_chunk, indices: added })
+                if *chunk == *next_chunk && indices.end == added.start =>
+            {
+                indices.end = added.end;
+                true
+            }
             (
-                DrawShape::Merged { chunk, indices },
-                DrawShape::Merged { chunk: next_chunk, indices: added },
-            ) if is_alike && shares_array && chunk == next_chunk && indices.end == added.start => {
-                (indices.end, self.array) = (added.end, array);
-                self.parts = self.parts.with(next.parts);
+                Self::Placed { mesh, indices, instances },
+                Self::Placed { mesh: next_mesh, indices: next_indices, instances: added },
+            ) if (*mesh, &*indices) == (*next_mesh, next_indices) && instances.end == added.start => {
+                instances.end = added.end;
                 true
             }
             _ => false,
@@ -110,38 +141,117 @@ impl DrawCall {
 }
 
 impl Plan {
-    /// The plan for those items of a checked list whose layer is among `layers`; items without triangles are left out.
-    pub fn new(list: &DrawList, places: &TexturePlaces, layers: impl Fn(DepthLayer) -> bool) -> Self {
+    /// The plan for those items of a checked list that are `wanted`; items without triangles are left out.
+    pub fn new(list: &DrawList, places: &TexturePlaces, wanted: impl Fn(usize) -> bool) -> Self {
         let mut plan = Self::default();
         let mut end = MergedEnd::default();
-        for run in list.runs() {
-            let item = &list.items[run.start];
-            if item.triangles.is_empty() || !layers(item.layer) {
-                continue;
-            }
-            if run.len() > 1 {
-                plan.place(list, places, run);
-                continue;
-            }
-            let mut left = item.triangles.clone();
-            while !left.is_empty() {
-                let (shape, triangles) = end.take(&left);
-                left.start = triangles.end;
-                let DrawShape::Merged { chunk, .. } = shape else { continue };
-                plan.merged.push(MergedPart { chunk, item: run.start, triangles });
-                plan.add(list, places, run.start, shape);
+        for run in list.runs().filter(|run| !list.items[run.start].triangles.is_empty()) {
+            let is_alone = run.len() == 1;
+            let run: Vec<usize> = run.filter(|item| wanted(*item)).collect();
+            match run[..] {
+                [item] if is_alone => plan.merge(list, places, (item, None), &mut end),
+                _ => plan.place(list, places, &run, None),
             }
         }
         plan
     }
 
+    /// The plan for the solids of a checked list, in groups of neighbors of which a frame draws those that it sees.
+    pub fn of_solids(list: &DrawList, places: &TexturePlaces) -> Self {
+        let mut plan = Self::default();
+        let is_drawn = |item: &DrawItem| item.layer == DepthLayer::Solid && !item.triangles.is_empty();
+        let runs: Vec<Range<usize>> = list.runs().filter(|run| is_drawn(&list.items[run.start])).collect();
+        let bounds: Vec<Vec<Aabb>> = runs
+            .par_iter()
+            .map(|run| {
+                let of_mesh = mesh_bounds(list, &list.items[run.start]);
+                list.items[run.clone()].iter().map(|item| placed_bounds(item, &of_mesh)).collect()
+            })
+            .collect();
+        let cells = ItemCells::new(bounds.iter().flatten());
+        let mut alone: Vec<(SortKey, u32, usize, Aabb)> = Vec::new();
+        for (run, bounds) in runs.into_iter().zip(bounds) {
+            if let (1, Some(bounds)) = (run.len(), bounds.first()) {
+                alone.push((sort_key(list, places, run.start), cells.of(bounds), run.start, *bounds));
+                continue;
+            }
+            let mut placed: Vec<(u32, usize, Aabb)> =
+                run.zip(bounds).map(|(item, bounds)| (cells.of(&bounds), item, bounds)).collect();
+            placed.sort_by_key(|(cell, ..)| *cell);
+            for cell in placed.chunk_by(|one, next| one.0 == next.0) {
+                let group = plan.group(cell.iter().map(|(_, _, bounds)| *bounds));
+                let items: Vec<usize> = cell.iter().map(|(_, item, _)| *item).collect();
+                plan.place(list, places, &items, Some(group));
+            }
+        }
+        alone.sort_by_key(|(key, cell, ..)| (*key, *cell));
+        let mut end = MergedEnd::default();
+        for cell in alone.chunk_by(|one, next| (one.0, one.1) == (next.0, next.1)) {
+            let group = plan.group(cell.iter().map(|(.., bounds)| *bounds));
+            for (_, _, item, _) in cell {
+                plan.merge(list, places, (*item, Some(group)), &mut end);
+            }
+        }
+        plan
+    }
+
+    /// The calls for the color that `camera` needs of a plan with groups, in order.
+    pub fn seen(&self, camera: &Camera) -> Vec<DrawCall> {
+        let view = CullingView::new(camera);
+        let is_seen: Vec<bool> = self.groups.iter().map(|group| view.shows(group)).collect();
+        let shows = |call: &&DrawCall| call.group.is_none_or(|GroupId(group)| is_seen[group as usize]);
+        let mut calls: Vec<DrawCall> = Vec::new();
+        for call in self.color.iter().filter(shows) {
+            if calls.last_mut().is_none_or(|last| !last.join(call)) {
+                calls.push(call.clone());
+            }
+        }
+        let transparent = self.transparent_in(camera, |call| view.shows(&call.place));
+        for call in transparent {
+            if calls.last_mut().is_none_or(|last| !last.join(call)) {
+                calls.push(call.clone());
+            }
+        }
+        calls
+    }
+
     /// The transparent solids for the color, the farthest first; equally far ones keep the list's order.
     pub fn transparent(&self, camera: &Camera) -> Vec<&DrawCall> {
+        self.transparent_in(camera, |_| true)
+    }
+
+    fn transparent_in(&self, camera: &Camera, shows: impl Fn(&TransparentCall) -> bool) -> Vec<&DrawCall> {
         let depth_m = |center: Vec3| (center - camera.eye()).dot(camera.forward());
+        let shown = self.transparent.iter().filter(|call| shows(call));
         let mut order: Vec<(f32, &DrawCall)> =
-            self.transparent.iter().map(|each| (depth_m(each.center), &each.call)).collect();
+            shown.map(|each| (depth_m(each.place.bounds.center()), &each.call)).collect();
         order.sort_by(|(a, _), (b, _)| b.total_cmp(a));
         order.into_iter().map(|(_, call)| call).collect()
+    }
+
+    /// Adds a group of items with these boxes.
+    fn group(&mut self, bounds: impl Iterator<Item = Aabb>) -> GroupId {
+        let group = bounds.map(ItemGroup::of).reduce(ItemGroup::with);
+        self.groups.push(group.unwrap_or_else(|| ItemGroup::of(Aabb::default())));
+        GroupId(self.groups.len() as u32 - 1)
+    }
+
+    /// Adds an item of a mesh of its own, of a group.
+    fn merge(
+        &mut self,
+        list: &DrawList,
+        places: &TexturePlaces,
+        (item, group): (usize, Option<GroupId>),
+        end: &mut MergedEnd,
+    ) {
+        let mut left = list.items[item].triangles.clone();
+        while !left.is_empty() {
+            let (shape, triangles) = end.take(&left);
+            left.start = triangles.end;
+            let DrawShape::Merged { chunk, .. } = shape else { continue };
+            self.merged.push(MergedPart { chunk, item, triangles });
+            self.add(list, places, (item, group), shape);
+        }
     }
 
     /// The keys of all calls for the color in a picture that has the parts `picture`, and of all for the features.
@@ -151,25 +261,32 @@ impl Plan {
         [color.collect(), self.features.iter().map(|call| call.key(picture)).collect()]
     }
 
-    /// Adds a run of items of one mesh.
-    fn place(&mut self, list: &DrawList, places: &TexturePlaces, run: Range<usize>) {
-        let item = &list.items[run.start];
+    /// Adds items of one mesh, which are of a run and of a group.
+    fn place(&mut self, list: &DrawList, places: &TexturePlaces, run: &[usize], group: Option<GroupId>) {
+        let Some(&start) = run.first() else { return };
+        let item = &list.items[start];
         let first = self.placed.len() as u32;
-        self.placed.extend(run.clone());
+        self.placed.extend(run);
         let indices = item.triangles.start * 3..item.triangles.end * 3;
         let shape = |instances| DrawShape::Placed { mesh: item.mesh, indices: indices.clone(), instances };
         let is_transparent = list.materials[item.material.0 as usize].alpha == AlphaMode::Blend;
         if is_transparent && item.layer == DepthLayer::Solid {
-            for (instance, index) in (first..).zip(run) {
-                self.add(list, places, index, shape(instance..instance + 1));
+            for (instance, &index) in (first..).zip(run) {
+                self.add(list, places, (index, group), shape(instance..instance + 1));
             }
         } else {
-            self.add(list, places, run.start, shape(first..first + run.len() as u32));
+            self.add(list, places, (start, group), shape(first..first + run.len() as u32));
         }
     }
 
     /// Adds what `shape` draws of an item, or of a run that it is the first of.
-    fn add(&mut self, list: &DrawList, places: &TexturePlaces, index: usize, shape: DrawShape) {
+    fn add(
+        &mut self,
+        list: &DrawList,
+        places: &TexturePlaces,
+        (index, group): (usize, Option<GroupId>),
+        shape: DrawShape,
+    ) {
         let item = &list.items[index];
         let material = &list.materials[item.material.0 as usize];
         let is_draped = matches!(item.layer, DepthLayer::Draped(_));
@@ -178,22 +295,25 @@ impl Plan {
         let (array, two_sided) = (places.array_of(item.material), material.two_sided);
         let masked = matches!(material.alpha, AlphaMode::Mask(_));
         let parts = ShaderParts::of_material(material);
-        let color = DrawCall { shape, array, parts, rule, two_sided, masked };
+        let color = DrawCall { shape, array, parts, rule, two_sided, masked, group };
         // An opaque surface hides what is behind it, whatever its texture.
         let array = if material.alpha == AlphaMode::Opaque { ArrayId::NONE } else { array };
         let feature = DrawCall { array, parts: ShaderParts::NONE, masked: false, ..color.clone() };
         push(&mut self.features, feature);
         if is_transparent {
             let call = DrawCall { rule: DepthRule::Blend, ..color };
-            self.transparent.push(TransparentCall { center: center_of(list, item), call });
+            let place = ItemGroup::of(placed_bounds(item, &mesh_bounds(list, item)));
+            self.transparent.push(TransparentCall { place, call });
         } else {
             push(&mut self.color, color);
         }
     }
 }
 
+/// Adds a call; calls of different groups stay apart.
 fn push(calls: &mut Vec<DrawCall>, call: DrawCall) {
-    if calls.last_mut().is_none_or(|last| !last.join(&call)) {
+    let joins = |last: &mut DrawCall| last.group == call.group && last.join(&call);
+    if !calls.last_mut().is_some_and(joins) {
         calls.push(call);
     }
 }
@@ -219,16 +339,14 @@ impl MergedEnd {
     }
 }
 
-/// The center of the bounds of what `item` draws, in world space.
-fn center_of(list: &DrawList, item: &DrawItem) -> Vec3 {
-    let mesh = &list.meshes[item.mesh.0 as usize];
-    let Range { start, end } = item.triangles;
-    let corners = mesh.triangles[start as usize..end as usize].iter().flatten();
-    let (min, max) = corners.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), id| {
-        let at = Vec3::from_array(mesh.vertices[id.index()].position);
-        (min.min(at), max.max(at))
-    });
-    item.world_from_mesh.transform_point3((min + max) * 0.5)
+/// What an item shares with those that are drawn alike.
+fn sort_key(list: &DrawList, places: &TexturePlaces, item: usize) -> SortKey {
+    let id = list.items[item].material;
+    let material = &list.materials[id.0 as usize];
+    let (is_transparent, is_masked) =
+        (material.alpha == AlphaMode::Blend, matches!(material.alpha, AlphaMode::Mask(_)));
+    let parts = ShaderParts::of_material(material);
+    (is_transparent, places.array_of(id), material.two_sided, is_masked, parts)
 }
 
 #[cfg(test)]
@@ -350,7 +468,46 @@ mod tests {
         assert_eq!(items, [vec![0, 1, 2], vec![3], vec![4]]);
         let plan = plan(&list);
         let features: Vec<Vec<usize>> = plan.features.iter().map(|call| items_of(&plan, call)).collect();
-        assert_eq!(features, [vec![0, 1, 2], vec![3], vec![4]]);
+        assert_eq!(features, [vec![0, 1, 2], vec![3, 4]]);
+    }
+
+    #[test]
+    fn solids_that_are_not_seen_are_not_drawn_and_neighbors_are_one_call() {
+        use AlphaMode::{Blend, Opaque};
+        let solid = |alpha, y| (DepthLayer::Solid, alpha, y);
+        // Two cells ahead, two behind, glass on both sides.
+        let mut list = list(&[
+            solid(Opaque, -40.0),
+            solid(Opaque, 60.0),
+            solid(Blend, 30.0),
+            solid(Opaque, 40.0),
+            solid(Blend, -30.0),
+            solid(Opaque, -60.0),
+        ]);
+        let tree = list.items[1].clone();
+        let trees = [-50.0, 50.0, 20.0, -20.0].map(|y| {
+            let world_from_mesh = Mat4::from_translation(Vec3::new(0.5, y, 0.0));
+            DrawItem { world_from_mesh, ..tree.clone() }
+        });
+        list.items.extend(trees);
+        let places = TexturePlaces::new(&list, TextureScope::Items, &wgpu::Limits::default());
+        let plan = Plan::of_solids(&list, &places);
+        let seen = |toward: Vec3| -> Vec<Vec<usize>> {
+            let camera = Camera::new(Vec3::ZERO, toward, 1.0, (800, 800), (0.1, 100.0)).expect("sound");
+            let calls = plan.seen(&camera);
+            let mut items: Vec<Vec<usize>> = calls.iter().map(|call| items_of(&plan, call)).collect();
+            items.iter_mut().for_each(|items| items.sort_unstable());
+            items.sort();
+            items
+        };
+        assert_eq!(seen(Vec3::Y), [vec![1, 3], vec![2], vec![7, 8]]);
+        assert_eq!(seen(-Vec3::Y), [vec![0, 5], vec![4], vec![6, 9]]);
+        let keys = |calls: &[DrawCall]| -> Vec<PipelineKey> {
+            calls.iter().map(|call| call.key(ShaderParts::NONE)).collect()
+        };
+        let camera = Camera::new(Vec3::ZERO, Vec3::Y, 1.0, (800, 800), (0.1, 100.0)).expect("sound");
+        let [made, _] = plan.keys(ShaderParts::NONE);
+        assert!(keys(&plan.seen(&camera)).iter().all(|key| made.contains(key)), "made before they are seen");
     }
 
     #[test]

@@ -71,28 +71,35 @@ impl Targets {
         (self.color.width(), self.color.height())
     }
 
-    /// Submits commands that draw to the textures, and reads what they drew.
-    pub fn read(
-        &self,
-        gpu: &Gpu,
-        mut encoder: wgpu::CommandEncoder,
-        progress: &dyn Fn(&'static str),
-    ) -> Result<Rendering, GpuError> {
+    /// Submits commands that draw to the textures, and then the copying of what they drew.
+    pub fn submit(&self, gpu: &Gpu, mut encoder: wgpu::CommandEncoder) -> Result<DrawnTile, GpuError> {
         let color = TextureCopy::record(gpu, &mut encoder, &self.color)?;
         let feature = TextureCopy::record(gpu, &mut encoder, &self.feature)?;
-        gpu.queue.submit([encoder.finish()]);
-        let picture = || {
-            wait(gpu, &[&color, &feature])?;
-            progress("reading the picture back");
-            self.picture(&color, &feature)
-        };
-        picture().map_err(|error| gpu.driver_error("reading the picture back", error))
+        let submission = gpu.queue.submit([encoder.finish()]);
+        Ok(DrawnTile { color, feature, size: self.size(), submission })
     }
+}
 
-    fn picture(&self, color: &TextureCopy, feature: &TextureCopy) -> Result<Rendering, DriverError> {
-        let pixels = color.pixels(self.size())?;
-        let (features, depth_m) = feature.texels::<8>()?.into_iter().map(feature_and_depth).unzip();
-        Ok(Rendering { pixels, depth_m, features })
+/// What was drawn to the textures, on its way back.
+pub(crate) struct DrawnTile {
+    color: TextureCopy,
+    feature: TextureCopy,
+    size: (u32, u32),
+    submission: wgpu::SubmissionIndex,
+}
+
+impl DrawnTile {
+    /// Waits until it is drawn, and reads it. What was submitted after it may still be drawn.
+    pub fn read(self, gpu: &Gpu, progress: &dyn Fn(&'static str)) -> Result<Rendering, GpuError> {
+        let Self { color, feature, size, submission } = self;
+        let read = || -> Result<Rendering, DriverError> {
+            wait(gpu, &[&color, &feature], Some(submission))?;
+            progress("reading the picture back");
+            let pixels = color.pixels(size)?;
+            let (features, depth_m) = feature.texels::<8>()?.into_iter().map(feature_and_depth).unzip();
+            Ok(Rendering { pixels, depth_m, features })
+        };
+        read().map_err(|error| gpu.driver_error("reading the picture back", error))
     }
 }
 
@@ -106,15 +113,19 @@ pub fn read_pixels(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Pixels, GpuErro
         let copy = TextureCopy::record(gpu, &mut encoder, texture)?;
         gpu.queue.submit([encoder.finish()]);
         let read = || -> Result<Pixels, DriverError> {
-            wait(gpu, &[&copy])?;
+            wait(gpu, &[&copy], None)?;
             copy.pixels((texture.width(), texture.height()))
         };
         read().map_err(|error| gpu.driver_error("reading a frame back", error))
     })
 }
 
-/// Waits until the processor can read `copies`.
-pub(crate) fn wait(gpu: &Gpu, copies: &[&TextureCopy]) -> Result<(), DriverError> {
+/// Waits until the processor can read `copies`, which were submitted then, or before now.
+pub(crate) fn wait(
+    gpu: &Gpu,
+    copies: &[&TextureCopy],
+    submission_index: Option<wgpu::SubmissionIndex>,
+) -> Result<(), DriverError> {
     let (sender, mapped) = mpsc::channel();
     for copy in copies {
         let sender = sender.clone();
@@ -124,7 +135,7 @@ pub(crate) fn wait(gpu: &Gpu, copies: &[&TextureCopy]) -> Result<(), DriverError
         });
     }
     drop(sender);
-    gpu.device.poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(TIMEOUT) })?;
+    gpu.device.poll(wgpu::PollType::Wait { submission_index, timeout: Some(TIMEOUT) })?;
     for _ in copies {
         mapped.recv().map_err(|_| DriverError::Crash)??;
     }

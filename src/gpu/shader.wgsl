@@ -15,6 +15,8 @@ struct Frame {
     up: vec4f,            // xyz, the same of the vertical field of view, or of the height
     forward: vec4f,       // xyz
     depth: vec4f,         // A, B of the depth buffer; width and height of the picture
+    tile: vec4f,          // clip coordinates of the picture in those of the tile: factors, what is added per unit of w
+    tile_first: vec4f,    // column and row of the tile's first pixel in the picture
     to_sun: vec4f,        // xyz
     sun: vec4f,           // rgb
     sky: vec4f,           // rgb
@@ -167,6 +169,11 @@ fn linear_from_srgb(value: vec3f) -> vec3f {
     return select(high, low, value <= vec3f(0.04045));
 }
 
+// A corner's clip coordinates in the whole picture as those in the tile that is drawn.
+fn in_tile(across: vec2f, w: f32) -> vec2f {
+    return across * frame.tile.xy + frame.tile.zw * w;
+}
+
 fn is_parallel() -> bool {
     return frame.eye.w > 0.5;
 }
@@ -186,7 +193,8 @@ fn projected(world: vec3f) -> Varying {
     let raised = (nearer - 1.0) * PARALLEL_NEARER;
     let parallel = vec2f(frame.depth.x - frame.depth.y * depth + raised, 1.0);
     let central = vec2f(frame.depth.x * nearer - frame.depth.y * depth, depth);
-    out.clip = vec4f(across, select(central, parallel, is_parallel()));
+    let depth_and_w = select(central, parallel, is_parallel());
+    out.clip = vec4f(in_tile(across, depth_and_w.y), depth_and_w);
     out.world = world;
     return out;
 }
@@ -205,6 +213,25 @@ fn with_surface(seen: Varying, normal: vec3f, corner: Corner, owner: Owner) -> V
 @vertex
 fn merged_vertex(corner: Corner, owner: Owner) -> Varying {
     return with_surface(projected(corner.position), corner.normal, corner, owner);
+}
+
+// Corners of what lies on the ground.
+struct Draped {
+    @location(0) position: vec3f,
+    @location(1) uv: vec2f,
+    @location(2) color: vec4f, // linear
+    @location(3) normal: vec4f,
+    @location(4) material: u32,
+}
+
+@vertex
+fn draped_vertex(corner: Draped) -> Varying {
+    var out = projected(corner.position);
+    out.normal = corner.normal.xyz;
+    out.uv = corner.uv;
+    out.color = corner.color;
+    out.material = corner.material;
+    return out;
 }
 
 // Corners of a mesh that is drawn at many places.
@@ -739,7 +766,7 @@ fn texture_at(uv: vec2f) -> vec4f {
 fn surface(in: Varying) -> vec4f {
     var texel = texture_at(in.uv);
     if (material.flags.x & HATCHING) != 0u {
-        return vec4f(material.base_color.rgb, material.base_color.a * hatching_cover(in.clip.xy));
+        return vec4f(material.base_color.rgb, material.base_color.a * hatching_cover(in.clip.xy + frame.tile_first.xy));
     }
     if !is_opaque() {
         texel = vec4f(texel.rgb / max(texel.a, 1e-4), texel.a);

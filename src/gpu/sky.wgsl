@@ -3,7 +3,8 @@
 // `Frame` is declared in shader.wgsl, which this file is appended to.
 
 @fragment
-fn sky_color(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
+fn sky_color(@builtin(position) in_tile: vec4f) -> @location(0) vec4f {
+    let pixel = in_tile.xy + frame.tile_first.xy;
     let down = pixel.y / frame.depth.w;
     let studio = mix(frame.studio_top.rgb, frame.studio_bottom.rgb, down);
     let x = (pixel.x / frame.depth.z * 2.0 - 1.0) / frame.right.w;

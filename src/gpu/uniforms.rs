@@ -6,6 +6,7 @@ use glam::Vec3;
 use crate::ground::{MOST_LEVELS, levels};
 use crate::merged_vertex::SurfaceOwner;
 use crate::shadow::ShadowView;
+use crate::tiles::TileProjection;
 use crate::windows::{MOST_WINDOWS, WindowPlace};
 use sandtable_draw::backdrop::Backdrop;
 use sandtable_draw::bathymetry::{STOP_COUNT, bathymetry};
@@ -42,6 +43,8 @@ pub struct FrameUniforms {
     up: [f32; 4],
     forward: [f32; 4],
     depth: [f32; 4],
+    tile: [f32; 4],
+    tile_first: [f32; 4],
     to_sun: [f32; 4],
     sun: [f32; 4],
     sky: [f32; 4],
@@ -122,6 +125,8 @@ impl FrameUniforms {
             up: with(camera.up(), 1.0 / half.y),
             forward: with(camera.forward(), 0.0),
             depth: [depth[0], depth[1], width as f32, height as f32],
+            tile: TileProjection::WHOLE.scale_and_offset,
+            tile_first: [0.0; 4],
             to_sun: with(light.to_sun, scene.ground.map_or(1.0, |map| map.z_factor)),
             sun: with(light.sun, scene.ground.map_or(ReliefShading::GAIN, |map| map.shade_gain)),
             sky: with(light.sky, 0.0),
@@ -162,6 +167,11 @@ impl FrameUniforms {
     pub fn with_size(mut self, (width, height): (u32, u32)) -> Self {
         [self.depth[2], self.depth[3]] = [width as f32, height as f32];
         self
+    }
+
+    /// These constants for a tile of the picture.
+    pub fn in_tile(self, TileProjection { scale_and_offset, first: [x, y] }: TileProjection) -> Self {
+        Self { tile: scale_and_offset, tile_first: [x, y, 0.0, 0.0], ..self }
     }
 
     /// The constants of the ground map; all others are zero.

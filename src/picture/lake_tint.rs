@@ -15,6 +15,7 @@ use sandtable_draw::water::WaterColor;
 use sandtable_geom::distance_field::{RegionGrid, distances_m};
 use sandtable_geom::polygon;
 use sandtable_geom::rect::Rect;
+use sandtable_ribbon::plan::PlanMesh;
 use sandtable_ribbon::texture::RibbonSurface;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::water_shore::OPEN_SHARE;
@@ -112,12 +113,22 @@ pub(super) struct LakeTint {
 impl LakeTint {
     /// Lays the texture over a draped lake.
     pub fn lay_over(&self, lake: &mut DrawMesh) {
-        let (min, size) = (self.window.min, self.window.size());
         for vertex in &mut lake.vertices {
-            let at = DVec2::new(f64::from(vertex.position[0]), f64::from(vertex.position[1]));
-            let part = (at - min) / size;
-            vertex.uv = Vec2::new(part.x as f32, 1.0 - part.y as f32).to_array();
+            let [x, y, _] = vertex.position.map(f64::from);
+            vertex.uv = self.uv(DVec2::new(x, y)).to_array();
         }
+    }
+
+    /// The plan of a lake, with coordinates of this texture.
+    pub fn laid_over(&self, lake: &PlanMesh) -> PlanMesh {
+        let mut laid = lake.clone();
+        laid.vertices.iter_mut().for_each(|vertex| vertex.uv = self.uv(vertex.at));
+        laid
+    }
+
+    fn uv(&self, at: DVec2) -> Vec2 {
+        let part = (at - self.window.min) / self.window.size();
+        Vec2::new(part.x as f32, 1.0 - part.y as f32)
     }
 }
 

@@ -6,6 +6,7 @@
 //!  line symbols for a camera ► plans of a while  ─┘
 //! ```
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -110,7 +111,6 @@ pub(super) struct DrapeSheet {
 pub(super) struct SheetPlan {
     material: MaterialId,
     markings: Option<MaterialId>,
-    lake: Option<LakeTint>,
     layer: u8,
     feature: FeatureId,
 }
@@ -134,13 +134,19 @@ impl GroundSheets {
             .iter()
             .map(|ribbon| sources.get(&ribbon.feature).and_then(|symbol| tapered(ribbon, symbol)))
             .collect();
-        let plans = order.iter().map(|ribbon| {
-            let lake =
-                if ribbon.surface == RibbonSurface::Lake { lakes.remove(&ribbon.feature) } else { None };
-            sheets.ribbon(ribbon, lake)
-        });
-        let plans: Vec<SheetPlan> = plans.collect();
-        let shapes = order.iter().zip(&tapers).map(|(ribbon, taper)| taper.as_ref().unwrap_or(&ribbon.plan));
+        let mut plans = Vec::with_capacity(order.len());
+        let mut shapes: Vec<Cow<'_, PlanMesh>> = Vec::with_capacity(order.len());
+        for (ribbon, taper) in order.iter().zip(&tapers) {
+            let is_lake = ribbon.surface == RibbonSurface::Lake;
+            let lake = if is_lake { lakes.remove(&ribbon.feature) } else { None };
+            let shape = taper.as_ref().unwrap_or(&ribbon.plan);
+            shapes.push(match &lake {
+                Some(lake) => Cow::Owned(lake.laid_over(shape)),
+                None => Cow::Borrowed(shape),
+            });
+            plans.push(sheets.ribbon(ribbon, lake));
+        }
+        let shapes = shapes.iter().map(|shape| &**shape);
         sheets.ribbons = DrapeSheet { drapes: Drapes::new(&sheets.borders, shapes), plans };
         for symbol in &scene.symbols {
             sheets.material(RibbonLook::Casing(symbol.surface));
@@ -310,30 +316,25 @@ impl GroundSheets {
         for (at, mesh) in self.ribbons.drapes.in_patch(patch) {
             let plan = &self.ribbons.plans[at];
             while let Some((tint, mesh)) = tints.next_if(|_| plan.layer > GROUND_TINT_LAYER) {
-                tint.add(mesh.clone(), &mut pieces);
+                tint.add(Arc::clone(mesh), &mut pieces);
             }
             while let Some((at, mesh)) = symbols.next_if(|(at, _)| self.symbols.plans[*at].layer < plan.layer)
             {
-                self.symbols.plans[at].add(mesh.clone(), &mut pieces);
+                self.symbols.plans[at].add(Arc::clone(mesh), &mut pieces);
             }
             if self.replaced.contains(&plan.feature) {
                 continue;
             }
-            let mut mesh = mesh.clone();
-            if let Some(lake) = &plan.lake {
-                lake.lay_over(&mut mesh);
-            }
-            let markings = plan.markings.map(|material| (material, faded(&mesh, &scale)));
-            plan.add(mesh, &mut pieces);
-            if let Some((material, mesh)) = markings {
-                plan.add_with(material, mesh, &mut pieces);
+            plan.add(Arc::clone(mesh), &mut pieces);
+            if let Some(material) = plan.markings {
+                plan.add_with(material, Arc::new(faded(mesh, &scale)), &mut pieces);
             }
         }
-        tints.for_each(|(tint, mesh)| tint.add(mesh.clone(), &mut pieces));
-        symbols.for_each(|(at, mesh)| self.symbols.plans[at].add(mesh.clone(), &mut pieces));
+        tints.for_each(|(tint, mesh)| tint.add(Arc::clone(mesh), &mut pieces));
+        symbols.for_each(|(at, mesh)| self.symbols.plans[at].add(Arc::clone(mesh), &mut pieces));
         for sheet in [&self.tints, &self.seen, &self.graphics] {
             let cut = sheet.drapes.in_patch(patch);
-            cut.for_each(|(at, mesh)| sheet.plans[at].add(mesh.clone(), &mut pieces));
+            cut.for_each(|(at, mesh)| sheet.plans[at].add(Arc::clone(mesh), &mut pieces));
         }
         pieces
     }
@@ -380,25 +381,19 @@ impl GroundSheets {
 
     fn ribbon(&mut self, ribbon: &Ribbon, lake: Option<LakeTint>) -> SheetPlan {
         let is_marked = ribbon.surface != ribbon.surface.unmarked();
-        let material = match &lake {
+        let material = match lake {
             Some(lake) => {
-                let material = lake_material(&mut self.head, lake.pixels.clone());
+                let material = lake_material(&mut self.head, lake.pixels);
                 self.head.add_material(material)
             }
             None => self.material(RibbonLook::Textured(ribbon.surface.unmarked(), ribbon.tint.0)),
         };
         let markings = is_marked.then(|| self.material(RibbonLook::Markings(ribbon.surface)));
-        SheetPlan { material, markings, lake, layer: ribbon.layer, feature: ribbon.feature }
+        SheetPlan { material, markings, layer: ribbon.layer, feature: ribbon.feature }
     }
 
     fn line(&mut self, look: RibbonLook, symbol: &LineSymbol, layer: u8) -> SheetPlan {
-        SheetPlan {
-            material: self.material(look),
-            markings: None,
-            lake: None,
-            layer,
-            feature: symbol.feature,
-        }
+        SheetPlan { material: self.material(look), markings: None, layer, feature: symbol.feature }
     }
 
     fn material(&mut self, look: RibbonLook) -> MaterialId {
@@ -416,14 +411,14 @@ impl DrapeSheet {
 impl SheetPlan {
     /// A tint.
     pub(super) fn tint(material: MaterialId, layer: u8, feature: FeatureId) -> Self {
-        Self { material, markings: None, lake: None, layer, feature }
+        Self { material, markings: None, layer, feature }
     }
 
-    fn add(&self, mesh: DrawMesh, pieces: &mut Vec<DrapedPiece>) {
+    fn add(&self, mesh: Arc<DrawMesh>, pieces: &mut Vec<DrapedPiece>) {
         self.add_with(self.material, mesh, pieces);
     }
 
-    fn add_with(&self, material: MaterialId, mesh: DrawMesh, pieces: &mut Vec<DrapedPiece>) {
+    fn add_with(&self, material: MaterialId, mesh: Arc<DrawMesh>, pieces: &mut Vec<DrapedPiece>) {
         if !mesh.triangles.is_empty() {
             let layer = DepthLayer::Draped(self.layer);
             pieces.push(DrapedPiece { mesh, material, layer, feature: self.feature });

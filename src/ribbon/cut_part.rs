@@ -1,5 +1,7 @@
 //! One ribbon's part in a patch, cut to the ground triangle by triangle, so that pieces that still fit are kept.
 
+use std::sync::Arc;
+
 use crate::drape::Draper;
 use crate::plan::{PlanMesh, PlanVertex};
 use sandtable_draw::list::DrawMesh;
@@ -10,7 +12,8 @@ use sandtable_terrain::triangle_surface::TriangleSurface;
 /// A part cut to the ground.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct CutPart {
-    mesh: DrawMesh,
+    /// Shared with what shows it, which knows it by its memory.
+    mesh: Arc<DrawMesh>,
     /// The numbers of vertices and triangles in `mesh` up to the end of each triangle of the part.
     ends: Vec<[u32; 2]>,
 }
@@ -32,7 +35,7 @@ impl CutPart {
     }
 
     /// The triangles.
-    pub fn mesh(&self) -> &DrawMesh {
+    pub fn mesh(&self) -> &Arc<DrawMesh> {
         &self.mesh
     }
 
@@ -43,23 +46,20 @@ impl CutPart {
         is_stale: impl Fn([PlanVertex; 3]) -> bool,
     ) -> Self {
         let mut draper = Draper::default();
-        let mut renewed = Self {
-            mesh: DrawMesh {
-                vertices: Vec::with_capacity(self.mesh.vertices.len()),
-                triangles: Vec::with_capacity(self.mesh.triangles.len()),
-            },
-            ends: Vec::with_capacity(plan.triangles.len()),
+        let mut mesh = DrawMesh {
+            vertices: Vec::with_capacity(self.mesh.vertices.len()),
+            triangles: Vec::with_capacity(self.mesh.triangles.len()),
         };
+        let mut ends = Vec::with_capacity(plan.triangles.len());
         for (at, corners) in plan.corners().enumerate() {
             if is_stale(corners) {
-                draper.lay(corners, ground, &mut renewed.mesh);
+                draper.lay(corners, ground, &mut mesh);
             } else {
-                self.copy(at, &mut renewed.mesh);
+                self.copy(at, &mut mesh);
             }
-            let DrawMesh { vertices, triangles } = &renewed.mesh;
-            renewed.ends.push([vertices.len() as u32, triangles.len() as u32]);
+            ends.push([mesh.vertices.len() as u32, mesh.triangles.len() as u32]);
         }
-        renewed
+        Self { mesh: Arc::new(mesh), ends }
     }
 
     /// Copies what was cut of one triangle of the part.

@@ -31,6 +31,10 @@ use sandtable_terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
 /// Parts smaller than this are rounding, in square meters.
 const SLIVER_M2: f64 = 1e-7;
 
+/// The triangles after which a ribbon goes on in another part: where the ground changes, whole parts are copied and sent, and
+/// each takes some memory.
+const PART_TRIANGLES: usize = 48;
+
 /// The borders of patches: rising world X of the borders that run north, and Y of those that run east, the outermost
 /// among them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -191,8 +195,9 @@ impl Drapes {
         self.parts.in_patch(of.patch).iter().enumerate().map(cut).collect()
     }
 
-    /// The ribbons in a patch, as places among the plans given, and the cut of each; none if it was never cut.
-    pub fn in_patch(&self, patch: usize) -> impl Iterator<Item = (usize, &DrawMesh)> {
+    /// The ribbons in a patch, as places among the plans given, and the cut of each of their parts, the same memory as long as
+    /// that is not cut again; none if it was never cut.
+    pub fn in_patch(&self, patch: usize) -> impl Iterator<Item = (usize, &Arc<DrawMesh>)> {
         let cut = self.cut.get(patch).into_iter().flatten();
         self.parts.in_patch(patch).iter().zip(cut).map(|((ribbon, _), cut)| (*ribbon, cut.mesh()))
     }
@@ -215,7 +220,7 @@ impl Drapes {
     /// The largest clearance in meters between the cut features and the displayed ground: 0 but for rounding if every
     /// patch that changed was cut again. See [`check_clearance`].
     pub fn check(&self, ground: &dyn TriangleSurface) -> f64 {
-        let cut: Vec<&DrawMesh> = self.cut.iter().flatten().map(CutPart::mesh).collect();
+        let cut: Vec<&Arc<DrawMesh>> = self.cut.iter().flatten().map(CutPart::mesh).collect();
         cut.par_iter().map(|mesh| check_clearance(mesh, ground)).reduce(|| 0.0, f64::max)
     }
 
@@ -247,9 +252,11 @@ impl TriangleSurface for WindowSurface<'_> {
     }
 }
 
-/// The part that a ribbon has in a patch; ribbons are handed in one after the other.
+/// The part that the next triangle of a ribbon in a patch belongs to; ribbons are handed in one after the other.
 fn part(parts: &mut PatchParts, ribbon: usize) -> &mut PlanMesh {
-    if parts.last().is_none_or(|(last, _)| *last != ribbon) {
+    let takes_more =
+        |(last, part): &(usize, PlanMesh)| *last == ribbon && part.triangles.len() < PART_TRIANGLES;
+    if !parts.last().is_some_and(takes_more) {
         parts.push((ribbon, PlanMesh::default()));
     }
     &mut parts.last_mut().expect("there is one now").1

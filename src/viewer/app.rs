@@ -412,7 +412,7 @@ impl ViewerApp {
             ViewCommand::NextCamera => self.go_to_camera(self.camera_number + 1),
             ViewCommand::PreviousCamera => self.go_to_camera(self.camera_number + usize::MAX),
             ViewCommand::NextPhase => self.step_phase(1),
-            ViewCommand::PreviousPhase => self.step_phase_back(),
+            ViewCommand::PreviousPhase => self.step_phase(-1),
             ViewCommand::Orbit => self.set_mode(NavigationMode::Orbit),
             ViewCommand::Fly => self.set_mode(NavigationMode::Flight),
             ViewCommand::Walk => self.set_mode(NavigationMode::OnFoot),

@@ -27,18 +27,14 @@ impl ViewerApp {
         self.rebuild();
     }
 
-    /// Shows the phase so many places after the one that is shown, the first after the last.
-    pub(super) fn step_phase(&mut self, steps: usize) {
+    /// Shows the phase so many places after the one that is shown, or before it where `steps` is negative; after the last
+    /// comes the first.
+    pub(super) fn step_phase(&mut self, steps: isize) {
         let Some((names, number)) = self.phases() else { return };
         if names.len() > 1 {
-            self.show_phase(&names[(number + steps % names.len()) % names.len()]);
+            let stepped = (number as isize).wrapping_add(steps).rem_euclid(names.len() as isize);
+            self.show_phase(&names[stepped as usize]);
         }
-    }
-
-    /// Shows the phase before the one that is shown, the last before the first.
-    pub(super) fn step_phase_back(&mut self) {
-        let count = self.phases().map_or(0, |(names, _)| names.len());
-        self.step_phase(count.saturating_sub(1));
     }
 
     /// The choice of a phase, where the scene has some; the one that is chosen.

@@ -4,10 +4,14 @@
 use egui::{PaintCallbackInfo, Rect, Shape};
 use egui_wgpu::{Callback, CallbackResources, CallbackTrait};
 
+use sandtable_gpu::painting::{Painting, PaintingPipeline};
+
+/// The name of what paints in the messages of drivers and debuggers.
+const LABEL: &str = "picture of the scene";
+
 /// What paints the picture; among the resources of the panels' painter.
 pub struct PicturePaint {
-    pipeline: wgpu::RenderPipeline,
-    layout: wgpu::BindGroupLayout,
+    painting: PaintingPipeline,
     /// For a picture that has all pixels of its place, and for one that has fewer.
     samplers: [wgpu::Sampler; 2],
     /// The picture; `None` before the first.
@@ -25,71 +29,35 @@ pub fn picture_shape(place: Rect) -> Shape {
 impl PicturePaint {
     /// What paints on textures of `format`.
     pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
-        let label = Some("picture of the scene");
-        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty,
-            count: None,
-        };
         let texture = wgpu::BindingType::Texture {
             sample_type: wgpu::TextureSampleType::Float { filterable: true },
             view_dimension: wgpu::TextureViewDimension::D2,
             multisampled: false,
         };
-        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label,
-            entries: &[entry(0, texture), entry(1, sampler)],
-        });
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label,
-            source: wgpu::ShaderSource::Wgsl(include_str!("picture_paint.wgsl").into()),
-        });
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label,
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let color = if format.is_srgb() { "linear_color" } else { "encoded_color" };
-        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label,
-            layout: Some(&pipeline_layout),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("whole_view"),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive: Default::default(),
-            depth_stencil: None,
-            multisample: Default::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some(color),
-                compilation_options: Default::default(),
-                targets: &[Some(format.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
+        let painting = Painting {
+            label: LABEL,
+            shader: include_str!("picture_paint.wgsl"),
+            vertex: "whole_view",
+            fragment: if format.is_srgb() { "linear_color" } else { "encoded_color" },
+            reads: &[texture, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)],
+        };
         let samplers = [wgpu::FilterMode::Nearest, wgpu::FilterMode::Linear].map(|filter| {
             device.create_sampler(&wgpu::SamplerDescriptor {
-                label,
+                label: Some(LABEL),
                 mag_filter: filter,
                 min_filter: filter,
                 ..Default::default()
             })
         });
-        Self { pipeline, layout, samplers, shown: None }
+        Self { painting: painting.pipeline(device, format), samplers, shown: None }
     }
 
     /// Shows `picture`, whose pixels and those of its place go together by `fit`.
     pub fn show(&mut self, device: &wgpu::Device, picture: &wgpu::TextureView, fit: PictureFit) {
         let sampler = &self.samplers[fit as usize];
         self.shown = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("picture of the scene"),
-            layout: &self.layout,
+            label: Some(LABEL),
+            layout: &self.painting.layout,
             entries: &[
                 wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(picture) },
                 wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(sampler) },
@@ -118,7 +86,7 @@ impl CallbackTrait for PicturePlace {
         let Some((paint, shown)) = paint.and_then(|paint| Some((paint, paint.shown.as_ref()?))) else {
             return;
         };
-        pass.set_pipeline(&paint.pipeline);
+        pass.set_pipeline(&paint.painting.pipeline);
         pass.set_bind_group(0, shown, &[]);
         pass.draw(0..3, 0..1);
     }

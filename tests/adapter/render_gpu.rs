@@ -275,11 +275,7 @@ fn what_does_not_fit_is_refused_in_a_sentence() {
     let list = scene();
     let wide = Camera::new(Vec3::ZERO, Vec3::Y, 1.0, (16384, 1), (1.0, 10.0)).expect("sound");
     for gpu in gpus() {
-        match render_on(gpu, &DrawList::default(), &wide) {
-            Ok(picture) => assert_eq!(picture.pixels.width(), 16384),
-            Err(GpuError::TooLarge { limit, .. }) => assert!(limit < 16384),
-            Err(other) => panic!("{other}"),
-        }
+        assert_eq!(drawn(gpu, &DrawList::default(), &wide).pixels.width(), 16384, "in tiles if need be");
         let mut unsound = list.clone();
         unsound.items.reverse();
         assert!(unsound.items[0].layer > DepthLayer::Ground);
@@ -330,6 +326,30 @@ fn a_renderer_that_stays_draws_each_picture_as_a_new_one_does() {
             let fresh = drawn(gpu, &lists[list], &camera);
             assert!(kept.pixels == fresh.pixels && kept.features == fresh.features);
             assert!(kept.depth_m == fresh.depth_m);
+        }
+    }
+}
+
+#[test]
+fn a_picture_in_tiles_is_the_one_drawn_at_once() {
+    let (list, camera) = (scene_with_contours(), camera(301, 200));
+    for gpu in gpus() {
+        let whole = drawn(gpu, &list, &camera);
+        let mut renderer = PictureRenderer::new(gpu).unwrap_or_else(|error| panic!("{error}"));
+        for longest_px in [256, 128, 67] {
+            renderer.limit_tiles(longest_px);
+            let tiled = renderer.render(&list, &camera, &|_| ()).unwrap_or_else(|error| panic!("{error}"));
+            assert_eq!((tiled.pixels.width(), tiled.pixels.height()), camera.size());
+            let features = tiled.features.iter().zip(&whole.features).filter(|(one, other)| one != other);
+            let of_all = 1.0 / whole.features.len() as f64;
+            let apart = features.count() as f64 * of_all;
+            assert!(apart < 0.002, "{apart} of the features at {longest_px} on {}", gpu.name());
+            let near = |&(one, other): &(&Srgba, &Srgba)| {
+                one.0.iter().zip(other.0).all(|(one, other)| one.abs_diff(other) <= TOLERANCE as u8)
+            };
+            let colors = tiled.pixels.data().iter().zip(whole.pixels.data());
+            let apart = colors.filter(|pair| !near(pair)).count() as f64 * of_all;
+            assert!(apart < 0.01, "{apart} of the colors at {longest_px} on {}", gpu.name());
         }
     }
 }

@@ -80,7 +80,7 @@ fn piece(list: &DrawList, item: &DrawItem, patch: usize) -> DrapedPiece {
             mesh.triangle(ids);
         }
     }
-    DrapedPiece { mesh, material: item.material, layer: item.layer, feature: item.feature }
+    DrapedPiece { mesh: Arc::new(mesh), material: item.material, layer: item.layer, feature: item.feature }
 }
 
 /// A texture to draw frames to, and the bytes of one.
@@ -259,6 +259,33 @@ fn what_changes_is_sent_and_nothing_else() {
         assert!(bare > hole, "there is no ground on {}", gpu.name());
         renderer.update(&all).expect("it fits");
         assert_eq!(share_apart(&window.frame(&mut renderer, &camera), &before), 0.0, "all is back again");
+    }
+}
+
+#[test]
+fn what_lies_is_sent_anew_only_where_it_was_cut_again() {
+    let (list, camera) = (scene(), camera(SIZE.0, SIZE.1));
+    for gpu in gpus() {
+        let mut renderer = loaded(gpu, &list, WINDOW);
+        let window = Window::new(gpu, WINDOW);
+        let all = changes(&list);
+        renderer.update(&all).expect("it fits");
+        let before = window.frame(&mut renderer, &camera);
+        let again = renderer.update(&GroundChanges { drapes: all.drapes.clone(), ..Default::default() });
+        assert_eq!(again.expect("it fits"), UploadedBytes::default(), "the same meshes");
+        let cut_again = |patch: &PatchDrapes| PatchDrapes {
+            pieces: patch
+                .pieces
+                .iter()
+                .map(|piece| DrapedPiece { mesh: Arc::new((*piece.mesh).clone()), ..piece.clone() })
+                .collect(),
+            ..patch.clone()
+        };
+        let patch = all.drapes.iter().find(|patch| !patch.pieces.is_empty()).expect("something lies");
+        let drapes = vec![cut_again(patch)];
+        let sent = renderer.update(&GroundChanges { drapes, ..Default::default() }).expect("it fits");
+        assert!(sent.drapes > 0 && sent.total() == sent.drapes, "{sent:?}");
+        assert_eq!(share_apart(&window.frame(&mut renderer, &camera), &before), 0.0, "on {}", gpu.name());
     }
 }
 

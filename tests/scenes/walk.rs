@@ -68,7 +68,7 @@ impl Held {
         }
         draped.sort_by_key(|piece| piece.layer);
         for DrapedPiece { mesh, material, layer, feature } in draped {
-            add(&mut list, mesh, material, layer, feature);
+            add(&mut list, Arc::unwrap_or_clone(mesh), material, layer, feature);
         }
         list.items.extend(standing);
         list

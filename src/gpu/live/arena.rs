@@ -22,8 +22,8 @@ const ALIGNMENT: u64 = 4;
 /// A list in an arena.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StoredRange {
-    block: usize,
-    bytes: Range<u64>,
+    pub(super) block: usize,
+    pub(super) bytes: Range<u64>,
 }
 
 impl StoredRange {

@@ -2,6 +2,7 @@
 
 use crate::adapter::Gpu;
 use crate::memory::bind;
+use crate::painting::{Painting, PaintingPipeline};
 use crate::pass_timer::PassTimer;
 
 pub const ENCODE_SHADER: &str =
@@ -9,59 +10,23 @@ pub const ENCODE_SHADER: &str =
 
 /// Encodes linear colors as sRGB.
 #[derive(Debug)]
-pub struct Encoder {
-    layout: wgpu::BindGroupLayout,
-    pipeline: wgpu::RenderPipeline,
-}
+pub struct Encoder(PaintingPipeline);
 
 impl Encoder {
     /// An encoder for a window's texture of `format`.
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
-        let label = Some("encode colors");
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label,
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::FRAGMENT,
-                ty: wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Float { filterable: false },
-                    view_dimension: wgpu::TextureViewDimension::D2,
-                    multisampled: false,
-                },
-                count: None,
+        let painting = Painting {
+            label: "encode colors",
+            shader: ENCODE_SHADER,
+            vertex: "whole_picture",
+            fragment: "encode_color",
+            reads: &[wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Float { filterable: false },
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
             }],
-        });
-        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label,
-            source: wgpu::ShaderSource::Wgsl(ENCODE_SHADER.into()),
-        });
-        let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label,
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label,
-            layout: Some(&pipeline_layout),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("whole_picture"),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive: Default::default(),
-            depth_stencil: None,
-            multisample: Default::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("encode_color"),
-                compilation_options: Default::default(),
-                targets: &[Some(format.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
-        Self { layout, pipeline }
+        };
+        Self(painting.pipeline(&gpu.device, format))
     }
 
     /// Records the encoding of a texture of linear colors to another one of the same size.
@@ -73,7 +38,7 @@ impl Encoder {
         timer: Option<&PassTimer>,
     ) {
         let label = "encode colors";
-        let group = bind(gpu, label, &self.layout, [wgpu::BindingResource::TextureView(linear)]);
+        let group = bind(gpu, label, &self.0.layout, [wgpu::BindingResource::TextureView(linear)]);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(label),
             timestamp_writes: timer.and_then(|timer| timer.writes(label)),
@@ -88,7 +53,7 @@ impl Encoder {
             })],
             ..Default::default()
         });
-        pass.set_pipeline(&self.pipeline);
+        pass.set_pipeline(&self.0.pipeline);
         pass.set_bind_group(0, &group, &[]);
         pass.draw(0..3, 0..1);
     }

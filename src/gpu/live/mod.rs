@@ -12,7 +12,7 @@
 //! the same shaders and the same rules of depth.
 //!
 //! # Ground
-//! One call draws all patches (`ground_calls`). With several samples a pixel their triangles are shaded as they are drawn.
+//! One call draws all patches (`patch_calls`). With several samples a pixel their triangles are shaded as they are drawn.
 //! With one, as where the processor draws, only their depths are, and what each pixel then shows is shaded once
 //! (`ground_pixels.wgsl`): a driver that shades blocks of pixels does most of its work for nothing where triangles are as small
 //! as pixels.
@@ -24,9 +24,10 @@
 //! thread, when the eye has moved a good part of its distance to the ground.
 
 mod arena;
+mod drapes;
 mod encode;
-mod ground_calls;
 mod ground_map;
+mod patch_calls;
 mod patches;
 pub mod prepared;
 mod targets;
@@ -40,7 +41,7 @@ use crate::geometry::GpuGeometry;
 use crate::layouts::Layouts;
 use crate::live::encode::Encoder;
 use crate::live::ground_map::EditedMap;
-use crate::live::patches::PatchStore;
+use crate::live::patches::{PatchStore, ShownCalls};
 use crate::live::prepared::{LiveLoader, PreparedScene, PreparedShadows, PreparedWindows};
 use crate::live::targets::{LiveFormat, LiveTargets};
 use crate::materials::GpuMaterials;
@@ -50,7 +51,7 @@ use crate::pass_timer::PassTimer;
 use crate::passes::{PassStage, PassViews, ScenePass};
 use crate::pipeline_key::PipelineKey;
 use crate::pipelines::{GpuPass, PassTarget, Pipelines, shader};
-use crate::plan::{DrawCall, Plan};
+use crate::plan::Plan;
 use crate::shadow::ShadowView;
 use crate::uniforms::{FrameScene, FrameUniforms};
 use crate::windows::WindowTexture;
@@ -162,11 +163,6 @@ impl UploadedBytes {
 }
 
 impl LiveStatistics {
-    fn count(&mut self, triangles: u32) {
-        self.calls += 1;
-        self.triangles += u64::from(triangles);
-    }
-
     fn add(&mut self, other: Self) {
         self.patches += other.patches;
         self.calls += other.calls;
@@ -364,9 +360,10 @@ impl LiveRenderer {
         let drawn = gpu.guarded("drawing a frame", || {
             scene.frame.write(gpu, &scene.constants(camera, size));
             let patches = scene.patches.shown(camera);
-            let ground = scene.patches.ground_calls(gpu, &patches)?;
+            let calls = scene.patches.calls(gpu, &patches)?;
+            let lines: &[PatchId] = if options.wireframe { &patches } else { &[] };
             if options.wireframe {
-                scene.patches.store_lines(gpu, &patches)?;
+                scene.patches.store_lines(gpu, lines)?;
                 self.colors.make(gpu, [PipelineKey::PATCH_LINES]);
             }
             let shown = targets.linear.as_ref().unwrap_or(target);
@@ -384,7 +381,7 @@ impl LiveRenderer {
                 Some(depths) => {
                     let stage = views.of(PassStage::Depths, "depths of the ground");
                     let mut pass = scene.begin(&stage, encoder, colors);
-                    drawn = scene.patches.draw_ground(&mut pass, &ground, PipelineKey::PATCH_DEPTHS);
+                    drawn = scene.patches.draw_ground(&mut pass, &calls, PipelineKey::PATCH_DEPTHS);
                     drop(pass);
                     let stage = views.of(PassStage::Pixels, "pixels of the ground");
                     let mut pass = scene.begin(&stage, encoder, colors);
@@ -397,11 +394,11 @@ impl LiveRenderer {
                     let mut pass = scene.begin(&views, encoder, colors);
                     pass.sky();
                     let key = ground_key(PipelineKey::PATCH, parts);
-                    drawn = scene.patches.draw_ground(&mut pass, &ground, key);
+                    drawn = scene.patches.draw_ground(&mut pass, &calls, key);
                     pass
                 }
             };
-            drawn.add(scene.draw_rest(&mut pass, camera, (&patches, *options)));
+            drawn.add(scene.draw_rest(&mut pass, camera, (&calls, lines)));
             drop(pass);
             if let (Some(encode), Some(linear)) = (&self.encoder, &targets.linear) {
                 encode.record(gpu, encoder, (linear, target), self.timer.as_deref());
@@ -430,8 +427,8 @@ impl LoadedScene {
             true => vec![PipelineKey::PATCH_DEPTHS, ground_key(PipelineKey::GROUND_PIXELS, self.parts)],
             false => vec![ground_key(PipelineKey::PATCH, self.parts)],
         };
-        colors.make(gpu, color_keys.into_iter().chain([PipelineKey::SKY]).chain(ground));
-        colors.make(gpu, self.patches.keys(self.parts));
+        let drapes = self.patches.keys(self.parts);
+        colors.make(gpu, color_keys.into_iter().chain([PipelineKey::SKY]).chain(ground).chain(drapes));
     }
 
     fn constants(&self, camera: &Camera, size: (u32, u32)) -> FrameUniforms {
@@ -450,21 +447,21 @@ impl LoadedScene {
         ScenePass::new(views.begin(encoder, &self.frame.group), colors, &self.materials)
     }
 
-    /// Draws everything but the sky and the ground; `patches` are those shown.
+    /// Draws everything but the sky and the ground; `calls` are those of the patches shown, `lines` those whose edges are.
     fn draw_rest(
         &self,
         pass: &mut ScenePass<'_, '_>,
         camera: &Camera,
-        (patches, options): (&[PatchId], LiveOptions),
+        (calls, lines): (&ShownCalls, &[PatchId]),
     ) -> LiveStatistics {
         let parts = self.parts;
-        let mut drawn = self.patches.draw_drapes(pass, patches, parts);
-        if options.wireframe {
-            drawn.add(self.patches.draw_lines(pass, patches));
+        let mut drawn = self.patches.draw_drapes(pass, calls, parts);
+        if !lines.is_empty() {
+            drawn.add(self.patches.draw_lines(pass, lines));
         }
-        let calls: Vec<&DrawCall> = self.plan.color.iter().chain(self.plan.transparent(camera)).collect();
+        let calls = self.plan.seen(camera);
         drawn.calls += calls.len() as u32;
-        pass.draw(&self.geometry, calls, parts);
+        pass.draw(&self.geometry, &calls, parts);
         drawn
     }
 }

@@ -1,31 +1,27 @@
 //! The ground and its draped features on the device, patch by patch.
 //!
-//! A patch's vertices are stored once; its index list of 16 bits an index and what lies on it are stored anew when they
-//! change, and nothing else is ever sent.
+//! A patch's vertices are stored once; its index list of 16 bits an index is stored anew when it changes, and so are those
+//! chunks of what lies on it that changed (`drapes`); nothing else is ever sent.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 use std::sync::Arc;
 
 use bytemuck::cast_slice;
-use glam::{Mat4, Vec3};
+use glam::Vec3;
 
 use crate::adapter::Gpu;
+use crate::draped_vertex::DrapedVertex;
 use crate::error::GpuError;
-use crate::geometry::{CornerUv, MergedTriangles};
 use crate::live::arena::{Arena, StoredRange};
-use crate::live::ground_calls::{GroundCall, GroundCalls};
+use crate::live::drapes::{DrapeArenas, DrapeMaterial, DrapeMaterials, StoredDrapes};
+use crate::live::patch_calls::{CallSource, PatchCall, PatchCalls};
 use crate::live::{LiveStatistics, UploadedBytes};
 use crate::materials::{ArrayId, TexturePlaces};
-use crate::merged_vertex::SurfaceOwner;
 use crate::parts::ShaderParts;
 use crate::passes::ScenePass;
-use crate::pipeline_key::{DepthRule, PipelineKey, VertexSource};
-use sandtable_draw::list::{DrawList, DrawListError, MaterialId};
-use sandtable_draw::material::{Albedo, AlphaMode, Material, NormalSource};
-use sandtable_draw::patches::{
-    DrapedPiece, GroundChanges, PatchDrapes, PatchId, PatchTriangles, PatchVertices,
-};
+use crate::pipeline_key::PipelineKey;
+use sandtable_draw::list::DrawList;
+use sandtable_draw::patches::{GroundChanges, PatchDrapes, PatchId, PatchTriangles, PatchVertices};
 use sandtable_view::camera::Camera;
 
 /// All patches.
@@ -34,12 +30,20 @@ pub struct PatchStore {
     patches: BTreeMap<PatchId, StoredPatch>,
     positions: Arena,
     triangles: Arena,
-    drapes: Arena,
-    drape_indices: Arena,
-    /// What the device reads of the calls of the ground.
-    call_arguments: Option<wgpu::Buffer>,
+    drapes: DrapeArenas,
+    /// What the device reads of the calls of the ground, and of those of what lies on it.
+    call_arguments: [Option<wgpu::Buffer>; 2],
     /// How each material of the list is draped.
-    materials: Vec<DrapeMaterial>,
+    materials: DrapeMaterials,
+}
+
+/// The calls of patches that are shown.
+#[derive(Debug)]
+pub struct ShownCalls {
+    /// Their ground, in their order.
+    ground: PatchCalls<()>,
+    /// Their draped features: the first ones of all patches, the second ones, and so on.
+    drapes: PatchCalls<DrapeMaterial>,
 }
 
 #[derive(Debug, Default)]
@@ -49,7 +53,7 @@ struct StoredPatch {
     center: Vec3,
     /// What it shows; `None` while it is hidden.
     triangles: Option<StoredTriangles>,
-    drapes: Option<StoredDrapes>,
+    drapes: StoredDrapes,
 }
 
 #[derive(Debug)]
@@ -62,76 +66,17 @@ struct StoredTriangles {
     lines: Option<(StoredRange, u32)>,
 }
 
-#[derive(Debug)]
-struct StoredDrapes {
-    vertices: StoredRange,
-    indices: StoredRange,
-    calls: Vec<DrapeCall>,
-}
-
-/// Pieces that one call draws, in their order.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct DrapeCall {
-    indices: Range<u32>,
-    material: DrapeMaterial,
-}
-
-/// What pieces must share to be drawn by one call.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct DrapeMaterial {
-    array: ArrayId,
-    two_sided: bool,
-    masked: bool,
-    parts: ShaderParts,
-}
-
-impl DrapeMaterial {
-    fn key(self, picture: ShaderParts) -> PipelineKey {
-        PipelineKey {
-            source: VertexSource::Merged,
-            rule: DepthRule::Drape,
-            two_sided: self.two_sided,
-            masked: self.masked,
-            textured: self.array != ArrayId::NONE,
-            parts: self.parts.in_picture(picture),
-        }
-    }
-
-    /// What draws both, where anything does.
-    fn joined(self, next: Self) -> Option<Self> {
-        let array = self.array.max(next.array);
-        let shares_array = [self.array, next.array].iter().all(|&own| own == array || own == ArrayId::NONE);
-        let is_alike = (self.two_sided, self.masked, self.parts) == (next.two_sided, next.masked, next.parts);
-        (shares_array && is_alike).then_some(Self { array, ..self })
-    }
-}
-
 impl PatchStore {
     /// No patches, of a scene with the materials of `list`.
     pub fn new(list: &DrawList, places: &TexturePlaces) -> Self {
-        // All that lies on the ground in its light has the parts that any of it needs: one pipeline, made before anything
-        // is drawn.
-        let is_ribbon = |material: &Material| {
-            material.normals == NormalSource::Ground && material.albedo == Albedo::Surface
-        };
-        let parts =
-            list.materials.iter().filter(|material| is_ribbon(material)).map(ShaderParts::of_material);
-        let ribbons = parts.fold(ShaderParts::NONE, ShaderParts::with);
-        let material = |(index, material): (usize, &Material)| DrapeMaterial {
-            array: places.array_of(MaterialId(index as u32)),
-            two_sided: material.two_sided,
-            masked: matches!(material.alpha, AlphaMode::Mask(_)),
-            parts: if is_ribbon(material) { ribbons } else { ShaderParts::of_material(material) },
-        };
         let (vertices, indices) = (wgpu::BufferUsages::VERTEX, wgpu::BufferUsages::INDEX);
         Self {
             patches: BTreeMap::new(),
             positions: Arena::new("vertices of the ground", vertices),
             triangles: Arena::new("triangles of the ground", indices),
-            drapes: Arena::new("what lies on the ground", vertices),
-            drape_indices: Arena::new("triangles of what lies on the ground", indices),
-            call_arguments: None,
-            materials: list.materials.iter().enumerate().map(material).collect(),
+            drapes: DrapeArenas::new(),
+            call_arguments: [None, None],
+            materials: DrapeMaterials::new(list, places),
         }
     }
 
@@ -142,10 +87,7 @@ impl PatchStore {
 
     /// The keys that drapes are drawn with in a picture that has the parts `picture`.
     pub fn keys(&self, picture: ShaderParts) -> impl Iterator<Item = PipelineKey> + '_ {
-        let untextured =
-            self.materials.iter().map(|&material| DrapeMaterial { array: ArrayId::NONE, ..material });
-        let drapes = self.materials.iter().copied().chain(untextured);
-        drapes.map(move |material| material.key(picture))
+        self.materials.keys(picture)
     }
 
     /// Applies changes; returns the bytes sent for them.
@@ -181,26 +123,69 @@ impl PatchStore {
         order.into_iter().map(|(_, id)| id).collect()
     }
 
-    /// The ground of patches, to be drawn before the next submission.
-    pub fn ground_calls(&mut self, gpu: &Gpu, shown: &[PatchId]) -> Result<GroundCalls, GpuError> {
-        let call = |patch: &StoredPatch| {
+    /// What patches show, to be drawn before the next submission.
+    pub fn calls(&mut self, gpu: &Gpu, shown: &[PatchId]) -> Result<ShownCalls, GpuError> {
+        let patches = || shown.iter().filter_map(|id| self.patches.get(id));
+        let ground = |patch: &StoredPatch| {
             let (vertices, triangles) = (patch.positions.clone()?, patch.triangles.as_ref()?);
-            Some(GroundCall { vertices, indices: triangles.indices.clone(), triangles: triangles.count })
+            let indices = triangles.indices.clone();
+            Some(((), PatchCall { vertices, indices, drawn: 0..triangles.count * 3 }))
         };
-        let calls = shown.iter().filter_map(|id| call(self.patches.get(id)?)).collect();
-        GroundCalls::new(gpu, calls, &mut self.call_arguments)
+        let ground: Vec<((), PatchCall)> = patches().filter_map(ground).collect();
+        // What lies on one patch does not lie on another: the order of the features of each counts, not that of patches.
+        let mut drapes: Vec<(usize, DrapeMaterial, PatchCall)> =
+            patches().flat_map(|patch| patch.drapes.calls()).collect();
+        drapes.sort_by_key(|(place, material, call)| (*place, *material, call.blocks()));
+        let drapes = drapes.into_iter().map(|(_, material, call)| (material, call));
+        let [mut of_ground, mut of_drapes] = std::mem::take(&mut self.call_arguments);
+        let calls = ShownCalls {
+            ground: PatchCalls::new(gpu, &self.ground_source(), ground, &mut of_ground)?,
+            drapes: PatchCalls::new(gpu, &self.drape_source(), drapes, &mut of_drapes)?,
+        };
+        self.call_arguments = [of_ground, of_drapes];
+        Ok(calls)
     }
 
     /// Draws the ground of patches.
     pub fn draw_ground(
         &self,
         pass: &mut ScenePass<'_, '_>,
-        calls: &GroundCalls,
+        calls: &ShownCalls,
         key: PipelineKey,
     ) -> LiveStatistics {
-        match pass.set(key, ArrayId::NONE) {
-            true => calls.draw(&mut pass.pass, &self.positions, &self.triangles),
-            false => LiveStatistics::default(),
+        let source = self.ground_source();
+        let drawn = calls.ground.draw(pass, &source, |pass, ()| pass.set(key, ArrayId::NONE));
+        LiveStatistics { patches: calls.ground.count() as u32, ..drawn }
+    }
+
+    /// Draws the draped features of patches, in a picture that has the parts `picture`.
+    pub fn draw_drapes(
+        &self,
+        pass: &mut ScenePass<'_, '_>,
+        calls: &ShownCalls,
+        picture: ShaderParts,
+    ) -> LiveStatistics {
+        let set = |pass: &mut ScenePass<'_, '_>, material: DrapeMaterial| {
+            pass.set(material.key(picture), material.array)
+        };
+        calls.drapes.draw(pass, &self.drape_source(), set)
+    }
+
+    fn ground_source(&self) -> CallSource<'_> {
+        CallSource {
+            vertices: &self.positions,
+            indices: &self.triangles,
+            vertex_bytes: size_of::<[f32; 3]>() as u64,
+            format: wgpu::IndexFormat::Uint16,
+        }
+    }
+
+    fn drape_source(&self) -> CallSource<'_> {
+        CallSource {
+            vertices: &self.drapes.vertices,
+            indices: &self.drapes.indices,
+            vertex_bytes: size_of::<DrapedVertex>() as u64,
+            format: wgpu::IndexFormat::Uint32,
         }
     }
 
@@ -235,41 +220,10 @@ impl PatchStore {
         drawn
     }
 
-    /// Draws the draped features of patches.
-    pub fn draw_drapes(
-        &self,
-        pass: &mut ScenePass<'_, '_>,
-        shown: &[PatchId],
-        picture: ShaderParts,
-    ) -> LiveStatistics {
-        let mut drawn = LiveStatistics::default();
-        for drapes in shown.iter().filter_map(|id| self.patches.get(id)?.drapes.as_ref()) {
-            let Some((vertices, indices)) =
-                self.drapes.slice(&drapes.vertices).zip(self.drape_indices.slice(&drapes.indices))
-            else {
-                continue;
-            };
-            pass.pass.set_vertex_buffer(0, vertices);
-            pass.pass.set_index_buffer(indices, wgpu::IndexFormat::Uint32);
-            for call in &drapes.calls {
-                if pass.set(call.material.key(picture), call.material.array) {
-                    pass.pass.draw_indexed(call.indices.clone(), 0, 0..1);
-                    drawn.count(call.indices.len() as u32 / 3);
-                }
-            }
-        }
-        drawn
-    }
-
     fn release(&mut self, patch: StoredPatch) {
         patch.positions.into_iter().for_each(|range| self.positions.release(range));
         patch.triangles.into_iter().for_each(|shown| release_triangles(&mut self.triangles, shown));
-        patch.drapes.into_iter().for_each(|drapes| self.release_drapes(drapes));
-    }
-
-    fn release_drapes(&mut self, drapes: StoredDrapes) {
-        self.drapes.release(drapes.vertices);
-        self.drape_indices.release(drapes.indices);
+        self.drapes.release(patch.drapes);
     }
 
     fn store_vertices(&mut self, gpu: &Gpu, new: &PatchVertices) -> Result<u64, GpuError> {
@@ -300,43 +254,11 @@ impl PatchStore {
     }
 
     fn store_drapes(&mut self, gpu: &Gpu, new: &PatchDrapes) -> Result<u64, GpuError> {
-        let old = self.patches.get_mut(&new.patch).and_then(|patch| patch.drapes.take());
-        old.into_iter().for_each(|old| self.release_drapes(old));
-        let (merged, calls) = self.merged(&new.pieces)?;
-        if merged.indices.is_empty() {
-            return Ok(0);
-        }
-        let [vertices, indices]: [&[u8]; 2] = [cast_slice(&merged.vertices), cast_slice(&merged.indices)];
-        let stored = StoredDrapes {
-            vertices: self.drapes.store(gpu, vertices)?,
-            indices: self.drape_indices.store(gpu, indices)?,
-            calls,
-        };
-        self.patches.entry(new.patch).or_default().drapes = Some(stored);
-        Ok((vertices.len() + indices.len()) as u64)
-    }
-
-    /// Pieces as one mesh, and what of it each call draws.
-    fn merged(&self, pieces: &[DrapedPiece]) -> Result<(MergedTriangles, Vec<DrapeCall>), GpuError> {
-        let mut merged = MergedTriangles::default();
-        let mut calls: Vec<DrapeCall> = Vec::new();
-        for (index, piece) in pieces.iter().enumerate() {
-            let material = self.materials.get(piece.material.0 as usize).copied();
-            let material = material.ok_or(DrawListError::MissingMaterial(index))?;
-            let owner = SurfaceOwner { feature: piece.feature, material: piece.material.into() };
-            let start = merged.indices.len() as u32;
-            let triangles = 0..piece.mesh.triangles.len() as u32;
-            merged.add(&piece.mesh, triangles, &Mat4::IDENTITY, owner, CornerUv::Own);
-            let indices = start..merged.indices.len() as u32;
-            let joined = calls.last().and_then(|last| last.material.joined(material));
-            match (calls.last_mut(), joined) {
-                (Some(last), Some(material)) => {
-                    *last = DrapeCall { indices: last.indices.start..indices.end, material };
-                }
-                _ => calls.push(DrapeCall { indices, material }),
-            }
-        }
-        Ok((merged, calls))
+        let materials = self.materials.of(&new.pieces)?;
+        let drapes = &mut self.patches.entry(new.patch).or_default().drapes;
+        let (stored, sent) = self.drapes.store(gpu, std::mem::take(drapes), (&new.pieces, &materials))?;
+        *drapes = stored;
+        Ok(sent)
     }
 }
 

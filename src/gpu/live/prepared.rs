@@ -22,7 +22,7 @@ use crate::plan::Plan;
 use crate::shadow::{ShadowTextures, ShadowView};
 use crate::windows::WindowTexture;
 use sandtable_draw::ground_window::GroundWindow;
-use sandtable_draw::list::{DepthLayer, DrawList};
+use sandtable_draw::list::DrawList;
 use sandtable_draw::patches::GroundChanges;
 
 /// Prepares scenes for a renderer, on any thread.
@@ -67,7 +67,7 @@ impl LiveLoader {
         let Self { gpu, layouts, colors } = self;
         gpu.guarded("loading the scene", || {
             let places = TexturePlaces::new(list, TextureScope::All, &gpu.limits);
-            let plan = Plan::new(list, &places, |layer| layer == DepthLayer::Solid);
+            let plan = Plan::of_solids(list, &places);
             let patches = PatchStore::new(list, &places);
             let loader = Loader::new(gpu);
             let LiveShadows(shadows) = shadows;

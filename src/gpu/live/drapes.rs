@@ -1,0 +1,376 @@
+//! What lies on a patch, in chunks that are sent anew only where their pieces changed.
+//!
+//! ```text
+//!   before   a b c │ d e │ f        pieces in drawing order, in chunks that one call draws
+//!   now      a b c │ d e'│ f        a chunk whose pieces are all those of before stays on the device
+//!   sent             d e'
+//! ```
+//!
+//! A piece is known by the memory of its mesh, which its maker shares as long as it is not cut again. Where pieces come or go,
+//! chunks are matched by their first pieces, so that those behind stay too.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::{Arc, Weak};
+
+use bytemuck::cast_slice;
+
+use crate::adapter::Gpu;
+use crate::draped_vertex::DrapedMesh;
+use crate::error::GpuError;
+use crate::live::arena::{Arena, StoredRange};
+use crate::live::patch_calls::PatchCall;
+use crate::materials::{ArrayId, TexturePlaces};
+use crate::merged_vertex::MaterialRow;
+use crate::parts::ShaderParts;
+use crate::pipeline_key::{DepthRule, PipelineKey, VertexSource};
+use sandtable_draw::list::{DrawList, DrawListError, DrawMesh, MaterialId};
+use sandtable_draw::material::{Albedo, AlphaMode, Material, NormalSource};
+use sandtable_draw::patches::DrapedPiece;
+
+/// The vertices up to which pieces share a chunk: more make fewer calls, and send more for each piece that changed.
+const CHUNK_VERTICES: usize = 1024;
+
+/// What pieces must share to be drawn by one call.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct DrapeMaterial {
+    pub array: ArrayId,
+    two_sided: bool,
+    masked: bool,
+    parts: ShaderParts,
+}
+
+/// The draped features of a patch, in drawing order.
+#[derive(Debug, Default)]
+pub struct StoredDrapes {
+    pub chunks: Vec<DrapeChunk>,
+}
+
+/// Pieces that one call draws, in their order.
+#[derive(Debug)]
+pub struct DrapeChunk {
+    pieces: Vec<ChunkPiece>,
+    pub material: DrapeMaterial,
+    pub vertices: StoredRange,
+    pub indices: StoredRange,
+    /// How many indices.
+    pub count: u32,
+}
+
+/// A piece as it was handed over.
+#[derive(Debug)]
+struct ChunkPiece {
+    mesh: Weak<DrawMesh>,
+    material: MaterialId,
+}
+
+/// The arenas of what lies on the ground.
+#[derive(Debug)]
+pub struct DrapeArenas {
+    pub vertices: Arena,
+    pub indices: Arena,
+}
+
+/// A chunk of the pieces that are handed over.
+enum PlannedChunk {
+    Kept(DrapeChunk),
+    Sent(DrapeMaterial, Range<usize>),
+}
+
+/// How each material of a list is draped.
+#[derive(Debug)]
+pub struct DrapeMaterials(Vec<DrapeMaterial>);
+
+impl DrapeMaterial {
+    pub fn key(self, picture: ShaderParts) -> PipelineKey {
+        PipelineKey {
+            source: VertexSource::Draped,
+            rule: DepthRule::Drape,
+            two_sided: self.two_sided,
+            masked: self.masked,
+            textured: self.array != ArrayId::NONE,
+            parts: self.parts.in_picture(picture),
+        }
+    }
+
+    /// What draws both, where anything does.
+    pub fn joined(self, next: Self) -> Option<Self> {
+        let array = self.array.max(next.array);
+        let shares_array = [self.array, next.array].iter().all(|&own| own == array || own == ArrayId::NONE);
+        let is_alike = (self.two_sided, self.masked, self.parts) == (next.two_sided, next.masked, next.parts);
+        (shares_array && is_alike).then_some(Self { array, ..self })
+    }
+}
+
+impl DrapeMaterials {
+    pub fn new(list: &DrawList, places: &TexturePlaces) -> Self {
+        // All that lies on the ground in its light has the parts that any of it needs: one pipeline, made before anything
+        // is drawn.
+        let is_ribbon = |material: &Material| {
+            material.normals == NormalSource::Ground && material.albedo == Albedo::Surface
+        };
+        let parts =
+            list.materials.iter().filter(|material| is_ribbon(material)).map(ShaderParts::of_material);
+        let ribbons = parts.fold(ShaderParts::NONE, ShaderParts::with);
+        let material = |(index, material): (usize, &Material)| DrapeMaterial {
+            array: places.array_of(MaterialId(index as u32)),
+            two_sided: material.two_sided,
+            masked: matches!(material.alpha, AlphaMode::Mask(_)),
+            parts: if is_ribbon(material) { ribbons } else { ShaderParts::of_material(material) },
+        };
+        Self(list.materials.iter().enumerate().map(material).collect())
+    }
+
+    /// The keys that drapes are drawn with in a picture that has the parts `picture`.
+    pub fn keys(&self, picture: ShaderParts) -> impl Iterator<Item = PipelineKey> + '_ {
+        let untextured = self.0.iter().map(|&material| DrapeMaterial { array: ArrayId::NONE, ..material });
+        self.0.iter().copied().chain(untextured).map(move |material| material.key(picture))
+    }
+
+    /// The material of each piece.
+    ///
+    /// # Errors
+    /// [`DrawListError::MissingMaterial`] where there is none.
+    pub fn of(&self, pieces: &[DrapedPiece]) -> Result<Vec<DrapeMaterial>, DrawListError> {
+        let of_piece = |(index, piece): (usize, &DrapedPiece)| {
+            let material = self.0.get(piece.material.0 as usize).copied();
+            material.ok_or(DrawListError::MissingMaterial(index))
+        };
+        pieces.iter().enumerate().map(of_piece).collect()
+    }
+}
+
+/// What draws all of some pieces; `None` where nothing does.
+fn joined(materials: &[DrapeMaterial]) -> Option<DrapeMaterial> {
+    let (&first, rest) = materials.split_first()?;
+    rest.iter().try_fold(first, |all, &next| all.joined(next))
+}
+
+impl StoredDrapes {
+    /// The calls that draw them, each with its place in their order and with what it is drawn with; calls of the same place
+    /// are drawn alike.
+    pub fn calls(&self) -> impl Iterator<Item = (usize, DrapeMaterial, PatchCall)> + '_ {
+        let mut runs: Vec<(DrapeMaterial, Range<usize>)> = Vec::new();
+        for (index, chunk) in self.chunks.iter().enumerate() {
+            match runs.last_mut().and_then(|run| Some((run.0.joined(chunk.material)?, run))) {
+                Some((material, run)) => *run = (material, run.1.start..index + 1),
+                None => runs.push((chunk.material, index..index + 1)),
+            }
+        }
+        runs.into_iter().enumerate().flat_map(|(place, (material, run))| {
+            self.chunks[run].iter().map(move |chunk| {
+                let (vertices, indices) = (chunk.vertices.clone(), chunk.indices.clone());
+                (place, material, PatchCall { vertices, indices, drawn: 0..chunk.count })
+            })
+        })
+    }
+}
+
+impl DrapeArenas {
+    pub fn new() -> Self {
+        Self {
+            vertices: Arena::new("what lies on the ground", wgpu::BufferUsages::VERTEX),
+            indices: Arena::new("triangles of what lies on the ground", wgpu::BufferUsages::INDEX),
+        }
+    }
+
+    pub fn release(&mut self, drapes: StoredDrapes) {
+        drapes.chunks.into_iter().for_each(|chunk| self.release_chunk(chunk));
+    }
+
+    /// Stores what lies on a patch, `pieces` of these `materials`, in place of what lay there; returns it and the bytes sent.
+    pub fn store(
+        &mut self,
+        gpu: &Gpu,
+        before: StoredDrapes,
+        (pieces, materials): (&[DrapedPiece], &[DrapeMaterial]),
+    ) -> Result<(StoredDrapes, u64), GpuError> {
+        let (planned, left) = plan(before, pieces, materials);
+        self.release(left);
+        let (mut drapes, mut sent) = (StoredDrapes::default(), 0);
+        for chunk in planned {
+            match chunk {
+                PlannedChunk::Kept(chunk) => drapes.chunks.push(chunk),
+                PlannedChunk::Sent(material, range) => {
+                    let (chunk, bytes) = self.send(gpu, material, &pieces[range])?;
+                    sent += bytes;
+                    drapes.chunks.extend(chunk);
+                }
+            }
+        }
+        Ok((drapes, sent))
+    }
+
+    /// Sends pieces as one mesh; `None` where they have no triangles.
+    fn send(
+        &mut self,
+        gpu: &Gpu,
+        material: DrapeMaterial,
+        pieces: &[DrapedPiece],
+    ) -> Result<(Option<DrapeChunk>, u64), GpuError> {
+        let corners = pieces.iter().map(|piece| piece.mesh.triangles.len() * 3).sum();
+        let mut merged = DrapedMesh::with_corners(corners);
+        for DrapedPiece { mesh, material, .. } in pieces {
+            let corners = mesh.triangles.iter().flatten().map(|id| &mesh.vertices[id.index()]);
+            corners.for_each(|corner| merged.add(corner, MaterialRow::from(*material)));
+        }
+        let DrapedMesh { vertices, indices, .. } = &merged;
+        if indices.is_empty() {
+            return Ok((None, 0));
+        }
+        let [vertex_bytes, index_bytes]: [&[u8]; 2] = [cast_slice(vertices), cast_slice(indices)];
+        let of_piece = |DrapedPiece { mesh, material, .. }: &DrapedPiece| ChunkPiece {
+            mesh: Arc::downgrade(mesh),
+            material: *material,
+        };
+        let chunk = DrapeChunk {
+            pieces: pieces.iter().map(of_piece).collect(),
+            material,
+            vertices: self.vertices.store(gpu, vertex_bytes)?,
+            indices: self.indices.store(gpu, index_bytes)?,
+            count: indices.len() as u32,
+        };
+        Ok((Some(chunk), (vertex_bytes.len() + index_bytes.len()) as u64))
+    }
+
+    fn release_chunk(&mut self, chunk: DrapeChunk) {
+        self.vertices.release(chunk.vertices);
+        self.indices.release(chunk.indices);
+    }
+}
+
+impl DrapeChunk {
+    /// Whether the first of `pieces`, which are of these `materials`, are those of this chunk.
+    fn holds(&self, pieces: &[DrapedPiece], materials: &[DrapeMaterial]) -> bool {
+        let is_same = |(held, piece): (&ChunkPiece, &DrapedPiece)| {
+            held.mesh.as_ptr() == Arc::as_ptr(&piece.mesh) && held.material == piece.material
+        };
+        let count = self.pieces.len();
+        count <= pieces.len()
+            && self.pieces.iter().zip(pieces).all(is_same)
+            && joined(&materials[..count]) == Some(self.material)
+    }
+}
+
+/// The chunks of `pieces`, as many of `before` among them as hold what is handed over, and those of `before` that are left.
+fn plan(
+    before: StoredDrapes,
+    pieces: &[DrapedPiece],
+    materials: &[DrapeMaterial],
+) -> (Vec<PlannedChunk>, StoredDrapes) {
+    let first_of = |chunk: &DrapeChunk| chunk.pieces.first().map(|piece| piece.mesh.as_ptr());
+    let places: BTreeMap<_, usize> =
+        before.chunks.iter().enumerate().map(|(place, chunk)| (first_of(chunk), place)).collect();
+    let mut held: Vec<Option<DrapeChunk>> = before.chunks.into_iter().map(Some).collect();
+    let mut planned: Vec<PlannedChunk> = Vec::new();
+    let (mut at, mut vertices) = (0, 0);
+    while at < pieces.len() {
+        let known = places.get(&Some(Arc::as_ptr(&pieces[at].mesh))).and_then(|&place| held.get_mut(place));
+        let is_held = |chunk: &mut DrapeChunk| chunk.holds(&pieces[at..], &materials[at..]);
+        if let Some(chunk) = known.and_then(|chunk| chunk.take_if(is_held)) {
+            at += chunk.pieces.len();
+            planned.push(PlannedChunk::Kept(chunk));
+            continue;
+        }
+        vertices += pieces[at].mesh.vertices.len();
+        let open = match planned.last_mut() {
+            Some(PlannedChunk::Sent(material, range)) if vertices <= CHUNK_VERTICES => {
+                material.joined(materials[at]).map(|joined| (*material, range.end) = (joined, at + 1))
+            }
+            _ => None,
+        };
+        if open.is_none() {
+            vertices = pieces[at].mesh.vertices.len();
+            planned.push(PlannedChunk::Sent(materials[at], at..at + 1));
+        }
+        at += 1;
+    }
+    (planned, StoredDrapes { chunks: held.into_iter().flatten().collect() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sandtable_draw::color::Srgba;
+    use sandtable_draw::list::{DepthLayer, DrawVertex, FeatureId};
+    use sandtable_mesh::sink::{MeshSink, VertexId};
+
+    fn piece(vertices: usize) -> DrapedPiece {
+        let mut mesh = DrawMesh::default();
+        let corner = DrawVertex { position: [0.0; 3], normal: [0.0; 3], uv: [0.0; 2], color: Srgba::WHITE };
+        for _ in 0..vertices {
+            mesh.vertex(corner);
+        }
+        mesh.triangle([VertexId(0), VertexId(1), VertexId(2)]);
+        let (material, layer, feature) = (MaterialId(0), DepthLayer::Draped(0), FeatureId::GROUND);
+        DrapedPiece { mesh: Arc::new(mesh), material, layer, feature }
+    }
+
+    /// What is planned after `before`, as the pieces that are kept and those that are sent, and the number of chunks that go.
+    fn planned(before: &[&[&DrapedPiece]], pieces: &[DrapedPiece]) -> (Vec<(bool, Range<usize>)>, usize) {
+        let stored = || StoredRange { block: 0, bytes: 0..4 };
+        let chunk = |held: &&[&DrapedPiece]| DrapeChunk {
+            pieces: held
+                .iter()
+                .map(|piece| ChunkPiece { mesh: Arc::downgrade(&piece.mesh), material: piece.material })
+                .collect(),
+            material: DrapeMaterial::default(),
+            vertices: stored(),
+            indices: stored(),
+            count: 3,
+        };
+        let before = StoredDrapes { chunks: before.iter().map(chunk).collect() };
+        let materials = vec![DrapeMaterial::default(); pieces.len()];
+        let (chunks, left) = plan(before, pieces, &materials);
+        let mut at = 0;
+        let ranges = chunks.into_iter().map(|chunk| {
+            let (is_kept, count) = match chunk {
+                PlannedChunk::Kept(chunk) => (true, chunk.pieces.len()),
+                PlannedChunk::Sent(_, range) => (false, range.len()),
+            };
+            at += count;
+            (is_kept, at - count..at)
+        });
+        (ranges.collect(), left.chunks.len())
+    }
+
+    #[test]
+    fn pieces_are_sent_in_chunks_of_so_many_vertices() {
+        let pieces: Vec<DrapedPiece> = [400, 500, 200, 3000, 20, 30].map(piece).into();
+        assert_eq!(
+            planned(&[], &pieces),
+            (vec![(false, 0..2), (false, 2..3), (false, 3..4), (false, 4..6)], 0)
+        );
+    }
+
+    #[test]
+    fn a_chunk_stays_where_its_pieces_do_whatever_comes_or_goes_before_it() {
+        let [a, b, c, d, e, new] = [600, 300, 600, 300, 900, 50].map(piece);
+        let before: [&[&DrapedPiece]; 3] = [&[&a, &b], &[&c, &d], &[&e]];
+        let same = [a.clone(), b.clone(), c.clone(), d.clone(), e.clone()];
+        assert_eq!(planned(&before, &same), (vec![(true, 0..2), (true, 2..4), (true, 4..5)], 0));
+        let cut_again = [a.clone(), b.clone(), c.clone(), new.clone(), e.clone()];
+        assert_eq!(planned(&before, &cut_again), (vec![(true, 0..2), (false, 2..4), (true, 4..5)], 1));
+        let one_more = [new.clone(), a.clone(), b.clone(), c.clone(), d.clone(), e.clone()];
+        let expected = vec![(false, 0..1), (true, 1..3), (true, 3..5), (true, 5..6)];
+        assert_eq!(planned(&before, &one_more), (expected, 0));
+        let one_less = [a.clone(), b.clone(), e.clone()];
+        assert_eq!(planned(&before, &one_less), (vec![(true, 0..2), (true, 2..3)], 1));
+    }
+
+    #[test]
+    fn a_mesh_of_another_material_is_sent_anew() {
+        let a = piece(9);
+        let recolored = DrapedPiece { material: MaterialId(1), ..a.clone() };
+        assert_eq!(planned(&[&[&a]], &[recolored]), (vec![(false, 0..1)], 1));
+    }
+
+    #[test]
+    fn memory_that_another_mesh_takes_is_not_mistaken_for_the_mesh_before() {
+        let held = piece(9);
+        let before = [&held];
+        let chunk: &[&DrapedPiece] = &before;
+        let (chunks, _) = planned(&[chunk], &[piece(9)]);
+        assert_eq!(chunks, [(false, 0..1)], "equal, but cut again");
+    }
+}
