@@ -37,6 +37,8 @@ pub struct Annotations {
     pub rim: Vec<RimMark>,
     /// The coordinate grid on the ground, under everything else.
     pub grid: Option<PictureGrid>,
+    /// The scale of azimuths of a panorama and the names over its skyline, placed before labels.
+    pub panorama: Option<PanoramaMarks>,
     /// Military symbols, placed before labels.
     pub symbols: Vec<PictureSymbol>,
     /// The title, upper left.
@@ -58,6 +60,28 @@ pub struct Annotations {
     /// The part of the picture that shows the scene; scale bar and legend move from a lower to an upper corner if they
     /// would cover the scene in the lower corner and not in the upper one.
     pub cover: Option<SceneCover>,
+}
+
+/// What a panorama has besides labels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PanoramaMarks {
+    /// The azimuth of its left border, clockwise from north, degrees.
+    pub from_deg: f64,
+    /// How far round it reaches, degrees.
+    pub span_deg: f64,
+    /// The names over its skyline, the more important first.
+    pub peaks: Vec<SkylineName>,
+}
+
+/// A name in the sky, with a line to what it names.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SkylineName {
+    /// The name; on a further line, in smaller type, a note on it.
+    pub text: String,
+    /// What it names, in pixels.
+    pub at_px: Vec2,
+    /// Whether the report says so where there is no place for it.
+    pub is_wanted: bool,
 }
 
 /// A name whose letters follow a line on the picture: a river, a road, a phase line, the axis of an area.

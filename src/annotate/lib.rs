@@ -6,6 +6,7 @@
 //! ```text
 //! Annotations ──► furniture (title, north, scale_bar, legend, credit) ──► Drawing ─┬─► canvas ──► Pixels
 //!             ├─► margin, on a sheet_frame (the same, norths, locator) ─► Drawing ─┼─► pdf
+//!             ├─► azimuth_scale, skyline_names, of a panorama ─────────► Drawing ─┤
 //!             ├─► rim, grid, figure ───────────────────────────────────► Drawing ─┼─► svg
 //!             └─► labels ──► positions ──► place (pure, two dimensions) ─► Drawing ─┘
 //! ```
@@ -14,6 +15,7 @@
 //! in the fonts embedded in the program and never in the machine's: the same input gives the same bytes everywhere.
 
 pub mod annotation;
+mod azimuth_scale;
 mod canvas;
 pub mod chart;
 pub mod chart_ground;
@@ -59,6 +61,7 @@ pub mod rim;
 pub mod scale_bar;
 mod sheet;
 pub mod sheet_frame;
+mod skyline_names;
 pub mod svg;
 mod symbol_drawing;
 mod symbol_field;

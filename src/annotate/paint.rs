@@ -15,7 +15,9 @@ use crate::pixel_box::PixelBox;
 use crate::report::{AnnotationReport, FurnitureKind};
 use crate::sheet::{PAPER, Sheet};
 use crate::symbols::draw_symbols;
-use crate::{class_legend, credit, grid, legend, margin, north, rim, scale_bar, title};
+use crate::{
+    azimuth_scale, class_legend, credit, grid, legend, margin, north, rim, scale_bar, skyline_names, title,
+};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::pixels::Pixels;
 
@@ -114,16 +116,29 @@ fn on_picture(
     let figures = figures.unwrap_or_default();
     boxes.extend(figures.iter().map(Drawing::bounds));
     let fixed = draw_fixed(&annotations.fixed_texts, &mut boxes, composer, report);
+    let mut panorama = Drawing::default();
+    if let Some(marks) = &annotations.panorama {
+        panorama = azimuth_scale::compose(marks, composer);
+        boxes.push(panorama.bounds());
+        let sky = (picture, annotations.cover.as_ref());
+        panorama.append(skyline_names::draw(&marks.peaks, sky, &mut boxes, composer, report));
+    }
+    // The names over a skyline are known by their texts already.
+    let known: Vec<PixelBox> =
+        report.boxes.iter().map(|area| PixelBox { min: area.min, max: area.max }).collect();
     let symbols = draw_symbols(&annotations.symbols, &boxes, composer, &mut report.symbols);
     report.add_texts(&symbols.drawing.texts);
     boxes.extend(&symbols.boxes);
     let labels = draw_labels(annotations, picture, &boxes, composer, report);
+    report
+        .boxes
+        .retain(|area| area.text.is_some() || !known.contains(&PixelBox { min: area.min, max: area.max }));
     lines
         .into_iter()
         .chain(furniture)
         .chain(marks)
         .chain(figures)
-        .chain([fixed, symbols.drawing, labels])
+        .chain([panorama, fixed, symbols.drawing, labels])
         .collect()
 }
 

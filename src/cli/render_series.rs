@@ -20,8 +20,8 @@ use sandtable_render::RenderBackend;
 use sandtable_scene::planned_pictures::{ElevationNeed, NearGround, PlannedCameras, PlannedPictures};
 use sandtable_scene::scene_file::{open_scene_for, phases};
 use sandtable_scene::scene_model::SceneModel;
-use sandtable_scene::scene_view::SceneView;
-use sandtable_sheet::picture::{ComposedView, DrawnView, PictureSize, compose_view, draw_view};
+use sandtable_scene::scene_view::{SceneView, ViewAim};
+use sandtable_sheet::picture::{ComposedView, DrawnView, PictureError, PictureSize, compose_view, draw_view};
 use sandtable_sheet::picture_buffers::PictureBuffers;
 use sandtable_sheet::picture_statistics::PictureStatistics;
 use sandtable_sheet::sheet_file::{picture_description, write_sheet};
@@ -192,6 +192,10 @@ impl RenderSeries<'_> {
             let own_size = || arguments.size.unwrap_or_else(|| PictureSize::of(&scene, view));
             let size = small.map_or_else(own_size, |[width, height]| PictureSize { width, height });
             let steps = self.steps;
+            if let (ViewAim::Panorama(_), Some(_)) = (view.aim, &arguments.buffers) {
+                self.leave_out("camera", &view.name, PictureError::PanoramaPixels.into(), views.len())?;
+                continue;
+            }
             match draw_view(&scene, view, size, self.backend, &|step| steps.begin(step)) {
                 Ok(drawn) => {
                     let target = PictureTarget { path, small, fingerprint: fingerprint.as_deref() };

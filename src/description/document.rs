@@ -341,9 +341,9 @@ table! {
     struct CameraTable {
         /// Name for `--camera`; no two cameras share one.
         name: Stated<String> = key::filled_text(), required;
-        /// How the ground is drawn. All but `perspective` have one scale everywhere, and no eye.
+        /// How the ground is drawn. `plan`, `orthographic` and `oblique` have one scale everywhere, and no eye.
         projection: CameraProjection = key::word::<CameraProjection>(), default "perspective";
-        /// Of a camera that is not in perspective: `n` of the map scale 1:n, with the middle of what it `shows` in the
+        /// Of a camera with one scale: `n` of the map scale 1:n, with the middle of what it `shows` in the
         /// picture's middle.
         scale: Option<f64> = key::number(Within(1.0, 1e9), ""),
             otherwise "as large as what it shows fits the picture, `n` rounded up to two figures";
@@ -351,7 +351,7 @@ table! {
         dpi: Option<f64> = key::number(Within(10.0, 10_000.0), "per inch"), otherwise "96, and 150 on `paper`";
         /// The paper that the picture fills at `dpi`, unless the command line states a size in pixels.
         paper: Option<PaperName> = key::word::<PaperName>(),
-            otherwise "none: 1920 × 1080 px; not in perspective and without `scale`, as many in the shape of what it shows, from 1:2 to 2:1";
+            otherwise "none: 1920 × 1080 px; with one scale that nothing states, as many in the shape of what it shows, from 1:2 to 2:1; of a panorama 16 px a degree, as high as its relief needs";
         /// Whether the paper stands upright.
         portrait: bool = key::switch(), default false;
         /// Place of the eye.
@@ -366,6 +366,10 @@ table! {
         look_at_height: f64 = key::number(Bounds::ELEVATION, "m"), default 0;
         /// Coordinate system of `eye` and `look_at`.
         crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`";
+        /// Of a panorama: the azimuth of its left border, clockwise from north.
+        from: Option<f64> = key::number(Within(-360.0, 360.0), "°"), otherwise "180: north is in the middle";
+        /// Of a panorama: the azimuth of its right border, at least 10° from the left one.
+        to: Option<f64> = key::number(Within(-360.0, 360.0), "°"), otherwise "the whole circle";
         /// Of a camera without an eye: where it looks, clockwise from north; the upper border of a plan.
         azimuth: Option<f64> = key::number(Within(-360.0, 360.0), "°"),
             otherwise "0; of one in perspective up to 45° from it where that fills the picture better";
@@ -384,6 +388,8 @@ table! {
             if reader.key_span("paper").is_none() {
                 reader.without_effect(&["dpi"], "in perspective without `paper`", help);
             }
+        } else if projection == CameraProjection::Panorama {
+            check_panorama(reader, [from.flatten(), to.flatten()]);
         } else {
             let keys = ["eye", "eye_height", "eye_elevation", "look_at", "look_at_height", "field_of_view"];
             let help = "state what it `shows`, or set `projection = \"perspective\"`";
@@ -392,6 +398,10 @@ table! {
                 let help = "set `projection = \"orthographic\"`, or remove it";
                 reader.without_effect(&["pitch"], "on a plan or an oblique picture", help);
             }
+        }
+        if projection != CameraProjection::Panorama {
+            let help = "set `projection = \"panorama\"`, or remove it";
+            reader.without_effect(&["from", "to"], "on a camera that is no panorama", help);
         }
         if reader.key_span("paper").is_none() {
             reader.without_effect(&["portrait"], "without `paper`", "set `paper`, or remove it");
@@ -496,12 +506,55 @@ impl Document {
     }
 }
 
-/// Reports keys of a camera in perspective that do not go together.
-fn check_eye(reader: &mut TableReader<'_, '_>) {
+/// The least part of the horizon that a panorama shows, degrees: a narrower one is a view in perspective.
+pub const LEAST_PANORAMA_DEG: f64 = 10.0;
+
+/// How far round a panorama reaches from one azimuth to another, degrees: the whole circle where they are the same or one is
+/// missing.
+pub fn panorama_span_deg(from_deg: Option<f64>, to_deg: Option<f64>) -> f64 {
+    let turn = from_deg.zip(to_deg).map_or(0.0, |(from, to)| (to - from).rem_euclid(360.0));
+    if turn == 0.0 { 360.0 } else { turn }
+}
+
+/// Reports keys of a panorama that do not go together.
+fn check_panorama(reader: &mut TableReader<'_, '_>, [from, to]: [Option<f64>; 2]) {
+    let keys =
+        ["look_at", "look_at_height", "azimuth", "pitch", "shows", "field_of_view", "scale", "dpi", "paper"];
+    let help = "state `from` and `to` for a part of the circle; its height is fitted to the skyline";
+    reader.without_effect(&keys, "on a panorama", help);
+    check_eye_height(reader);
+    if reader.key_span("eye").is_none() {
+        let span = reader.key_span("projection").unwrap_or_default();
+        reader.error(span, "a panorama needs an `eye`", "state the place that it is seen from");
+    }
+    if let (None, Some(span)) = (reader.key_span("from"), reader.key_span("to")) {
+        reader.error(
+            span,
+            "the camera has `to` without `from`",
+            "state both, or `from` alone for the whole circle",
+        );
+    }
+    let span_deg = panorama_span_deg(from, to);
+    if let Some(span) = reader.key_span("to").filter(|_| span_deg < LEAST_PANORAMA_DEG) {
+        let message = format!(
+            "the panorama reaches over {span_deg}° of the horizon, and {LEAST_PANORAMA_DEG}° is the least"
+        );
+        let help = "move `to` clockwise, or take a camera in perspective with a small `field_of_view`";
+        reader.error(span, message, help);
+    }
+}
+
+/// Reports an eye with two heights.
+fn check_eye_height(reader: &mut TableReader<'_, '_>) {
     if let (Some(_), Some(span)) = (reader.key_span("eye_height"), reader.value_span("eye_elevation")) {
         let help = "keep `eye_height` to measure from the ground, or `eye_elevation` to measure from the sea";
         reader.error(span, "the eye has both a height and an elevation", help);
     }
+}
+
+/// Reports keys of a camera in perspective that do not go together.
+fn check_eye(reader: &mut TableReader<'_, '_>) {
+    check_eye_height(reader);
     for (stated, missing) in [("eye", "look_at"), ("look_at", "eye")] {
         if let (Some(span), None) = (reader.value_span(stated), reader.value_span(missing)) {
             let help = "state both, or neither for a view that fills the picture";

@@ -110,6 +110,7 @@ words! {
         Plan = "plan": "straight from above, as a map, with `azimuth` up; one scale, and heights do not show",
         Orthographic = "orthographic": "by parallel rays along `azimuth` and `pitch`: one scale across the view",
         Oblique = "oblique": "the ground as in plan, and heights straight up at the same scale (a military oblique)",
+        Panorama = "panorama": "on a cylinder around the `eye`, with the names of the peaks in sight and a scale of azimuths",
     }
 
     /// What the block of terrain stands on where its edge is in view from outside.

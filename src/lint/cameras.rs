@@ -50,6 +50,10 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
                 continue;
             }
         };
+        // Its eye is on the ground, and it looks around.
+        if let ViewAim::Panorama(_) = view.aim {
+            continue;
+        }
         let (min, max) = scene.bounds;
         if !Frustum::new(&camera).may_see(min, max) {
             let message = format!(

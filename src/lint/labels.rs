@@ -14,7 +14,7 @@ use sandtable_description::finding_code::FindingCode;
 use sandtable_draw::list::FeatureId;
 use sandtable_picture::nested_ground::NestedHeights;
 use sandtable_scene::scene_model::SceneModel;
-use sandtable_scene::scene_view::SceneView;
+use sandtable_scene::scene_view::{SceneView, ViewAim};
 use sandtable_sheet::labels::{AnnotatedGround, annotations};
 use sandtable_sheet::picture::{PictureSize, framed_camera};
 
@@ -27,7 +27,10 @@ const MOST_CHARACTERS: usize = 40;
 /// Finds labels that are not drawn, and those that cannot be read, on the picture of the first camera.
 pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     let scene = context.scene;
-    let Some(view) = scene.cameras.first().filter(|_| !context.document.labels.is_empty()) else { return };
+    let is_picture = |view: &&SceneView| !matches!(view.aim, ViewAim::Panorama(_));
+    // A panorama leaves out what is not in sight: that is no mistake of the scene.
+    let first = scene.cameras.first().filter(is_picture);
+    let Some(view) = first.filter(|_| !context.document.labels.is_empty()) else { return };
     // A camera without a picture is another finding.
     let Some((report, standing_before)) = placed(scene, view) else { return };
     let dropped = DroppedLabels { context, view };

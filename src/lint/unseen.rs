@@ -13,6 +13,7 @@ use crate::standing::reach;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_geom::aabb::Aabb;
 use sandtable_scene::scene_model::SceneModel;
+use sandtable_scene::scene_view::ViewAim;
 use sandtable_sheet::picture::{PictureSize, framed_camera};
 use sandtable_view::frustum::Frustum;
 
@@ -22,6 +23,10 @@ const ABOVE_M: f32 = 100.0;
 /// Finds such tables.
 pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     let scene = context.scene;
+    // A panorama looks all around.
+    if scene.cameras.iter().any(|view| matches!(view.aim, ViewAim::Panorama(_))) {
+        return;
+    }
     let frustums = scene.cameras.iter().map(|view| framed_camera(scene, view, PictureSize::of(scene, view)));
     let frustums: Vec<Frustum> = frustums.flatten().map(|(camera, _)| Frustum::new(&camera)).collect();
     // Without cameras, one is fitted to all of the scene; cameras without a picture are other findings.

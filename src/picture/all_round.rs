@@ -10,7 +10,7 @@ use std::f32::consts::FRAC_PI_2;
 use glam::Mat4;
 use rayon::prelude::*;
 
-use crate::detail::ListedForm;
+use crate::detail::{ListedForm, Viewer};
 use crate::drapes::{
     BELOW_RIVERS, BELOW_ROADS, RibbonLook, add_material, fill_color, lake_material, sources, tapered,
 };
@@ -100,7 +100,7 @@ pub fn all_round(
     let bands_m = add_laid(&mut list, &mut shown, scene, displayed)?;
     let tints = overlay::add_ground_tints(&mut list, scene, displayed);
     shown.splice(tints.start..tints.start, tints.map(|_| ItemShown::Always));
-    let graphic_texts = overlay::add(&mut list, scene, &overview, displayed, progress);
+    let graphic_texts = overlay::add(&mut list, scene, Viewer::Camera(&overview), displayed, progress);
     progress("setting models");
     ground::add_plinth(&mut list, scene, walls);
     shown.resize(list.items.len(), ItemShown::Always);

@@ -47,6 +47,16 @@ pub(super) enum Viewer<'a> {
     Around(&'a Camera),
 }
 
+impl<'a> Viewer<'a> {
+    /// The camera; `None` for no viewer yet.
+    pub fn camera(self) -> Option<&'a Camera> {
+        match self {
+            Self::Anyone => None,
+            Self::Camera(camera) | Self::Around(camera) => Some(camera),
+        }
+    }
+}
+
 /// A model set in its place.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PlacedModel {

@@ -85,14 +85,16 @@ pub(super) fn add(
     displayed: &dyn TriangleSurface,
     viewer: Viewer<'_>,
 ) -> RaisedSymbols {
-    let Symbols { draped, shows } = match viewer {
-        Viewer::Anyone => Symbols::default(),
-        Viewer::Camera(camera) | Viewer::Around(camera) => symbols(scene, camera, displayed),
-    };
-    let scale = match viewer {
+    let line_scale = || match viewer {
         Viewer::Anyone => None,
-        Viewer::Camera(camera) | Viewer::Around(camera) => Some(LineScale::new(camera)),
+        Viewer::Camera(camera) => Some((camera, LineScale::new(camera))),
+        Viewer::Around(camera) => Some((camera, LineScale::around(camera))),
     };
+    let Symbols { draped, shows } = match line_scale() {
+        None => Symbols::default(),
+        Some((camera, scale)) => symbols(scene, camera, scale, displayed),
+    };
+    let scale = line_scale().map(|(_, scale)| scale);
     let sources = sources(scene);
     let lakes = scale.as_ref().map(|scale| large_lakes(scene, scale)).unwrap_or_default();
     let draped_ribbon = |ribbon: &Ribbon| {

@@ -24,6 +24,7 @@ pub mod nested_ground;
 mod nested_plan;
 mod nested_surface;
 mod overlay;
+pub mod panorama;
 pub mod placed_text;
 mod post_tint;
 pub mod recut;
@@ -57,6 +58,7 @@ use sandtable_scene::framing::parallel_view::parallel_camera;
 use sandtable_scene::ground_map_cache::GroundMapKey;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::scene_view::{SceneView, ViewAim};
+use sandtable_view::axes::DirectionAxes;
 use sandtable_view::camera::{Camera, CameraError, far_m};
 
 /// The draw list of a scene for one camera.
@@ -73,7 +75,8 @@ pub struct ViewDraw {
     pub nested: NestedHeights,
 }
 
-/// The camera for a view on a picture of `size` pixels, its far plane behind the whole scene.
+/// The camera for a view on a picture of `size` pixels, its far plane behind the whole scene; for a panorama one in perspective
+/// toward its middle, see [`panorama`].
 ///
 /// # Errors
 /// See [`CameraError`].
@@ -83,6 +86,10 @@ pub fn camera(scene: &SceneModel, view: &SceneView, size: (u32, u32)) -> Result<
         ViewAim::At { eye, target } => (eye, target),
         ViewAim::Fitted(fitted) => fitted_aim(scene, &fitted, view.fov_y_rad, size),
         ViewAim::Parallel(parallel) => return parallel_camera(scene, &parallel, size),
+        ViewAim::Panorama(view) => {
+            let toward = DirectionAxes::new(view.from_rad + view.span_rad * 0.5, 0.0).forward;
+            (view.eye, view.eye + toward * far_m(&Aabb { min, max }, view.eye))
+        }
     };
     Camera::new(eye, target, view.fov_y_rad, size, (0.5, far_m(&Aabb { min, max }, eye)))
 }
@@ -163,10 +170,7 @@ fn listed(
     purpose: ListPurpose,
     progress: &dyn Fn(&'static str),
 ) -> ListedScene {
-    let camera = match viewer {
-        Viewer::Camera(camera) | Viewer::Around(camera) => Some(camera),
-        Viewer::Anyone => None,
-    };
+    let camera = viewer.camera();
     let to_sun = scene.sunlight.to_sun(camera);
     let level = camera.map_or(0, |camera| ground::map_level(scene, camera));
     let map = match purpose {
@@ -187,7 +191,7 @@ fn listed(
     if annotated.is_some() {
         overlay::add_ground_tints(&mut list, scene, displayed);
     }
-    let graphic_texts = annotated.map(|camera| overlay::add(&mut list, scene, camera, displayed, progress));
+    let graphic_texts = annotated.map(|_| overlay::add(&mut list, scene, viewer, displayed, progress));
     progress("setting models");
     ground::add_plinth(&mut list, scene, walls);
     if annotated.is_some() && setting.is_some_and(|setting| has_table(scene, setting)) {

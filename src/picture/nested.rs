@@ -97,7 +97,7 @@ pub fn build_nested_draw_list(
         outer: SurfacePart { surface: Arc::clone(&displayed), origin: DVec2::ZERO },
         nested: parts.iter().map(ShownPart::surface).collect(),
     };
-    let graphic_texts = overlay::add(&mut list, scene, camera, &surface, progress);
+    let graphic_texts = overlay::add(&mut list, scene, Viewer::Camera(camera), &surface, progress);
     airspace::add(&mut list, scene);
     list.items.sort_by_key(|item| item.layer);
     overlay::add_ground_tints(&mut list, scene, &surface);

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
+use crate::detail::Viewer;
 use crate::graphic_lines::{CASING, GraphicPen, GraphicView, LinePlan, add_parts};
 use crate::placed_text::PlacedText;
 use crate::post_tint::{self, TINT_LAYER, TintPlan};
@@ -48,18 +49,19 @@ pub(super) fn colors(scene: &SceneModel) -> BTreeSet<[u8; 4]> {
     all.map(|Srgba(color)| color).collect()
 }
 
-/// Adds what the camera sees of it; returns its texts. `progress` is called with the name of each step as it begins.
+/// Adds what the viewer sees of it, where `viewer` has a camera; returns its texts. `progress` is called with the name of each step as it begins.
 pub(super) fn add(
     list: &mut DrawList,
     scene: &SceneModel,
-    camera: &Camera,
+    viewer: Viewer<'_>,
     displayed: &dyn TriangleSurface,
     progress: &dyn Fn(&'static str),
 ) -> Vec<PlacedText> {
-    if !scene.has_overlay() {
-        return Vec::new();
-    }
-    let view = GraphicView::new(scene, camera);
+    let Some(camera) = viewer.camera().filter(|_| scene.has_overlay()) else { return Vec::new() };
+    let view = match viewer {
+        Viewer::Around(_) => GraphicView::around(scene, camera),
+        Viewer::Camera(_) | Viewer::Anyone => GraphicView::new(scene, camera),
+    };
     let (mut pen, mut texts) = (GraphicPen::default(), Vec::new());
     if !scene.sight.is_empty() {
         progress("computing sight");

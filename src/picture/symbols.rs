@@ -145,10 +145,11 @@ pub(super) struct PlannedSymbol<'a> {
     pub deck: Option<&'a DeckLine>,
 }
 
-/// The symbols that `camera` sees, on the ground that it is shown.
+/// The symbols that `camera` sees by `scale`, on the ground that it is shown.
 pub(super) fn symbols<'a>(
     scene: &'a SceneModel,
     camera: &Camera,
+    scale: LineScale<'_>,
     displayed: &dyn TriangleSurface,
 ) -> Symbols<'a> {
     let mesh = |plan: &PlanMesh, deck: Option<&DeckLine>, above_m: f64| {
@@ -171,7 +172,7 @@ pub(super) fn symbols<'a>(
         ..draped
     };
     let finish = PlanFinish { make: draped, keep: packed };
-    let (draped, shows) = planned_with(scene, camera, LineScale::new(camera), SymbolUv::Share, finish);
+    let (draped, shows) = planned_with(scene, camera, scale, SymbolUv::Share, finish);
     Symbols { draped, shows }
 }
 

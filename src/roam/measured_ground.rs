@@ -138,6 +138,12 @@ impl MeasuredGround {
         self.displayed(&self.screen_error(camera, tolerance_px), self.in_view(camera))
     }
 
+    /// All of the ground as an eye shows it that turns around where `camera` is, off by at most `tolerance_px` pixels of `camera`.
+    pub fn displayed_around(&self, camera: &Camera, tolerance_px: f32) -> DisplayedTerrain {
+        let criterion = self.screen_error(camera, tolerance_px).all_around();
+        self.displayed(&criterion, self.layout.patches().collect())
+    }
+
     /// All of the ground, off by at most `max_error_m` at every post.
     pub fn displayed_within(&self, max_error_m: f32) -> DisplayedTerrain {
         let criterion = Flat::new(&self.layout, self.exact(), max_error_m);

@@ -1,7 +1,7 @@
 //! The pictures that a scene is built for, which decide how many samples of its elevation are read.
 
-use sandtable_description::document::Document;
-use sandtable_description::words::RangeExtent;
+use sandtable_description::document::{CameraTable, Document};
+use sandtable_description::words::{CameraProjection, RangeExtent};
 
 /// The samples of the elevation that a scene needs.
 #[derive(Clone, Copy, Debug)]
@@ -52,6 +52,18 @@ pub enum PlannedCameras {
     All,
     /// None of the scene: plans of any part of the ground whose pixels are so many meters wide.
     Plans(f64),
+}
+
+/// Whether one of the pictures is a panorama.
+pub(super) fn show_panorama(pictures: &PlannedPictures, document: &Document) -> bool {
+    let mut tables = document.cameras.iter();
+    let is_panorama = |table: &CameraTable| table.projection == CameraProjection::Panorama;
+    match &pictures.cameras {
+        PlannedCameras::First => tables.next().is_some_and(is_panorama),
+        PlannedCameras::Named(name) => tables.any(|table| *table.name == *name && is_panorama(table)),
+        PlannedCameras::All => tables.any(is_panorama),
+        PlannedCameras::Plans(_) => false,
+    }
 }
 
 /// Whether pictures of a scene show heights of places in numbers, or what is seen from a place, which depend on single samples.

@@ -2,7 +2,9 @@
 
 use crate::finer_elevation::level_samples;
 use crate::framing::shown_step::{UnreadGround, shown_step};
-use crate::planned_pictures::{ElevationNeed, NearGround, PlannedPictures, depends_on_samples};
+use crate::planned_pictures::{
+    ElevationNeed, NearGround, PlannedPictures, depends_on_samples, show_panorama,
+};
 use crate::scene_findings::SceneFindings;
 use sandtable_base::limits::{PICTURED_SAMPLES, RASTER_SAMPLES, REDUCED_SAMPLES};
 use sandtable_description::diagnostic::Diagnostic;
@@ -46,8 +48,8 @@ pub(super) fn reduced_as_needed(
         ElevationNeed::All | ElevationNeed::AllThatFit | ElevationNeed::Nested { .. } => 1,
     };
     let fitting = fitting_step((width, height));
-    let nests =
-        nests(need) && (shown == 1 || samples((width, height), shown) >= MOST_MEANS * PICTURED_SAMPLES.get());
+    let nests = nests(need, document)
+        && (shown == 1 || samples((width, height), shown) >= MOST_MEANS * PICTURED_SAMPLES.get());
     let step = if nests { least_step((width, height), level_samples()) } else { shown.max(fitting) };
     if step == 1 {
         return Ok(None);
@@ -80,10 +82,13 @@ pub(super) fn reduced_as_needed(
     Ok(Some(ReducedElevation { raster, nests_step: nests.then_some(step), whole: windows }))
 }
 
-/// Whether pictures may show nested grounds of more samples than the scene's.
-fn nests(need: ElevationNeed<'_>) -> bool {
+/// Whether pictures may show nested grounds of more samples than the scene's. A panorama has ground near its eye on all sides, and
+/// takes the scene's.
+fn nests(need: ElevationNeed<'_>, document: &Document) -> bool {
     match need {
-        ElevationNeed::Pictures(pictures) => pictures.near == NearGround::Nested,
+        ElevationNeed::Pictures(pictures) => {
+            pictures.near == NearGround::Nested && !show_panorama(pictures, document)
+        }
         ElevationNeed::All | ElevationNeed::AllThatFit | ElevationNeed::Nested { .. } => false,
     }
 }

@@ -32,7 +32,7 @@ impl SceneView {
     /// The part of the ground that it is fitted to, world X and Y; `None` where that is all, and where it has an eye.
     pub fn shown(&self) -> Option<Rect> {
         match self.aim {
-            ViewAim::At { .. } => None,
+            ViewAim::At { .. } | ViewAim::Panorama(_) => None,
             ViewAim::Fitted(FittedView { shown, .. }) | ViewAim::Parallel(ParallelView { shown, .. }) => {
                 shown
             }
@@ -45,6 +45,7 @@ impl SceneView {
         let point = |at: Vec3| at + by.as_vec2().extend(0.0);
         let aim = match self.aim {
             ViewAim::At { eye, target } => ViewAim::At { eye: point(eye), target: point(target) },
+            ViewAim::Panorama(view) => ViewAim::Panorama(PanoramaView { eye: point(view.eye), ..view }),
             ViewAim::Fitted(view) => ViewAim::Fitted(FittedView { shown: view.shown.map(rect), ..view }),
             ViewAim::Parallel(view) => ViewAim::Parallel(ParallelView {
                 shown: view.shown.map(rect),
@@ -70,6 +71,19 @@ pub enum ViewAim {
     Fitted(FittedView),
     /// By parallel rays, with one scale.
     Parallel(ParallelView),
+    /// All around, or part of the way.
+    Panorama(PanoramaView),
+}
+
+/// A view on a cylinder around its eye.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PanoramaView {
+    /// The eye, world space.
+    pub eye: Vec3,
+    /// The azimuth of the left border, clockwise from north, radians.
+    pub from_rad: f32,
+    /// How far round it reaches, radians; a full turn at most.
+    pub span_rad: f32,
 }
 
 /// A view whose eye depends on the picture's shape.

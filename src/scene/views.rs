@@ -7,14 +7,14 @@ use glam::{DVec2, Vec3};
 use crate::build_errors::BuildErrorSink;
 use crate::paper_sheet::PaperSheet;
 use crate::scene_findings::SceneFindings;
-use crate::scene_view::{FittedView, ParallelView, SceneView, ViewAim};
+use crate::scene_view::{FittedView, PanoramaView, ParallelView, SceneView, ViewAim};
 use crate::vertical_scale::DrawnGround;
 use crate::world_frame::WorldFrame;
 use sandtable_description::diagnostic::Diagnostic;
-use sandtable_description::document::{CameraTable, Document, PAPER_DPI, paper_mm};
+use sandtable_description::document::{CameraTable, Document, PAPER_DPI, panorama_span_deg, paper_mm};
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::stated::Stated;
-use sandtable_description::words::CameraProjection;
+use sandtable_description::words::{CameraProjection, SheetLayout};
 use sandtable_geom::position::Position;
 use sandtable_geom::rect::Rect;
 use sandtable_terrain::lattice::Lattice;
@@ -36,9 +36,10 @@ const EYE_FOV_DEG: f64 = 40.0;
 const FITTED_FOV_DEG: f64 = 28.0;
 
 fn camera(table: &CameraTable, frame: &WorldFrame<'_>, lattice: &Lattice) -> Result<SceneView, Diagnostic> {
-    let aim = match eye_and_target(table) {
-        Some([eye, look_at]) => aimed(table, eye, look_at, frame, lattice)?,
-        None => aim_without_eye(table, frame, &plan(lattice))?,
+    let aim = match (eye_and_target(table), panorama_eye(table)) {
+        (Some([eye, look_at]), _) => aimed(table, eye, look_at, frame, lattice)?,
+        (None, Some(eye)) => ViewAim::Panorama(panorama(table, eye, frame, lattice)?),
+        (None, None) => aim_without_eye(table, frame, &plan(lattice))?,
     };
     Ok(SceneView {
         name: table.name.to_string(),
@@ -58,6 +59,39 @@ pub(super) fn eye_and_target(table: &CameraTable) -> Option<[&Stated<Position>; 
     let is_perspective = table.projection == CameraProjection::Perspective;
     let places = table.eye.as_ref().zip(table.look_at.as_ref());
     places.filter(|_| is_perspective).map(|(eye, look_at)| [eye, look_at])
+}
+
+/// Where a panorama has its eye; `None` for other cameras.
+pub(super) fn panorama_eye(table: &CameraTable) -> Option<&Stated<Position>> {
+    table.eye.as_ref().filter(|_| table.projection == CameraProjection::Panorama)
+}
+
+/// The azimuth of the left border of a panorama where it is not stated: north is in the middle.
+const PANORAMA_FROM_DEG: f64 = 180.0;
+
+fn panorama(
+    table: &CameraTable,
+    eye: &Stated<Position>,
+    frame: &WorldFrame<'_>,
+    lattice: &Lattice,
+) -> Result<PanoramaView, Diagnostic> {
+    if matches!(frame.document.furniture.layout, SheetLayout::Margin | SheetLayout::Military) {
+        let message = "a panorama has no margin, and the scene's `layout` has one";
+        let help = "set `layout` to compact or none, or give the panorama a scene file of its own";
+        return Err(frame.document.error(&table.name, message).with_help(help));
+    }
+    let eye_world = frame.point(eye, table.crs.as_ref())?;
+    let ground = frame.on_ground(lattice, eye, eye_world)?;
+    let elevation_m = table.eye_elevation.map_or_else(
+        || frame.scale.elevation_m(ground.z) + table.eye_height as f32,
+        |elevation| elevation as f32,
+    );
+    Ok(PanoramaView {
+        // The eye's height is drawn as high as the ground's, so that it sees what it would see.
+        eye: ground.with_z(frame.scale.world_z(elevation_m)),
+        from_rad: table.from.unwrap_or(PANORAMA_FROM_DEG).to_radians() as f32,
+        span_rad: panorama_span_deg(table.from, table.to).to_radians() as f32,
+    })
 }
 
 /// The vertical field of view of a camera, radians; without one, that of a view of the whole ground.
@@ -134,7 +168,7 @@ fn parallel(table: &CameraTable, frame: &WorldFrame<'_>, ground: &Rect) -> Resul
         CameraProjection::Plan => (FRAC_PI_2, 1.0),
         // Rays that fall by 45° show level ground as it is where the picture is stretched by the square root of 2.
         CameraProjection::Oblique => (FRAC_PI_4, SQRT_2),
-        CameraProjection::Orthographic | CameraProjection::Perspective => {
+        CameraProjection::Orthographic | CameraProjection::Perspective | CameraProjection::Panorama => {
             (table.pitch.map_or(FRAC_PI_4, radians), 1.0)
         }
     };
@@ -175,7 +209,10 @@ pub fn find_buried(
 ) {
     let lattice = ground.lattice;
     let depth_m = |view: &SceneView| {
-        let ViewAim::At { eye, .. } = view.aim else { return None };
+        let eye = match view.aim {
+            ViewAim::At { eye, .. } | ViewAim::Panorama(PanoramaView { eye, .. }) => eye,
+            ViewAim::Fitted(_) | ViewAim::Parallel(_) => return None,
+        };
         let at = lattice.map_point(eye);
         let height = ground_height(lattice, Interpolation::Planar, at).height_m()?;
         Some(height - f64::from(ground.scale.elevation_m(eye.z))).filter(|&depth| depth > 0.0)

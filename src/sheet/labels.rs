@@ -47,7 +47,7 @@ pub fn annotations(
 ) -> Annotations {
     let nested = shown.nested;
     let furniture = &scene.furniture;
-    let is_bare = furniture.layout == SheetLayout::None;
+    let is_bare = is_bare(scene);
     let shows = |is_wanted: bool| is_wanted && !is_bare;
     let has_classes = shows(furniture.classes.unwrap_or(frame.is_some()));
     let grid = grid_over(scene, camera, picture);
@@ -98,8 +98,13 @@ fn is_all_imagery(scene: &SceneModel) -> bool {
     scene.imagery.as_ref().is_some_and(|imagery| imagery.covers(min.truncate(), max.truncate()))
 }
 
+/// Whether a picture has nothing but labels and the grid.
+pub(crate) fn is_bare(scene: &SceneModel) -> bool {
+    scene.furniture.layout == SheetLayout::None
+}
+
 /// Where the picture shows the scene and not its background.
-fn cover(picture: &Rendering) -> SceneCover {
+pub(crate) fn cover(picture: &Rendering) -> SceneCover {
     let (width, height) = (picture.pixels.width(), picture.pixels.height());
     SceneCover::new(width, height, |x, y| picture.features[(y * width + x) as usize] != FeatureId::NONE)
 }

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! scene, view ─► picture ─► labels, legend, grid, margin, rim ─► sheet_file     PNG, PDF, SVG
+//!                   ├─────► panorama, with peaks_in_sight
 //!                   └─────► picture_buffers, picture_statistics, sidecar       what the pixels show
 //! ```
 
@@ -18,6 +19,8 @@ mod line_labels;
 pub mod look;
 pub mod margin;
 pub mod military;
+pub mod panorama;
+pub mod peaks_in_sight;
 pub mod picture;
 pub mod picture_buffers;
 pub mod picture_middle;

@@ -31,12 +31,14 @@ const WALL: u8 = 225;
 const BRIGHTEST: f32 = 0.3;
 const BRIGHTEST_INK: f32 = 0.9;
 
-/// Gives a picture of `list`, seen through `camera`, the look of the scene's preset; most have none of their own.
-pub fn apply_look(scene: &SceneModel, list: &DrawList, camera: &Camera, picture: &mut Rendering) {
+/// Gives a picture the look of the scene's preset; most have none of their own. `seen` is what it shows and through which camera;
+/// without it a printed picture has no contours.
+pub fn apply_look(scene: &SceneModel, seen: Option<(&DrawList, &Camera)>, picture: &mut Rendering) {
     match scene.preset {
         Some(StylePreset::Print) => {
-            let has_lines = scene.contours.is_some();
-            let contours = if has_lines { contour_cover(list, camera, picture) } else { Vec::new() };
+            let seen = seen.filter(|_| scene.contours.is_some());
+            let contours =
+                seen.map(|(list, camera)| contour_cover(list, camera, picture)).unwrap_or_default();
             print(scene, &contours, picture);
         }
         Some(StylePreset::Night) => {

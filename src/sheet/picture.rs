@@ -2,6 +2,7 @@
 
 use crate::labels::{self, AnnotatedGround};
 use crate::look::{apply_look, night_ink};
+use crate::panorama::{draw_panorama, panorama_annotations};
 use sandtable_annotate::paint::{ComposedSheet, compose_sheet};
 use sandtable_annotate::report::AnnotationReport;
 use sandtable_annotate::sheet_frame::SheetFrame;
@@ -15,8 +16,9 @@ use sandtable_render::picture::Rendering;
 use sandtable_render::{RenderBackend, RenderError, render};
 use sandtable_scene::framing::shaped_page::page_size;
 use sandtable_scene::scene_model::SceneModel;
-use sandtable_scene::scene_view::SceneView;
+use sandtable_scene::scene_view::{SceneView, ViewAim};
 use sandtable_view::camera::{Camera, CameraError};
+use sandtable_view::panorama::Panorama;
 
 /// The size of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,7 +43,7 @@ impl PictureSize {
 
 /// A picture without annotations and its draw list.
 pub struct DrawnView {
-    /// How it was seen.
+    /// How it was seen, but for a panorama.
     pub camera: Camera,
     /// The picture, opaque, with depths and features.
     pub picture: Rendering,
@@ -49,6 +51,8 @@ pub struct DrawnView {
     pub drawn: ViewDraw,
     /// The page that it is part of; `None` where it is the page.
     pub frame: Option<SheetFrame>,
+    /// How a panorama was seen, whose `camera` is one in perspective toward its middle.
+    pub panorama: Option<Panorama>,
 }
 
 /// An annotated picture and its draw list.
@@ -70,6 +74,12 @@ pub enum PictureError {
     /// The scene cannot be drawn.
     #[error(transparent)]
     Render(#[from] RenderError),
+    /// A renderer that draws no panoramas.
+    #[error("a panorama is drawn by the processor: leave out --backend gpu")]
+    PanoramaBackend,
+    /// Positions of the pixels of a panorama.
+    #[error("the pixels of a panorama have no positions: take a camera in perspective from the same place")]
+    PanoramaPixels,
     /// The samples of ground near the eye cannot be read.
     #[error(transparent)]
     Elevation(#[from] Diagnostic),
@@ -101,6 +111,9 @@ pub fn draw_view(
     backend: RenderBackend,
     progress: &dyn Fn(&'static str),
 ) -> Result<DrawnView, PictureError> {
+    if let ViewAim::Panorama(panorama) = &view.aim {
+        return draw_panorama(scene, panorama, size, backend, progress);
+    }
     let (mut camera, frame) = framed_camera(scene, view, size)?;
     let nested = match backend {
         RenderBackend::Cpu => nested_grounds(scene, &camera, progress)?,
@@ -115,8 +128,8 @@ pub fn draw_view(
     drop(nested);
     progress("drawing");
     let mut picture = render(&drawn.list, &camera, backend, progress)?;
-    apply_look(scene, &drawn.list, &camera, &mut picture);
-    Ok(DrawnView { camera, picture, drawn, frame })
+    apply_look(scene, Some((&drawn.list, &camera)), &mut picture);
+    Ok(DrawnView { camera, picture, drawn, frame, panorama: None })
 }
 
 /// The frame of a page of `size`; `None` where the picture is the page.
@@ -179,10 +192,15 @@ pub struct ComposedView {
 /// As [`annotate_view`], for formats that keep letters and lines as such.
 pub fn compose_view(scene: &SceneModel, view: DrawnView, progress: &dyn Fn(&'static str)) -> ComposedView {
     progress("annotating");
-    let DrawnView { camera, picture, drawn, frame } = view;
-    let shown =
-        AnnotatedGround { graphics: &drawn.graphic_texts, nested: &drawn.nested, list: Some(&drawn.list) };
-    let annotations = labels::annotations(scene, &camera, &picture, frame.as_ref(), &shown);
+    let DrawnView { camera, picture, drawn, frame, panorama } = view;
+    let annotations = match &panorama {
+        Some(panorama) => panorama_annotations(scene, panorama, &picture),
+        None => {
+            let (graphics, nested) = (&drawn.graphic_texts, &drawn.nested);
+            let shown = AnnotatedGround { graphics, nested, list: Some(&drawn.list) };
+            labels::annotations(scene, &camera, &picture, frame.as_ref(), &shown)
+        }
+    };
     let (mut sheet, annotations) = compose_sheet(picture.pixels, &annotations);
     if scene.preset == Some(StylePreset::Night) {
         sheet.recolor(&night_ink);

@@ -21,7 +21,7 @@ use sandtable_raster::raster::{Raster, Samples};
 use sandtable_render::cpu::render_buffers;
 use sandtable_render::picture::Rendering;
 use sandtable_scene::scene_model::SceneModel;
-use sandtable_scene::scene_view::SceneView;
+use sandtable_scene::scene_view::{SceneView, ViewAim};
 use sandtable_view::camera::Camera;
 
 /// The buffers of a picture and what is needed to read them.
@@ -60,6 +60,9 @@ pub fn pick(
     pixels: &[[u32; 2]],
     progress: &dyn Fn(&'static str),
 ) -> Result<Vec<Option<PickedPlace>>, PictureError> {
+    if let ViewAim::Panorama(_) = view.aim {
+        return Err(PictureError::PanoramaPixels);
+    }
     let (camera, frame) = framed_camera(scene, view, size)?;
     let (left, top) = frame.as_ref().map_or((0, 0), SheetFrame::picture_corner);
     let list = build_shapes(scene, &camera, progress).list;

@@ -14,6 +14,7 @@ use sandtable_files::disk;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::scene_view::SceneView;
 use sandtable_view::camera::{Camera, ViewProjection};
+use sandtable_view::panorama::Panorama;
 
 /// The half of a sidecar that is known before annotations are painted.
 pub struct SidecarDraft(Value);
@@ -27,7 +28,7 @@ impl SidecarDraft {
         drawn: &DrawnView,
     ) -> Self {
         let buffers = PictureBuffers { scene, camera: &drawn.camera, rendering: &drawn.picture };
-        let (width, height) = drawn.camera.size();
+        let (width, height) = (drawn.picture.pixels.width(), drawn.picture.pixels.height());
         let all = f64::from(width) * f64::from(height);
         let feature = |shown: &ShownFeature| {
             let [[left, top], [right, bottom]] = [shown.min, shown.max];
@@ -52,7 +53,10 @@ impl SidecarDraft {
                 "vertical_exaggeration": scene.scale.0,
             },
             "picture": { "width": width, "height": height, "at": [corner.0, corner.1] },
-            "camera": camera(scene, &view.name, &drawn.camera),
+            "camera": match &drawn.panorama {
+                Some(seen) => panorama(scene, &view.name, seen),
+                None => camera(scene, &view.name, &drawn.camera),
+            },
             "features": buffers.shown_features().iter().map(feature).collect::<Vec<_>>(),
         }))
     }
@@ -95,6 +99,25 @@ impl SidecarDraft {
         });
         whole
     }
+}
+
+/// A panorama in map coordinates: column `x` shows the azimuth `from_deg + x / pixels_per_degree`, and row `y` the tangent
+/// `(horizon_row - y) / pixels_per_radian` above the horizon.
+fn panorama(scene: &SceneModel, name: &str, panorama: &Panorama) -> Value {
+    let eye = panorama.eye.as_dvec3() + scene.lattice.origin().extend(0.0);
+    let per_radian = panorama.pixels_per_radian();
+    json!({
+        "name": name,
+        "eye": eye.to_array(),
+        "projection": {
+            "kind": "panorama",
+            "from_deg": panorama.from_rad.to_degrees(),
+            "span_deg": panorama.span_rad.to_degrees(),
+            "pixels_per_degree": per_radian.to_radians(),
+            "pixels_per_radian": per_radian,
+            "horizon_row": panorama.horizon_row,
+        },
+    })
 }
 
 /// The camera in map coordinates: eastings, northings and elevations as they are drawn, with the exaggeration.

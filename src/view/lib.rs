@@ -5,5 +5,6 @@ pub mod camera;
 pub mod flight;
 pub mod frustum;
 pub mod navigation;
+pub mod panorama;
 pub mod planes;
 pub mod wedge;

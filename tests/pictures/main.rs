@@ -9,6 +9,7 @@ mod grid;
 mod grid_numbers;
 mod level_ground;
 mod overlaps;
+mod panorama;
 mod print;
 mod render_cpu;
 mod symbols;

@@ -225,6 +225,29 @@ fn keys_that_have_no_effect_are_refused() {
 }
 
 #[test]
+fn keys_of_a_panorama_that_do_not_go_together_are_refused() {
+    let keys = |keys: &str| {
+        let keys = format!("[[camera]]\nname = \"round\"\nprojection = \"panorama\"\n{keys}\n");
+        scene("panorama", &keys).err().unwrap_or_default()
+    };
+    let eye = "eye = [502000, 4601500]";
+    assert_eq!(keys(eye), "", "the whole circle");
+    assert_eq!(keys(&format!("{eye}\nfrom = -20\nto = 30")), "", "past north");
+    for (stated, message) in [
+        ("", "a panorama needs an `eye`"),
+        ("eye = [502000, 4601500]\nto = 30", "`to` without `from`"),
+        ("eye = [502000, 4601500]\nfrom = 30\nto = 35", "the panorama reaches over 5° of the horizon"),
+        ("eye = [502000, 4601500]\nazimuth = 30", "`azimuth` has no effect on a panorama"),
+        ("eye = [502000, 4601500]\nlook_at = [502000, 4602500]", "`look_at` has no effect on a panorama"),
+        ("eye = [102000, 4601500]", "lies off the elevation model"),
+        ("eye = [502000, 4601500]\n[furniture]\nlayout = \"margin\"", "a panorama has no margin"),
+    ] {
+        let found = keys(stated);
+        assert!(found.contains(message), "{stated}: {found}");
+    }
+}
+
+#[test]
 fn the_block_stands_on_a_table_where_its_edge_is_seen_from_outside() {
     let has_table = |keys: &str| {
         let (scene, camera) = with_camera("table", keys);

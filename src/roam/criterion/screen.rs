@@ -21,7 +21,8 @@ pub struct ScreenError<'a> {
     ground: PatchedGround<'a>,
     errors: &'a ErrorMap,
     heights: &'a PatchHeights,
-    frustum: Frustum,
+    /// `None` for an eye that turns around: nothing is out of view.
+    frustum: Option<Frustum>,
     lens: Lens,
 }
 
@@ -35,7 +36,12 @@ impl<'a> ScreenError<'a> {
         tolerance_px: f32,
     ) -> Self {
         let lens = Lens::with_scale(camera, reach(camera, tolerance_px));
-        Self { ground, errors, heights, frustum: Frustum::new(camera), lens }
+        Self { ground, errors, heights, frustum: Some(Frustum::new(camera)), lens }
+    }
+
+    /// This criterion for an eye that turns around where the camera is.
+    pub fn all_around(self) -> Self {
+        Self { frustum: None, ..self }
     }
 }
 
@@ -46,7 +52,7 @@ impl Criterion for ScreenError<'_> {
             return 0.0;
         }
         match self.heights.diamond(self.ground, vertex) {
-            Some((min, max)) if self.frustum.may_see(min, max) => {
+            Some((min, max)) if self.frustum.is_none_or(|frustum| frustum.may_see(min, max)) => {
                 let nearest = self.lens.eye.clamp(min, max);
                 self.lens.excess(error, nearest.distance(self.lens.eye))
             }

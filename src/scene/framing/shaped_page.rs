@@ -15,6 +15,7 @@
 
 use crate::framing::fit::ParallelSpan;
 use crate::framing::fitted_view::silhouette;
+use crate::framing::panorama_frame::panorama_size;
 use crate::framing::parallel_view::fitted_px_per_m;
 use crate::paper_sheet::SCREEN_PX;
 use crate::scene_model::SceneModel;
@@ -52,13 +53,16 @@ fn shaping(view: &SceneView) -> Option<&ParallelView> {
     }
 }
 
-/// Width and height in pixels of the page of a view whose size nothing states: its paper, the page that has the shape of what
+/// Width and height in pixels of the page of a view whose size nothing states: its paper, that of a panorama, the page that has the shape of what
 /// it shows, or a screen. `picture_size` returns the size of the picture on a page.
 pub fn page_size(
     scene: &SceneModel,
     view: &SceneView,
     picture_size: impl Fn((u32, u32)) -> (u32, u32),
 ) -> (u32, u32) {
+    if let ViewAim::Panorama(panorama) = &view.aim {
+        return panorama_size(scene, panorama);
+    }
     let Some(parallel) = shaping(view) else {
         return view.paper.map_or(SCREEN_PX, |paper| paper.size_px());
     };

@@ -101,6 +101,7 @@ fn finest_pixel_m(
     let half = half_picture(views::fov_y_rad(table), size);
     let aim = match table {
         None => views::overview().aim,
+        Some(table) if views::panorama_eye(table).is_some() => return Ok(None),
         Some(table) => match views::eye_and_target(table) {
             Some([eye, _]) => {
                 let eye = (frame.point(eye, table.crs.as_ref())?, table.eye_elevation);
@@ -117,7 +118,7 @@ fn finest_pixel_m(
             }
             _ => Some(parallel_pixel_m(&view, plan, size)),
         },
-        ViewAim::At { .. } => None,
+        ViewAim::At { .. } | ViewAim::Panorama(_) => None,
     })
 }
 

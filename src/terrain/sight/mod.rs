@@ -22,6 +22,7 @@ pub mod line;
 pub mod outlook;
 pub mod ray;
 pub mod rise;
+pub mod skyline;
 pub mod viewshed;
 
 /// The Earth's shape and the refraction of its air along a line of sight.

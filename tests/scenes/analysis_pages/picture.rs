@@ -65,7 +65,7 @@ pub fn made(kind: &'static AnalysisKind, example: &Example) -> (Outcome, RgbImag
     let drawn = build_draw_list(&scene, &camera(DRAWN), &|_| ());
     let camera = camera(SIZE);
     let mut picture = render(&drawn.list, &camera, RenderBackend::Cpu, &|_| ()).expect("a sound list");
-    apply_look(&scene, &drawn.list, &camera, &mut picture);
+    apply_look(&scene, Some((&drawn.list, &camera)), &mut picture);
     let shown =
         AnnotatedGround { graphics: &drawn.graphic_texts, nested: &drawn.nested, list: Some(&drawn.list) };
     let mut notes = annotations(&scene, &camera, &picture, None, &shown);
