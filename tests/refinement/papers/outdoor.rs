@@ -297,7 +297,7 @@ fn the_number_of_triangles_has_a_cap_that_is_reached_and_never_exceeded() {
 fn the_ground_has_light_maps() {
     // A wall that runs north, the sun low in the west.
     let world = World::new((65, 33), 32, |x, _| if x == 20.0 { 100.0 } else { 0.0 });
-    let light = TerrainLight::new(&world.lattice, Vec3::new(-1.0, 0.0, 0.5).normalize());
+    let light = TerrainLight::new(&world.lattice, Vec3::new(-1.0, 0.0, 0.5).normalize(), 0);
     let (sun, sky) = (light.sun(16), light.sky(16));
     let at = |column: usize| (sun[column], sky[column]);
     assert_eq!((at(10).0, at(25).0, at(60).0), (1.0, 0.0, 1.0), "before, in and beyond the wall's shadow");
