@@ -3,13 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::backend::BackendName;
 use crate::error::CliError;
 use crate::options::SceneArguments;
 use crate::output::{print_summary, row};
-use crate::progress::{StepTimer, shown};
+use crate::progress::{CountedBar, StepTimer};
 use crate::values::{choice, number, picture_size};
 use sandtable_base::limits::FLIGHT_FRAMES;
 use sandtable_render::OtherRenderer;
@@ -72,10 +71,8 @@ pub fn run(arguments: &FlyArguments, gpu: Option<OtherRenderer>) -> Result<(), C
         fps: arguments.fps,
         backend: arguments.backend.renderer(gpu),
     };
-    let bar = shown(ProgressBar::new(u64::from(options.frames)));
-    let style = ProgressStyle::with_template("{bar:30} frame {pos} of {len} [{elapsed} of about {duration}]");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    let done = |number: u32| bar.set_position(u64::from(number));
+    let bar = CountedBar::new("frame", u64::from(options.frames));
+    let done = |number: u32| bar.set(u64::from(number));
     let count = if arguments.is_one_file() {
         fly_to_file(&scene, &flight, &options, &arguments.output, &done)?;
         format!("{} in one animated picture", options.frames)
@@ -83,7 +80,7 @@ pub fn run(arguments: &FlyArguments, gpu: Option<OtherRenderer>) -> Result<(), C
         let count = fly_to_folder((&scene, file), &flight, &options, &arguments.output, &done)?;
         format!("{}, {} of them there before", options.frames, count.kept)
     };
-    bar.finish_and_clear();
+    drop(bar);
     let length = format!("{:.2} km in {seconds:.1} s", flight.length_m() / 1000.0);
     let mut lines = vec![
         arguments.output.display().to_string(),

@@ -8,6 +8,7 @@ use serde_json::json;
 use crate::analyze::outcome_lines;
 use crate::error::CliError;
 use crate::output::{print, print_lines, warn};
+use crate::progress::StepTimer;
 use sandtable_export::features::analysis_json::outcome_json;
 use sandtable_shards::gather::{GatheredOutcome, GatheredProduct, PlanProgress, gather};
 use sandtable_shards::plan::ShardPlan;
@@ -34,8 +35,12 @@ pub struct GatherArguments {
 /// Writes the product, or names the missing and stale shards; an atlas gets its page in both cases.
 pub fn run(arguments: &GatherArguments) -> Result<(), CliError> {
     let plan = ShardPlan::open(&arguments.plan)?;
+    let steps = StepTimer::default();
+    steps.begin("checking the shards");
     let progress = PlanProgress::read(&plan);
+    steps.begin("joining the shards");
     let gathered = gather(&plan, &progress, arguments.output.as_deref())?;
+    steps.finish();
     if let Some(GatheredOutcome { outcome, .. }) = &gathered.outcome {
         outcome.notes.iter().for_each(|note| warn(&format!("note: {note}")));
     }

@@ -1,7 +1,10 @@
-//! The steps of a command: a spinner with the current one on a terminal, nothing elsewhere, and the time of each.
+//! The steps of a command: a spinner with the current one on a terminal, nothing elsewhere, and the time of each. Of what is
+//! counted, a bar.
 //!
 //! ```text
 //! ⠹ analyzing 37 %, 24 s left [14s]
+//! ⠹ drawing, all 40 %, 3 min left [6s]                a step, and what is left of all pictures
+//! ███████░░░░░░░ shard 37 of 100, 24 s left [14s]
 //! ```
 //!
 //! A program that shows progress of its own, such as the plugin of QGIS, sets the environment variable `SANDTABLE_PROGRESS` to
@@ -27,6 +30,9 @@ use sandtable_terrain::stop_flag::StopFlag;
 const LEAST_TIME: Duration = Duration::from_secs(2);
 const LEAST_SHARE: f64 = 0.02;
 
+/// Of things that are counted, so many say how long the others take, whatever their share.
+const LEAST_COUNT: u64 = 5;
+
 /// The environment variable that asks for lines, by [`LINES`].
 const PROGRESS: &str = "SANDTABLE_PROGRESS";
 
@@ -40,37 +46,137 @@ const LOOK_AGAIN: Duration = Duration::from_millis(200);
 pub struct StepTimer {
     bar: ProgressBar,
     starts: Mutex<Vec<(&'static str, Instant)>>,
+    /// The work that the steps are part of, where that has others.
+    series: Option<Series>,
     /// Whether steps and shares are lines of standard error.
     is_lines: bool,
 }
 
 impl Default for StepTimer {
     fn default() -> Self {
-        let bar = shown(ProgressBar::new_spinner());
-        bar.enable_steady_tick(Duration::from_millis(100));
-        Self {
-            bar: bar.with_style(step_style()),
-            starts: Mutex::default(),
-            is_lines: !is_quiet() && env::var_os(PROGRESS).is_some_and(|value| value == LINES),
+        Self::new(None)
+    }
+}
+
+/// Work of which the same steps are done several times, such as one picture after the other.
+#[derive(Clone, Debug)]
+pub struct Series {
+    since: Instant,
+    /// How far all of it is.
+    pub flag: Arc<StopFlag>,
+}
+
+impl Series {
+    /// A series that begins now; `what` names it in lines of progress.
+    pub fn begin(what: &'static str) -> Self {
+        let flag = Arc::default();
+        if is_lines() {
+            write_shares(what, &flag);
         }
+        Self { since: Instant::now(), flag }
+    }
+}
+
+/// Whether progress is lines of standard error.
+fn is_lines() -> bool {
+    !is_quiet() && env::var_os(PROGRESS).is_some_and(|value| value == LINES)
+}
+
+/// Things that a command does one after the other, counted, with the time that is left.
+pub struct CountedBar(ProgressBar);
+
+impl CountedBar {
+    /// A bar of `count` things, each of which is called `noun`.
+    pub fn new(noun: &'static str, count: u64) -> Self {
+        let bar = shown(ProgressBar::new(count));
+        if is_lines() {
+            bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
+        let since = Instant::now();
+        let left = move |state: &ProgressState, out: &mut dyn Write| {
+            let (elapsed, share) = (since.elapsed(), f64::from(state.fraction()));
+            if elapsed >= LEAST_TIME && (state.pos() >= LEAST_COUNT || share >= LEAST_SHARE) {
+                let _ = write!(out, ", {}", left_text(elapsed, share));
+            }
+        };
+        let template = format!("{{bar:30}} {noun} {{pos}} of {{len}}{{left}} [{{elapsed}}]");
+        if let Ok(style) = ProgressStyle::with_template(&template) {
+            bar.set_style(style.with_key("left", left));
+        }
+        bar.enable_steady_tick(LOOK_AGAIN);
+        Self(bar)
+    }
+
+    /// So many are done.
+    pub fn set(&self, done: u64) {
+        let percent = |position: u64| 100 * position / self.0.length().unwrap_or(1).max(1);
+        let (before, now) = (percent(self.0.position()), percent(done));
+        self.0.set_position(done);
+        if is_lines() && before != now {
+            warn(&format!("progress: working {now} %"));
+        }
+    }
+
+    /// One more is done.
+    pub fn did_one(&self) {
+        self.set(self.0.position() + 1);
+    }
+
+    /// One need not be done, and tells nothing about the time of the others.
+    pub fn skip_one(&self) {
+        self.0.set_length(self.0.length().unwrap_or(1).saturating_sub(1));
+    }
+
+    /// Calls `print` while the bar is off the terminal.
+    pub fn beside<T>(&self, print: impl FnOnce() -> T) -> T {
+        self.0.suspend(print)
+    }
+}
+
+impl Drop for CountedBar {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
     }
 }
 
 /// A bar that a terminal shows, unless the run is quiet.
-pub fn shown(bar: ProgressBar) -> ProgressBar {
+fn shown(bar: ProgressBar) -> ProgressBar {
     if is_quiet() {
         bar.set_draw_target(ProgressDrawTarget::hidden());
     }
     bar
 }
 
-/// The step and the time of all.
-fn step_style() -> ProgressStyle {
-    let style = ProgressStyle::with_template("{spinner} {msg} [{elapsed}]");
-    style.unwrap_or_else(|_| ProgressStyle::default_spinner())
+/// The step, how far the series is, and the time of all steps.
+fn step_style(series: Option<&Series>) -> ProgressStyle {
+    let style = ProgressStyle::with_template("{spinner} {msg}{series} [{elapsed}]");
+    let series = series.cloned();
+    let share = move |_: &ProgressState, out: &mut dyn Write| {
+        let share = series.as_ref().and_then(|series| Some((series.since.elapsed(), series.flag.share()?)));
+        let text = share.map(|(elapsed, share)| format!(", all{}", share_text(elapsed, share)));
+        let _ = out.write_str(&text.unwrap_or_default());
+    };
+    style.unwrap_or_else(|_| ProgressStyle::default_spinner()).with_key("series", share)
 }
 
 impl StepTimer {
+    /// The steps of a part of a series.
+    pub fn of_series(series: &Series) -> Self {
+        Self::new(Some(series.clone()))
+    }
+
+    fn new(series: Option<Series>) -> Self {
+        let bar = shown(ProgressBar::new_spinner());
+        bar.enable_steady_tick(Duration::from_millis(100));
+        let bar = bar.with_style(step_style(series.as_ref()));
+        Self { bar, starts: Mutex::default(), series, is_lines: is_lines() }
+    }
+
+    /// The series that the steps are part of.
+    pub fn series(&self) -> Option<&Series> {
+        self.series.as_ref()
+    }
+
     /// Shows beside the current step the share that `flag` states, and the time that is left.
     pub fn watch(&self, flag: Arc<StopFlag>) {
         if self.is_lines {
@@ -92,7 +198,7 @@ impl StepTimer {
         if self.is_lines {
             warn(&format!("progress: {step}"));
         }
-        self.bar.set_style(step_style());
+        self.bar.set_style(step_style(self.series.as_ref()));
         self.bar.set_message(step);
         self.starts.lock().unwrap_or_else(PoisonError::into_inner).push((step, Instant::now()));
     }
@@ -138,9 +244,13 @@ fn share_text(elapsed: Duration, share: f64) -> String {
     if elapsed < LEAST_TIME || share < LEAST_SHARE {
         return format!(" {percent} %");
     }
+    format!(" {percent} %, {}", left_text(elapsed, share))
+}
+
+/// The time that is left if all goes on alike.
+fn left_text(elapsed: Duration, share: f64) -> String {
     let left_s = (elapsed.as_secs_f64() * (1.0 - share) / share).ceil();
-    let left = if left_s < 120.0 { format!("{left_s} s") } else { format!("{} min", (left_s / 60.0).ceil()) };
-    format!(" {percent} %, {left} left")
+    if left_s < 120.0 { format!("{left_s} s left") } else { format!("{} min left", (left_s / 60.0).ceil()) }
 }
 
 impl Drop for StepTimer {

@@ -10,7 +10,7 @@ use crate::check::{contents, counted_findings};
 use crate::error::CliError;
 use crate::options::AccessArguments;
 use crate::output::{print, print_summary, row, warn};
-use crate::progress::StepTimer;
+use crate::progress::{Series, StepTimer};
 use crate::render_series::{RenderFailure, RenderedFile, RenderedPicture, RenderedScene, render};
 use crate::threads;
 use crate::values::{choice, picture_size};
@@ -107,8 +107,14 @@ pub fn run(arguments: &RenderArguments, threads: usize, gpu: Option<OtherRendere
     let outputs = outputs(arguments)?;
     let is_batch = outputs.len() > 1;
     let (mut failures, mut values) = (Vec::new(), Vec::new());
-    for (file, path) in &outputs {
-        let steps = StepTimer::default();
+    let is_series = is_batch || arguments.all_cameras || arguments.all_phases || arguments.sheet;
+    let series = is_series.then(|| Series::begin("pictures"));
+    for (number, (file, path)) in outputs.iter().enumerate() {
+        let steps = series.as_ref().map_or_else(StepTimer::default, StepTimer::of_series);
+        if let Some(series) = &series {
+            let share = |files: usize| files as f64 / outputs.len() as f64;
+            series.flag.part(share(number)..share(number + 1));
+        }
         match pool.install(|| render(arguments, backend, file, path, &steps)) {
             Ok(RenderedFile { scenes, failures: missing }) => {
                 let times = steps.finish();

@@ -1,7 +1,9 @@
 //! The pictures of `sandtable render`: of one camera or all, in one phase or all, in files or on a sheet.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use crate::backend::BackendName;
 use crate::error::CliError;
@@ -123,6 +125,21 @@ struct PictureTarget<'a> {
     fingerprint: Option<&'a str>,
 }
 
+/// Which of the scenes of a file it is, one in each phase.
+#[derive(Clone, Copy)]
+struct SceneNumber {
+    index: usize,
+    count: usize,
+}
+
+impl SceneNumber {
+    /// Its share of the file's pictures.
+    fn share(self) -> Range<f64> {
+        let at = |index: usize| index as f64 / self.count as f64;
+        at(self.index)..at(self.index + 1)
+    }
+}
+
 impl RenderSeries<'_> {
     /// The scene in each phase that the arguments ask for, rendered.
     fn scenes(&mut self, path: &Path) -> Result<Vec<RenderedScene>, CliError> {
@@ -133,7 +150,7 @@ impl RenderSeries<'_> {
         let need = ElevationNeed::Pictures(&pictures);
         if !arguments.all_phases {
             let scene = open_scene_for(file, allowed, arguments.phase.as_deref(), need, &progress)?;
-            return Ok(vec![self.scene(scene, path, 1)?]);
+            return Ok(vec![self.scene(scene, path, SceneNumber { index: 0, count: 1 })?]);
         }
         let names = phases(file, allowed)?;
         if names.is_empty() {
@@ -141,10 +158,13 @@ impl RenderSeries<'_> {
             return Err(CliError::Usage(message.into()));
         }
         let mut scenes = Vec::new();
-        for (phase, path) in names.iter().zip(named_paths(path, &names)) {
+        for (index, (phase, path)) in names.iter().zip(named_paths(path, &names)).enumerate() {
             let scene = open_scene_for(file, allowed, Some(phase), need, &progress);
             match scene {
-                Ok(scene) => scenes.push(self.scene(scene, &path, names.len())?),
+                Ok(scene) => {
+                    let number = SceneNumber { index, count: names.len() };
+                    scenes.push(self.scene(scene, &path, number)?);
+                }
                 Err(error) => self.leave_out("phase", phase, error.into(), names.len())?,
             }
         }
@@ -161,14 +181,20 @@ impl RenderSeries<'_> {
         Ok(())
     }
 
-    /// Renders one of `scenes` scenes.
-    fn scene(&mut self, scene: SceneModel, path: &Path, scenes: usize) -> Result<RenderedScene, CliError> {
+    /// Renders one of the scenes of the file.
+    fn scene(
+        &mut self,
+        scene: SceneModel,
+        path: &Path,
+        number: SceneNumber,
+    ) -> Result<RenderedScene, CliError> {
         let arguments = self.arguments;
         let views: Vec<&SceneView> = match arguments.shows_all_cameras() {
             true => scene.cameras.iter().collect(),
             false => vec![find_camera(&scene, arguments.camera.as_deref())?],
         };
-        let small = if arguments.sheet { Some(sheet_of(arguments, views.len() * scenes)?) } else { None };
+        let small =
+            if arguments.sheet { Some(sheet_of(arguments, views.len() * number.count)?) } else { None };
         let small = small.map(|sheet| sheet.picture_size());
         let names: Vec<String> = views.iter().map(|view| view.name.clone()).collect();
         let paths = if arguments.all_cameras {
@@ -188,6 +214,8 @@ impl RenderSeries<'_> {
             false => None,
         };
         let mut pictures = Vec::new();
+        let series = self.steps.series().map(|series| Arc::clone(&series.flag)).unwrap_or_default();
+        series.stretch(number.share(), views.len());
         for (&view, path) in views.iter().zip(paths) {
             let own_size = || arguments.size.unwrap_or_else(|| PictureSize::of(&scene, view));
             let size = small.map_or_else(own_size, |[width, height]| PictureSize { width, height });
@@ -203,6 +231,7 @@ impl RenderSeries<'_> {
                 }
                 Err(error) => self.leave_out("camera", &view.name, error.into(), views.len())?,
             }
+            series.did(1);
         }
         Ok(RenderedScene { scene, pictures })
     }

@@ -15,7 +15,7 @@ use sandtable_query::service::{NamedFile, PathPrefix, RequestLog, ServiceLimits,
 #[derive(Debug, Args)]
 #[command(
     after_help = "Each file is a dataset, queried at /v1/NAME; without a name it is named after the file, less its extension.\n\
-                  The page at / lists the queries. SIGINT or SIGTERM ends the service when its last answers are out.\n\
+                  The page at / is a map to click in a browser; /help lists the queries. SIGINT or SIGTERM ends the service when its last answers are out.\n\
                   Example: sandtable serve hills=dem.tif valley.toml --listen 127.0.0.1:8080"
 )]
 pub struct ServeArguments {

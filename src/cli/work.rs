@@ -7,7 +7,8 @@ use std::sync::Arc;
 use clap::Args;
 
 use crate::error::CliError;
-use crate::output::{print, warn};
+use crate::output::{is_quiet, print, warn};
+use crate::progress::CountedBar;
 use sandtable_base::message::chain::error_text;
 use sandtable_shards::plan::ShardPlan;
 use sandtable_shards::work::{ShardWorker, is_done};
@@ -42,9 +43,12 @@ pub fn run(arguments: &WorkArguments) -> Result<(), CliError> {
     plan.check_shards(&ids)?;
     let mut worker = None;
     let (mut failed, count) = (0, ids.len());
+    let bar = CountedBar::new("shard", count as u64);
+    let say = |line: String| bar.beside(|| if is_quiet() { Ok(()) } else { print(&line) });
     for id in ids {
         if is_done(&plan, id) {
-            print(&format!("{id} skipped\n"))?;
+            bar.skip_one();
+            say(format!("{id} skipped\n"))?;
             continue;
         }
         let worker: &mut ShardWorker = match &mut worker {
@@ -52,13 +56,15 @@ pub fn run(arguments: &WorkArguments) -> Result<(), CliError> {
             none => none.insert(ShardWorker::open(&plan)?),
         };
         match worker.work(id) {
-            Ok(()) => print(&format!("{id} done\n"))?,
+            Ok(()) => say(format!("{id} done\n"))?,
             Err(error) => {
-                warn(&format!("error: shard {id}: {}", error_text(&error)));
+                bar.beside(|| warn(&format!("error: shard {id}: {}", error_text(&error))));
                 failed += 1;
             }
         }
+        bar.did_one();
     }
+    drop(bar);
     match failed {
         0 => Ok(()),
         _ if count == 1 => Err(CliError::Reported),

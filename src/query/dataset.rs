@@ -89,6 +89,10 @@ pub enum QueryError {
     Read { dataset: String, source: Arc<DemErrorKind> },
     #[error("{dataset}")]
     Datum { dataset: String, source: CrsError },
+    #[error(
+        "{dataset} has no overviews, and all of it would be fetched for a small map: copy the file here, or give it overviews (gdaladdo)"
+    )]
+    FarAway { dataset: String },
     #[error("{what} {},{}", at.x, at.y)]
     Position {
         /// The role of the position, such as `observer`.
@@ -109,9 +113,10 @@ impl QueryError {
     /// The name of the dataset that is at fault; `None` where the query is.
     pub fn dataset(&self) -> Option<&str> {
         match self {
-            Self::Ground { dataset, .. } | Self::Read { dataset, .. } | Self::Datum { dataset, .. } => {
-                Some(dataset)
-            }
+            Self::Ground { dataset, .. }
+            | Self::Read { dataset, .. }
+            | Self::Datum { dataset, .. }
+            | Self::FarAway { dataset } => Some(dataset),
             Self::Position { .. } | Self::NoGround { .. } => None,
         }
     }
@@ -360,7 +365,13 @@ impl Dataset {
         |source| QueryError::Ground { dataset: self.name.clone(), source }
     }
 
-    fn unreadable(&self) -> impl Fn(DemErrorKind) -> QueryError + '_ {
+    /// What messages call it.
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// [`QueryError::Read`] of this dataset.
+    pub(crate) fn unreadable(&self) -> impl Fn(DemErrorKind) -> QueryError + '_ {
         |fault| QueryError::Read { dataset: self.name.clone(), source: Arc::new(fault) }
     }
 

@@ -19,6 +19,7 @@ pub mod gridding;
 pub mod ground;
 pub mod heights_above;
 pub mod outside_note;
+pub mod overviews;
 pub mod parted_analysis;
 pub mod parted_elevation;
 pub mod positions;

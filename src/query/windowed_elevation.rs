@@ -194,7 +194,7 @@ impl WindowedElevation {
         part.map_err(|error| Arc::new(error.into()))
     }
 
-    fn source(&self) -> MutexGuard<'_, Box<dyn Windows + Send>> {
+    pub(crate) fn source(&self) -> MutexGuard<'_, Box<dyn Windows + Send>> {
         // A reader that panicked left whole blocks in its cache, and nothing else.
         self.source.lock().unwrap_or_else(PoisonError::into_inner)
     }

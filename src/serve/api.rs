@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 
 use crate::api::ApiNeed::{Optional, Required};
 use crate::api::ApiValue::{Count, Listed, Number, Text, Words};
-use crate::{analyses, health, ready};
+use crate::{analyses, health, help, ready};
 use sandtable_base::message::choice::Choice;
 use sandtable_catalog::kind::{AnalysisKind, AnalysisYield};
 use sandtable_catalog::kinds;
@@ -269,19 +269,29 @@ pub const VIEWSHED: ApiAddress = ApiAddress {
     ]),
 };
 
+pub const TILES: ApiAddress = ApiAddress {
+    path: Cow::Borrowed("/v1/tiles/DATASET/{z}/{x}/{y}.png"),
+    methods: ApiMethods::GetOrPost,
+    summary: "shaded relief in tiles of 256 pixels in Web Mercator, as web maps and QGIS show them; z up to 22",
+    answer: "image/png",
+    parameters: Cow::Borrowed(&[]),
+};
+
 /// Every address but those of analyses.
-static ADDRESSES: [ApiAddress; 11] = [
+static ADDRESSES: [ApiAddress; 13] = [
     HEIGHTS,
     LOS,
     PROFILE,
     VIEWSHED,
     LOOKUP,
+    TILES,
     page(analyses::PATH, "the kinds of terrain analysis: parameters, source and limits", "application/json"),
     page("/datasets", "the datasets with their systems, extents and cells", "application/json"),
     page(health::PATH, "version, and whether the datasets are ready", "application/json"),
     page(ready::PATH, "whether requests should be sent here: 200, or 503", "application/json"),
     page("/openapi.json", "this list as an OpenAPI document", "application/json"),
-    page("/", "this list as text", "text/plain"),
+    page(help::PATH, "this list as text", "text/plain"),
+    page("/", "a map to click for browsers, this list for other programs", "text/html"),
 ];
 
 /// The addresses of the kinds of analysis.

@@ -17,12 +17,17 @@ use crate::reply::{HttpError, OK, quoted};
 use crate::service::Service;
 use sandtable_base::message::chain::error_text;
 use sandtable_catalog::kind::AnalysisKind;
+use sandtable_draw::ground::ColorRamp;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::rect::Rect;
 use sandtable_query::dataset::{Dataset, OpenError, QueryError};
 use sandtable_query::ground::QueriedGround;
+use sandtable_query::overviews::Overviews;
 use sandtable_query::service::{NamedFile, ServiceOptions};
 use sandtable_query::windowed_elevation::GroundReach;
 use sandtable_raster::raster::Raster;
 use sandtable_scene::analysis_map::{MapTexts, ground_map, scene_map};
+use sandtable_scene::ramps::{self, TintedGround};
 use sandtable_scene::scene_file::open_scene_land;
 use sandtable_scene::scene_model::SceneModel;
 
@@ -32,6 +37,18 @@ pub struct ServedDataset {
     source: DatasetSource,
     /// The scene with what lies on its ground, true to scale, once an analysis needs it.
     scene: OnceLock<Result<Box<SceneModel>, String>>,
+    /// Where it lies on Earth; `None` where that is not known.
+    bounds: Option<DatasetBounds>,
+    /// What tiles of its map need, once the first is drawn.
+    tile_map: OnceLock<Result<TileMap, String>>,
+}
+
+/// What tiles of a map need.
+pub struct TileMap {
+    /// Smaller rasters, for pixels of many samples.
+    pub overviews: Overviews,
+    /// The tints of heights.
+    pub ramp: ColorRamp,
 }
 
 /// Where a dataset was opened.
@@ -81,6 +98,25 @@ impl ServedDataset {
         MapTexts::of_analysis(kind, &self.source.path, stated)
     }
 
+    /// Where it lies on Earth; `None` where that is not known.
+    pub fn bounds(&self) -> Option<&DatasetBounds> {
+        self.bounds.as_ref()
+    }
+
+    /// What tiles of its map need. Waits while smaller rasters are made, for which a file without overviews is read once.
+    pub fn tile_map(&self) -> Result<&TileMap, HttpError> {
+        let make = || {
+            let overviews = Overviews::new(&self.dataset)?;
+            let latitude_deg = self.bounds.as_ref().map(|bounds| f64::midpoint(bounds.south, bounds.north));
+            let ramp = ramps::atlas(&TintedGround { range_m: overviews.range_m(), latitude_deg });
+            Ok(TileMap { overviews, ramp })
+        };
+        let made = self.tile_map.get_or_init(|| make().map_err(|error: QueryError| error_text(&error)));
+        made.as_ref().map_err(|reason| {
+            HttpError::wrong(format!("dataset {} has no map: {reason}", quoted(&self.name)))
+        })
+    }
+
     /// The facts about the dataset.
     pub fn facts(&self) -> DatasetFacts<'_> {
         let source = self.dataset.header();
@@ -96,6 +132,7 @@ impl ServedDataset {
             },
             columns: source.width,
             rows: source.height,
+            bounds: self.bounds.as_ref(),
         }
     }
 
@@ -124,6 +161,32 @@ pub struct DatasetFacts<'a> {
     extent: DatasetExtent,
     columns: u32,
     rows: u32,
+    /// Its place on Earth; left out where that is not known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bounds: Option<&'a DatasetBounds>,
+}
+
+/// The latitudes and longitudes between which a dataset lies, degrees on WGS 84.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DatasetBounds {
+    pub south: f64,
+    pub west: f64,
+    pub north: f64,
+    pub east: f64,
+}
+
+impl DatasetBounds {
+    /// The bounds of the places of a raster that maps in Web Mercator reach; `None` without a system, or without such places.
+    fn of(raster: &Raster) -> Option<Self> {
+        /// The latitude where the world of Web Mercator, a square, ends.
+        const NORTHERNMOST: f64 = 85.051_128;
+        let (crs, wgs84) = (raster.crs.as_ref()?, Crs::wgs84());
+        let places = raster.extent().grid_points().filter_map(|at| crs.transform(&wgs84, at).ok());
+        let bounds = Rect::around(places);
+        let (south, north) = (bounds.min.y.max(-NORTHERNMOST), bounds.max.y.min(NORTHERNMOST));
+        let is_place = south < north && bounds.min.x < bounds.max.x;
+        is_place.then_some(Self { south, west: bounds.min.x, north, east: bounds.max.x })
+    }
 }
 
 #[derive(Serialize)]
@@ -159,7 +222,15 @@ impl Datasets {
             dataset.ground_note().iter().for_each(|note| (options.write_line)(&format!("note: {note}")));
             let source =
                 DatasetSource { path: file.path().to_owned(), allowed: options.dataset.allowed.clone() };
-            Ok(ServedDataset { name: file.name().to_owned(), dataset, source, scene: OnceLock::new() })
+            let bounds = DatasetBounds::of(&dataset.header());
+            Ok(ServedDataset {
+                name: file.name().to_owned(),
+                dataset,
+                source,
+                scene: OnceLock::new(),
+                bounds,
+                tile_map: OnceLock::new(),
+            })
         };
         options.datasets.iter().map(open).collect::<Result<_, _>>().map(Self)
     }

@@ -1,4 +1,4 @@
-//! `/`: the queries, as plain text.
+//! `/help`, and `/` for programs that want no page: the queries, as plain text.
 
 use std::fmt::Write;
 
@@ -6,6 +6,9 @@ use axum::response::{IntoResponse, Response};
 
 use crate::api::{ApiAddress, ApiMethods, ApiNeed, addresses};
 use crate::service::Service;
+
+/// Its path.
+pub const PATH: &str = "/help";
 
 /// The columns before the second one of an address and of a parameter.
 const WIDTH: usize = 34;

@@ -5,9 +5,11 @@
 //!    └─ router  requests: their address, their limits, the thread that answers them
 //!         ├─ host, clients, answers                        who may ask, and for how much at once
 //!         ├─ parameters, coordinates, polyline, samples    reading
-//!         ├─ heights, los, profile, viewshed, analyses     the queries (`query` is what they share)
+//!         ├─ heights, los, profile, viewshed, analyses,
+//!         │  tiles                                         the queries (`query` is what they share)
 //!         ├─ service, datasets                             the state of the service, and what it serves
 //!         ├─ api ─► help, openapi                          what may be asked, as a table and as pages
+//!         ├─ map_page                                      the page at `/`, a client of the queries
 //!         └─ reply, health, ready, etag                    writing
 //! ```
 //!
@@ -29,6 +31,7 @@ mod host;
 mod listener;
 mod lookup;
 mod los;
+mod map_page;
 mod openapi;
 mod parameters;
 mod polyline;
@@ -39,6 +42,7 @@ mod reply;
 mod router;
 mod samples;
 mod service;
+mod tiles;
 mod viewshed;
 
 use std::io;

@@ -53,15 +53,7 @@ fn path_item(address: &ApiAddress, service: &Service) -> Value {
             "schema": schema(parameter, service),
         })
     });
-    let names: Vec<&str> = service.datasets.all().iter().map(|served| served.name.as_str()).collect();
-    let in_path = json!({
-        "name": "dataset",
-        "in": "path",
-        "required": true,
-        "description": "the name of a dataset, or several with commas between",
-        "schema": {"type": "string", "examples": names},
-    });
-    let in_path = (address.path == HEIGHTS.path).then_some(in_path);
+    let in_path = in_path(address, service);
     let mut item = json!({"get": {
         "summary": address.summary,
         "parameters": in_path.iter().cloned().chain(in_query).collect::<Vec<_>>(),
@@ -70,12 +62,33 @@ fn path_item(address: &ApiAddress, service: &Service) -> Value {
     if address.methods == ApiMethods::GetOrPost {
         item["post"] = json!({
             "summary": address.summary,
-            "parameters": in_path.iter().collect::<Vec<_>>(),
+            "parameters": in_path,
             "requestBody": {"required": true, "content": content(&body(address, service))},
             "responses": responses(address),
         });
     }
     item
+}
+
+/// The parameters that are parts of the path.
+fn in_path(address: &ApiAddress, service: &Service) -> Vec<Value> {
+    let names: Vec<&str> = service.datasets.all().iter().map(|served| served.name.as_str()).collect();
+    let part = |name: &str, description: &str, schema: Value| json!({"name": name, "in": "path", "required": true, "description": description, "schema": schema});
+    let dataset = address.path.contains(DATASET.0).then(|| {
+        let description = match address.path == HEIGHTS.path {
+            true => "the name of a dataset, or several with commas between",
+            false => "the name of a dataset",
+        };
+        part("dataset", description, json!({"type": "string", "examples": names}))
+    });
+    let of_tiles = [
+        ("z", "the level, 0 the coarsest"),
+        ("x", "the column, from the west"),
+        ("y", "the row, from the north"),
+    ];
+    let of_tile = of_tiles.into_iter().filter(|(name, _)| address.path.contains(&format!("{{{name}}}")));
+    let numbers = of_tile.map(|(name, text)| part(name, text, json!({"type": "integer", "minimum": 0})));
+    dataset.into_iter().chain(numbers).collect()
 }
 
 /// The schema of a body, in each form that it may have.

@@ -23,8 +23,8 @@ use std::time::{Duration, Instant};
 use axum::Router;
 use axum::extract::rejection::PathRejection;
 use axum::extract::{ConnectInfo, Path, Request, State};
-use axum::http::header::ALLOW;
-use axum::http::{Method, StatusCode, Uri};
+use axum::http::header::{ALLOW, VARY};
+use axum::http::{HeaderMap, HeaderValue, Method, StatusCode, Uri};
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{MethodRouter, get};
@@ -41,8 +41,9 @@ use crate::profile::ProfileQuery;
 use crate::query::{Query, QueryWeight};
 use crate::reply::{HttpError, quoted};
 use crate::service::Service;
+use crate::tiles::TileQuery;
 use crate::viewshed::ViewshedQuery;
-use crate::{analyses, answers, api, datasets, etag, health, help, host, openapi, ready};
+use crate::{analyses, answers, api, datasets, etag, health, help, host, map_page, openapi, ready};
 use sandtable_query::service::RequestLog;
 use sandtable_terrain::stop_flag::StopFlag;
 
@@ -61,7 +62,10 @@ type Shared = State<Arc<Service>>;
 pub fn router(service: Arc<Service>) -> Router {
     let at = |path: &str| service.prefix.before(path);
     let router = Router::new()
-        .route(&at("/"), page(help::page))
+        .route(&at("/"), get(start).fallback(async |method| other(&method, PAGE_METHODS)))
+        .route(&at(help::PATH), page(help::page))
+        .route(&at(map_page::STYLE_PATH), page(map_page::style))
+        .route(&at(map_page::SCRIPT_PATH), page(map_page::script))
         .route(&at("/datasets"), page(datasets::page))
         .route(&at("/openapi.json"), page(openapi::page))
         .route(&at(health::PATH), page(health::page))
@@ -73,10 +77,11 @@ pub fn router(service: Arc<Service>) -> Router {
         .route(&at("/v1/{datasets}"), named::<HeightsQuery>())
         .route(&at(analyses::PATH), page(analyses::page))
         .route(&at("/v1/analyze/{kind}"), named::<AnalysisQuery>())
+        .route(&at("/v1/tiles/{*tile}"), named::<TileQuery>())
         .fallback(async |State(service): Shared, uri: Uri| not_found(&service, &uri));
     let router = match service.prefix.as_str() {
         "" => router,
-        prefix => router.route(prefix, page(help::page)),
+        prefix => router.route(prefix, get(start).fallback(async |method| other(&method, PAGE_METHODS))),
     };
     let router = router.layer(from_fn_with_state(Arc::clone(&service), etag::tag));
     let router = router.layer(from_fn_with_state(Arc::clone(&service), host::check));
@@ -92,6 +97,14 @@ fn page(write: fn(&Service) -> Response) -> MethodRouter<Arc<Service>> {
         .fallback(async |method| other(&method, PAGE_METHODS))
 }
 
+/// `/`: the page of the map for browsers, the list of requests for other programs.
+async fn start(State(service): Shared, headers: HeaderMap) -> Response {
+    let mut response =
+        if map_page::is_wanted(&headers) { map_page::page(&service) } else { help::page(&service) };
+    response.headers_mut().insert(VARY, HeaderValue::from_static("accept"));
+    response
+}
+
 fn query<Q: Query>() -> MethodRouter<Arc<Service>> {
     async fn handle<Q: Query>(
         State(service): Shared,
@@ -103,7 +116,7 @@ fn query<Q: Query>() -> MethodRouter<Arc<Service>> {
     get(handle::<Q>).post(handle::<Q>).fallback(async |method| other(&method, QUERY_METHODS))
 }
 
-/// A query whose address ends with a name: of datasets, or of a kind of analysis.
+/// A query whose address ends with a name: of datasets, of a kind of analysis or of a tile.
 fn named<Q: Query>() -> MethodRouter<Arc<Service>> {
     async fn handle<Q: Query>(
         State(service): Shared,

@@ -26,6 +26,7 @@ pub mod picture_buffers;
 pub mod picture_middle;
 pub mod picture_statistics;
 pub mod print_ink;
+pub mod relief;
 pub mod rim;
 pub mod sheet_file;
 pub mod sidecar;

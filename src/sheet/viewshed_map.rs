@@ -6,6 +6,7 @@
 use glam::{DVec2, Vec2, Vec3};
 use rayon::prelude::*;
 
+use crate::relief::{RELIEF, shaded};
 use sandtable_annotate::legend::Legend;
 use sandtable_annotate::map::{MapFurniture, ObserverOverlay, compose, draw_observer, sheet_size};
 use sandtable_draw::color::Srgba;
@@ -14,7 +15,6 @@ use sandtable_draw::pixels::Pixels;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::declination::true_north;
 use sandtable_scene::ramps::{self, TintedGround};
-use sandtable_terrain::hillshade::{HillshadeOptions, NO_DATA, hillshade};
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::sight::viewshed::{PostVisibility, Viewshed, ViewshedOptions};
 
@@ -22,12 +22,6 @@ use sandtable_terrain::sight::viewshed::{PostVisibility, Viewshed, ViewshedOptio
 const LARGEST_PX: DVec2 = DVec2::new(1560.0, 1560.0);
 /// The shortest side, for long and narrow ground.
 const LEAST_PX: f64 = 48.0;
-/// The vertical exaggeration of the shading alone: true heights leave most ground too flat to read.
-const RELIEF: f32 = 2.0;
-/// The share of light in full shade.
-const AMBIENT: f32 = 0.32;
-/// The gray of level ground in the standard light; there the tint is shown unchanged.
-const LEVEL: f32 = 180.6;
 /// The tint of hidden ground and its share: dark enough to distinguish, light enough to read.
 const DUSK: Srgba = Srgba::opaque(0x3a, 0x42, 0x5c);
 const DUSK_SHARE: f32 = 0.66;
@@ -106,19 +100,8 @@ fn tinted(post: PostVisibility, tint: Vec3) -> Vec3 {
 
 /// The color of every post in linear light.
 fn colors(lattice: &Lattice, viewshed: &Viewshed, ramp: &ColorRamp) -> Vec<Vec3> {
-    const STEPS: usize = 512;
-    let table = ramp.table(STEPS);
-    let (low, high) = ramp.height_range();
-    let grays = hillshade(&lattice.stretched(RELIEF), &HillshadeOptions::default());
-    let color = |((&height, &gray), &post): ((&f32, &u8), &PostVisibility)| {
-        if height.is_nan() || gray == NO_DATA {
-            return EMPTY.linear();
-        }
-        let step = (height - low) / (high - low) * (STEPS - 1) as f32;
-        let light = AMBIENT + (1.0 - AMBIENT) * f32::from(gray) / LEVEL;
-        tinted(post, table[(step as usize).min(STEPS - 1)]) * light
-    };
-    lattice.heights().par_iter().zip(&grays).zip(&viewshed.posts).map(color).collect()
+    let shaded = shaded(lattice, ramp, RELIEF, |index, tint| tinted(viewshed.posts[index], tint));
+    shaded.into_iter().map(|color| color.unwrap_or(EMPTY.linear())).collect()
 }
 
 /// The map's square pixels over the lattice: north up, half a cell beyond the outer posts.

@@ -56,6 +56,8 @@ mod shards_colors;
 mod shards_killed;
 mod shards_tiles;
 mod sheets;
+#[cfg(unix)]
+mod terminals;
 mod viewshed;
 mod web_mercator;
 mod wrong_scenes;

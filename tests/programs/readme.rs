@@ -7,7 +7,7 @@
 
 mod command;
 mod links;
-mod pages;
+pub mod pages;
 mod sandbox;
 
 use std::path::{Component, Path, PathBuf};

@@ -9,4 +9,5 @@ mod ground;
 mod heights;
 mod hostile;
 mod manners;
+mod page;
 mod refusals;

@@ -2,45 +2,18 @@
 //
 //     SANDTABLE_BROWSER=FOLDER node tests/tools/page_test.mjs PAGE.html OUT.png
 //
-// FOLDER/node_modules holds playwright-core; the browser is chromium-headless-shell or chromium of the PATH, or the one
-// that SANDTABLE_CHROMIUM names. OUT.png is the first view at 1280 × 720 without what stands on it.
-import { accessSync, constants } from "node:fs";
-import { createRequire } from "node:module";
-import { delimiter, join, resolve } from "node:path";
+// `browser.mjs` says where the browser comes from. OUT.png is the first view at 1280 × 720 without what stands on it.
+import { resolve } from "node:path";
 import { pathToFileURL } from "node:url";
+import { launch, watch } from "./browser.mjs";
 
 const [page_file, picture] = process.argv.slice(2);
-const require = createRequire(join(resolve(process.env.SANDTABLE_BROWSER), "node_modules", "x.js"));
-const { chromium } = require("playwright-core");
-
-function browserPath() {
-  if (process.env.SANDTABLE_CHROMIUM) return process.env.SANDTABLE_CHROMIUM;
-  for (const name of ["chromium-headless-shell", "chromium"]) {
-    for (const folder of process.env.PATH.split(delimiter)) {
-      const path = join(folder, name);
-      try {
-        accessSync(path, constants.X_OK);
-        return path;
-      } catch {
-        // Not here.
-      }
-    }
-  }
-  throw new Error("there is no chromium-headless-shell and no chromium on the PATH");
-}
-
-const args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
-const browser = await chromium.launch({ executablePath: browserPath(), args });
+const browser = await launch(["--use-angle=swiftshader", "--enable-unsafe-swiftshader"]);
 const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, hasTouch: true });
 const page = await context.newPage();
 // Cameras jump: a software adapter draws few frames a second.
 await page.emulateMedia({ reducedMotion: "reduce" });
-const told = { requests: [], complaints: [] };
-page.on("request", (request) => told.requests.push(request.url().slice(0, 100)));
-page.on("pageerror", (error) => told.complaints.push(error.message));
-page.on("console", (message) => {
-  if (message.type() === "error") told.complaints.push(message.text());
-});
+const told = watch(page);
 page.setDefaultTimeout(300_000);
 
 const settled = () => page.waitForFunction(() => window.sandtable?.frames > 0 && !sandtable.page.isWanted
