@@ -3,7 +3,7 @@
 //!
 //! The `geojson` crate parses. A third coordinate is the elevation, further ones are ignored. Coordinates are
 //! (longitude, latitude) or (easting, northing) whatever axis order the named system prescribes, as all writers have
-//! it. `serde_json` limits nesting to 128 levels. Where it refuses a text, [`record`] reads the features one by one.
+//! it. `serde_json` limits nesting to 128 levels. Where it refuses a text, `record` reads the features one by one.
 
 pub(crate) mod record;
 pub mod write;
