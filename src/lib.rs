@@ -65,6 +65,7 @@ pub use crate::api::plan::{GatheredPlan, WorkPlan};
 #[cfg(feature = "cli")]
 pub use crate::api::program::run_program;
 pub use crate::api::scene::{Picture, Scene, SceneOptions, View};
+pub use crate::api::scene_data::{FeatureLayer, SceneData};
 pub use crate::api::symbol::Symbol;
 pub use crate::api::terrain::Terrain;
 pub use sandtable_annotate::chart::ChartText;
@@ -96,4 +97,5 @@ pub use sandtable_terrain::sight::line::{Blocker, SightEnd};
 pub use sandtable_terrain::sight::rise::Rise;
 pub use sandtable_terrain::sight::viewshed::{Sector, ViewshedOptions};
 pub use sandtable_terrain::stop_flag::StopFlag;
+pub use sandtable_vector::feature_table::{ColumnValues, FeatureColumn};
 pub use sandtable_view::camera::Camera;

@@ -17,7 +17,7 @@ use sandtable_query::analysis::{AnalyzeError, Analyzed, WrittenArgument, analyze
 use sandtable_query::analysis_bands::OutcomeWindows;
 use sandtable_query::dataset::Dataset;
 use sandtable_scene::land::land_of;
-use sandtable_scene::scene_file::open_scene_land;
+use sandtable_scene::scene_file::build_land;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::vertical_scale::VerticalScale;
 use sandtable_terrain::stop_flag::StopFlag;
@@ -133,7 +133,7 @@ impl Scene {
     ) -> Result<Analysis, Error> {
         let (kind, arguments) = asked(kind, arguments)?;
         let model = self.true_to_scale()?;
-        let dataset = Dataset::from_scene(&self.path.display().to_string(), model);
+        let dataset = Dataset::from_scene(&self.origin.path.display().to_string(), model);
         let land = land_of(model, kind.layers);
         let analyzed = analyze(&dataset, land, (kind, &arguments), crs, stop);
         Ok(Analysis { kind, analyzed: analyzed.map_err(failed)?, arguments })
@@ -149,7 +149,7 @@ impl Scene {
         if let Some(kept) = self.true_to_scale.get() {
             return Ok(kept);
         }
-        let opened = open_scene_land(&self.path, &self.allowed, &|_| ())?;
+        let opened = build_land(&self.origin, &|_| ())?;
         // Another thread that was first opened the same.
         Ok(self.true_to_scale.get_or_init(|| Box::new(opened)))
     }

@@ -22,6 +22,7 @@ use sandtable_scene::scene_file::OpenSceneError;
 use sandtable_shards::error::ShardError;
 use sandtable_sheet::picture::PictureError;
 use sandtable_symbology::labeled::LabeledSymbolError;
+use sandtable_vector::error::VectorError;
 use sandtable_view::camera::CameraError;
 
 /// Why an operation failed. The operation's own error is the source, or the error itself where nothing is to add.
@@ -70,6 +71,9 @@ pub enum Error {
     /// A plan cannot be read, a shard cannot be done, or the product cannot be written.
     #[error(transparent)]
     Plan(Box<ShardError>),
+    /// Shapes make no features.
+    #[error(transparent)]
+    Features(#[from] VectorError),
     /// An analysis has no outcome.
     #[error(transparent)]
     Analysis(Box<AnalysisFailure>),

@@ -8,5 +8,6 @@ pub mod plan;
 #[cfg(feature = "cli")]
 pub mod program;
 pub mod scene;
+pub mod scene_data;
 pub mod symbol;
 pub mod terrain;

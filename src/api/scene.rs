@@ -4,22 +4,24 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use crate::api::error::Error;
+use crate::api::scene_data::SceneData;
 use sandtable_description::finding::Finding;
 use sandtable_draw::pixels::Pixels;
 use sandtable_files::disk;
-use sandtable_lint::opened::open_linted;
+use sandtable_files::png::encode_png;
+use sandtable_lint::opened::build_linted;
 use sandtable_render::RenderBackend;
 use sandtable_scene as scene;
-use sandtable_scene::scene_file::open_scene;
+use sandtable_scene::scene_file::build_scene;
+use sandtable_scene::scene_origin::SceneOrigin;
 use sandtable_sheet::picture::{PictureSize, render_view};
 use sandtable_terrain::query::service::HeightService;
 
 /// A digital terrain model: the ground, the features on it and the views of it that its file describes.
 pub struct Scene {
     pub(crate) model: scene::scene_model::SceneModel,
-    /// Where it was opened, and the folders that it may read.
-    pub(crate) path: PathBuf,
-    pub(crate) allowed: Vec<PathBuf>,
+    /// What it was opened of.
+    pub(crate) origin: SceneOrigin,
     /// The scene true to scale, where an analysis has needed it and its heights are exaggerated.
     pub(crate) true_to_scale: OnceLock<Box<scene::scene_model::SceneModel>>,
 }
@@ -76,8 +78,34 @@ impl Scene {
     /// # Errors
     /// [`Error::OpenScene`].
     pub fn open_with(path: impl AsRef<Path>, options: &SceneOptions<'_>) -> Result<Self, Error> {
-        let model = open_scene(path.as_ref(), options.allowed, options.progress)?;
-        Ok(Self::of(model, path.as_ref(), options))
+        Self::of(SceneOrigin::file(path.as_ref(), options.allowed), options)
+    }
+
+    /// The scene of a text that is in no file. Messages show `path`, and names of files are relative to its folder, as if the
+    /// text were there; what `data` has is not read. The text is that of a scene file.
+    ///
+    /// # Errors
+    /// [`Error::OpenScene`].
+    ///
+    /// ```
+    /// use sandtable::{Dem, Samples, Scene, SceneData, SceneOptions};
+    /// let samples = Samples::F32((0..100).map(|sample| f32::from(sample % 10_i8)).collect());
+    /// let dem = Dem::from_samples(10, samples, [500.0, 10.0, 0.0, 900.0, 0.0, -10.0], None)?;
+    /// let mut data = SceneData::default();
+    /// data.add_dem("memory:hill", &dem);
+    /// let text = "[terrain]\ndem = \"memory:hill\"\n";
+    /// let scene = Scene::from_text("hill.toml", text, &data, &SceneOptions::default())?;
+    /// assert_eq!(scene.view_names().count(), 1);
+    /// # Ok::<(), sandtable::Error>(())
+    /// ```
+    pub fn from_text(
+        path: impl AsRef<Path>,
+        text: &str,
+        data: &SceneData,
+        options: &SceneOptions<'_>,
+    ) -> Result<Self, Error> {
+        let origin = SceneOrigin::text(path.as_ref(), text, options.allowed);
+        Self::of(SceneOrigin { given: data.given.clone(), ..origin }, options)
     }
 
     /// [`Scene::open_with`], and the findings of the command `check` about the scene.
@@ -88,17 +116,27 @@ impl Scene {
         path: impl AsRef<Path>,
         options: &SceneOptions<'_>,
     ) -> Result<(Self, Vec<Finding>), Error> {
-        let (model, findings) = open_linted(path.as_ref(), options.allowed, options.progress)?;
-        Ok((Self::of(model, path.as_ref(), options), findings))
+        let origin = SceneOrigin::file(path.as_ref(), options.allowed);
+        let (model, findings) = build_linted(&origin, options.progress)?;
+        Ok((Self { model, origin, true_to_scale: OnceLock::new() }, findings))
     }
 
-    fn of(model: scene::scene_model::SceneModel, path: &Path, options: &SceneOptions<'_>) -> Self {
-        Self {
-            model,
-            path: path.to_owned(),
-            allowed: options.allowed.to_vec(),
-            true_to_scale: OnceLock::new(),
-        }
+    fn of(origin: SceneOrigin, options: &SceneOptions<'_>) -> Result<Self, Error> {
+        let model = build_scene(&origin, options.progress)?;
+        Ok(Self { model, origin, true_to_scale: OnceLock::new() })
+    }
+
+    /// Reads the scene again and checks it, as the command `check` does.
+    ///
+    /// # Errors
+    /// [`Error::OpenScene`].
+    pub fn check(&self) -> Result<Vec<Finding>, Error> {
+        Ok(build_linted(&self.origin, &|_| ())?.1)
+    }
+
+    /// What was found while it was built, in order of the building: fewer than [`Self::check`] finds.
+    pub fn findings(&self) -> &[Finding] {
+        &self.model.findings
     }
 
     /// Notes for the user about the build: features off the model, missing textures, earth moved.
@@ -139,6 +177,11 @@ impl Scene {
 }
 
 impl View {
+    /// Pixels across and down of its picture.
+    pub fn size(&self) -> (u32, u32) {
+        (self.size.width, self.size.height)
+    }
+
     /// This view on a picture of another size, 16 to 16384 pixels each side.
     pub fn with_size(self, width: u32, height: u32) -> Self {
         Self { size: PictureSize { width, height }, ..self }
@@ -158,6 +201,11 @@ impl Picture {
     /// The pixels row by row from the top, red, green, blue and alpha each.
     pub fn rgba(&self) -> &[u8] {
         self.pixels.bytes()
+    }
+
+    /// The picture as a PNG file.
+    pub fn png(&self) -> Vec<u8> {
+        encode_png(&self.pixels)
     }
 
     /// Writes a PNG file.

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use sandtable_description::finding::Finding;
 use sandtable_scene::build::build;
-use sandtable_scene::scene_file::{OpenSceneError, open_document};
+use sandtable_scene::scene_file::OpenSceneError;
 use sandtable_scene::scene_model::SceneModel;
+use sandtable_scene::scene_origin::SceneOrigin;
 
 use crate::lint;
 
@@ -18,8 +19,19 @@ pub fn open_linted(
     allowed: &[PathBuf],
     progress: &dyn Fn(&'static str),
 ) -> Result<(SceneModel, Vec<Finding>), OpenSceneError> {
+    build_linted(&SceneOrigin::file(path, allowed), progress)
+}
+
+/// [`open_linted`] of a scene of any origin.
+///
+/// # Errors
+/// See [`OpenSceneError`].
+pub fn build_linted(
+    origin: &SceneOrigin,
+    progress: &dyn Fn(&'static str),
+) -> Result<(SceneModel, Vec<Finding>), OpenSceneError> {
     progress("reading the scene file");
-    let (document, assets) = open_document(path, allowed, None)?;
+    let (document, assets) = origin.document(None)?;
     let scene = build(&document, &assets, progress)?;
     progress("checking");
     let findings = lint(&document, &assets, &scene);

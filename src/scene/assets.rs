@@ -16,6 +16,7 @@ use std::io::{self, Read, Seek};
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use crate::given_data::GivenData;
 use sandtable_base::limits::ASSET_BYTES;
 use sandtable_base::message::suggest::{nearest, quoted};
 use sandtable_model::Companions;
@@ -128,6 +129,8 @@ pub struct Assets {
     read: Arc<Mutex<BTreeSet<PathBuf>>>,
     /// The elevation that takes the place of every elevation file's.
     elevation: Option<Arc<Raster>>,
+    /// What is in memory, and not read.
+    given: GivenData,
 }
 
 impl Assets {
@@ -151,7 +154,8 @@ impl Assets {
         };
         let allowed_as_written = allowed.iter().map(written).collect();
         let allowed = allowed.iter().map(|path| canonical(path)).collect::<Result<_, _>>()?;
-        Ok(Self { folder, root, allowed, allowed_as_written, read: Arc::default(), elevation: None })
+        let (read, given) = (Arc::default(), GivenData::default());
+        Ok(Self { folder, root, allowed, allowed_as_written, read, elevation: None, given })
     }
 
     /// The folders that it may read besides its own and the one above.
@@ -163,6 +167,16 @@ impl Assets {
     /// the memory, of which this is an overview.
     pub fn with_elevation(self, elevation: Arc<Raster>) -> Self {
         Self { elevation: Some(elevation), ..self }
+    }
+
+    /// The same files, and data in memory, which take the place of files of their names.
+    pub fn with_given(self, given: GivenData) -> Self {
+        Self { given, ..self }
+    }
+
+    /// The data in memory.
+    pub fn given(&self) -> &GivenData {
+        &self.given
     }
 
     /// The elevation that takes the place of the file that the scene calls `name`; `None` where that is to be read.
@@ -202,6 +216,9 @@ impl Assets {
     /// # Errors
     /// [`AssetError`].
     pub fn read(&self, name: &str) -> Result<Vec<u8>, AssetError> {
+        if let Some(bytes) = self.given.file(name) {
+            return Ok(bytes.to_vec());
+        }
         if !is_address(name) {
             return self.read_resolved(self.resolve(name)?);
         }
@@ -285,6 +302,9 @@ impl Assets {
     pub fn beside(&self, name: &str) -> Result<SiblingFiles<'_>, AssetError> {
         if is_address(name) {
             return Ok(SiblingFiles { assets: self, folder: PathBuf::from(address_folder(name)) });
+        }
+        if self.given.file(name).is_some() {
+            return Ok(SiblingFiles { assets: self, folder: self.folder.clone() });
         }
         let model = self.resolve(name)?;
         let folder = model.parent().unwrap_or(&self.folder).to_path_buf();

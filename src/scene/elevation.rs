@@ -250,6 +250,10 @@ impl TileList {
             if assets.elevation(name).map_err(|error| document.error(dem, error))?.is_some() {
                 return Ok(None);
             }
+            if assets.given().raster(name).is_some() {
+                list.files.push(TileFile::alone(name.clone(), offset_m));
+                continue;
+            }
             if let Some(files) = assets.folder(name).map_err(|error| document.error(dem, error))? {
                 let before = list.files.len();
                 let tiles = files.into_iter().filter(|file| read::is_tile_name(file));
@@ -379,8 +383,13 @@ impl TileList {
             let name = &file.name;
             let options = file.options(&own);
             let hints = DemHints { options, overridden: &note, companions: &|name| companions.get(name) };
-            let bytes = assets.read(name).map_err(|error| document.error(dem, error))?;
-            let tile = read::read(name, &bytes, &hints);
+            let tile = match assets.given().raster(name) {
+                Some(raster) => Ok(given_tile(raster, &hints)),
+                None => {
+                    let bytes = assets.read(name).map_err(|error| document.error(dem, error))?;
+                    read::read(name, &bytes, &hints)
+                }
+            };
             companions.check().map_err(|error| document.error(dem, error))?;
             let mut tile = tile.map_err(|error| document.error(dem, error))?;
             if let Some(source) = &file.source {
@@ -443,6 +452,9 @@ fn open_windows(
     overridden: &dyn Fn(&Crs),
 ) -> Result<Option<Box<dyn Windows + Send>>, TileError> {
     let TileFile { name, source, offset_m } = file;
+    if assets.given().raster(name).is_some() {
+        return Ok(None);
+    }
     let (head, content) = assets.open_elevation(name, read::HEAD_BYTES)?;
     let companions = assets.companions(COMPANION_BYTES.get());
     let options = file.options(stated);
@@ -457,6 +469,16 @@ fn open_windows(
         (_, windows) => windows,
     };
     Ok(windows.map(|windows| raised(windows, *offset_m)))
+}
+
+/// Elevation in memory, in the system that the document states, where it states one.
+fn given_tile(raster: &Raster, hints: &DemHints<'_>) -> Raster {
+    let mut tile = raster.clone();
+    if let Some(stated) = &hints.options.crs {
+        tile.crs.iter().for_each(|own| (hints.overridden)(own));
+        tile.crs = Some(stated.clone());
+    }
+    tile
 }
 
 /// Windows with `meters` added to their heights.

@@ -7,14 +7,14 @@ use crate::build::{SceneGround, build, build_ground, build_with};
 use crate::build_errors::BuildErrors;
 use crate::planned_pictures::ElevationNeed;
 use crate::scene_model::SceneModel;
+use crate::scene_origin::SceneOrigin;
 use sandtable_base::message::chain::error_text;
 use sandtable_base::message::suggest::{quoted, remedy};
 use sandtable_description::diagnostic::{Diagnostic, Diagnostics};
 use sandtable_description::document::Document;
 use sandtable_description::finding::Finding;
 use sandtable_description::finding_code::FindingCode;
-use sandtable_description::parse::parse_in_phase;
-use sandtable_files::disk::{self, ReadFileError};
+use sandtable_files::disk::ReadFileError;
 
 /// A scene that cannot be opened.
 #[derive(Debug, thiserror::Error)]
@@ -106,7 +106,7 @@ pub fn open_scene(
     allowed: &[PathBuf],
     progress: &dyn Fn(&'static str),
 ) -> Result<SceneModel, OpenSceneError> {
-    open_scene_for(path, allowed, None, ElevationNeed::AllThatFit, progress)
+    build_scene(&SceneOrigin::file(path, allowed), progress)
 }
 
 /// Parses and builds a scene that has no file, of the text `text`; it reads files as one at `path` would.
@@ -119,9 +119,19 @@ pub fn build_scene_text(
     allowed: &[PathBuf],
     progress: &dyn Fn(&'static str),
 ) -> Result<SceneModel, OpenSceneError> {
-    let assets = Assets::new(path, allowed)?;
-    let load = |name: &str| assets.read(name).map_err(Into::into);
-    let document = parse_in_phase(&path.to_string_lossy(), text.as_bytes(), &load, None)?;
+    build_scene(&SceneOrigin::text(path, text, allowed), progress)
+}
+
+/// Parses and builds a scene of any origin, as [`open_scene`] does that of a file.
+///
+/// # Errors
+/// See [`OpenSceneError`].
+pub fn build_scene(
+    origin: &SceneOrigin,
+    progress: &dyn Fn(&'static str),
+) -> Result<SceneModel, OpenSceneError> {
+    progress("reading the scene file");
+    let (document, assets) = origin.document(None)?;
     Ok(build(&document, &assets, progress)?)
 }
 
@@ -227,8 +237,19 @@ pub fn open_scene_land(
     allowed: &[PathBuf],
     progress: &dyn Fn(&'static str),
 ) -> Result<SceneModel, OpenSceneError> {
+    build_land(&SceneOrigin::file(path, allowed), progress)
+}
+
+/// [`open_scene_land`] of a scene of any origin.
+///
+/// # Errors
+/// See [`OpenSceneError`].
+pub fn build_land(
+    origin: &SceneOrigin,
+    progress: &dyn Fn(&'static str),
+) -> Result<SceneModel, OpenSceneError> {
     progress("reading the scene file");
-    let (mut document, assets) = open_document(path, allowed, None)?;
+    let (mut document, assets) = origin.document(None)?;
     document.terrain.vertical_exaggeration = 1.0;
     document.analyses.clear();
     Ok(build(&document, &assets, progress)?)
@@ -243,9 +264,5 @@ pub fn open_document(
     allowed: &[PathBuf],
     phase: Option<&str>,
 ) -> Result<(Document, Assets), OpenSceneError> {
-    let bytes = disk::read(path)?;
-    let assets = Assets::new(path, allowed)?;
-    let load = |name: &str| assets.read(name).map_err(Into::into);
-    let document = parse_in_phase(&path.to_string_lossy(), &bytes, &load, phase)?;
-    Ok((document, assets))
+    SceneOrigin::file(path, allowed).document(phase)
 }

@@ -300,6 +300,12 @@ impl<'a> Sources<'a> {
         if let Some(layer) = self.layers.borrow().get(&key) {
             return Ok(Arc::clone(layer));
         }
+        if let Some(given) = self.assets.given().layer(file) {
+            let layer = self.given_layer(given, &key, stated);
+            self.note_reading(file, &layer);
+            self.layers.borrow_mut().insert(key, Arc::clone(&layer));
+            return Ok(layer);
+        }
         let bytes = self.assets.read(file).map_err(|error| self.frame.document.error(file, error))?;
         // A table of attributes may be as large as the file itself.
         let companions = self.assets.companions(ASSET_BYTES.get());
@@ -318,6 +324,22 @@ impl<'a> Sources<'a> {
         self.note_reading(file, &layer);
         self.layers.borrow_mut().insert(key, Arc::clone(&layer));
         Ok(layer)
+    }
+
+    /// Features in memory, in the system that the scene file states for them, where it states one.
+    fn given_layer(
+        &self,
+        given: &Arc<VectorLayer>,
+        key: &LayerKey,
+        stated: Option<&Crs>,
+    ) -> Arc<VectorLayer> {
+        match stated {
+            Some(crs) if *crs != given.crs => {
+                self.overridden.borrow_mut().insert(key.clone(), given.crs.clone());
+                Arc::new(VectorLayer { crs: crs.clone(), ..VectorLayer::clone(given) })
+            }
+            _ => Arc::clone(given),
+        }
     }
 
     /// Keeps what reading a file left out. What several layers of a file have in common is kept once.

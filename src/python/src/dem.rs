@@ -26,6 +26,8 @@ pub struct PyDem {
     elevation: Elevation,
     /// Where it was opened; `None` for an array.
     file: Option<DemSource>,
+    /// The samples of an array; `None` of a file.
+    samples: Option<Dem>,
 }
 
 /// A file, what it does not state and the hosts that it may be read from: all that another process needs to open it.
@@ -65,7 +67,7 @@ impl DemSource {
             let text = CString::new(warning.replace('\0', " ")).map_err(wrong_value)?;
             PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 2)?;
         }
-        Ok(PyDem { elevation, file: Some(self) })
+        Ok(PyDem { elevation, file: Some(self), samples: None })
     }
 }
 
@@ -78,6 +80,13 @@ pub fn open_dem(
     allow_remote: Vec<String>,
 ) -> PyResult<PyDem> {
     DemSource { path, stated, allow_remote }.open(py)
+}
+
+impl PyDem {
+    /// The samples of an array; `None` of a file.
+    pub fn samples(&self) -> Option<&Dem> {
+        self.samples.as_ref()
+    }
 }
 
 #[pymethods]
@@ -126,7 +135,23 @@ impl PyDem {
         let (columns, samples) = samples(array, nodata)?;
         let crs = crs.map(crate::arguments::crs).transpose()?;
         let dem = Dem::from_samples(columns, samples, geotransform(&transform)?, crs).map_err(failed)?;
-        Ok(Self { elevation: Elevation::new(&dem), file: None })
+        Ok(Self { elevation: Elevation::new(&dem), file: None, samples: Some(dem) })
+    }
+
+    /// The file that it was opened of, and what was stated besides, by the keys of `[terrain]`; None of an array.
+    #[getter]
+    fn _source<'py>(&self, py: Python<'py>) -> PyResult<Option<(PathBuf, Bound<'py, PyDict>)>> {
+        let Some(DemSource { path, stated, .. }) = &self.file else { return Ok(None) };
+        let (crs, nodata, vertical_datum, vertical_unit, height_scale, height_offset, cell) = stated;
+        let keys = PyDict::new(py);
+        keys.set_item("crs", crs)?;
+        keys.set_item("nodata", nodata)?;
+        keys.set_item("vertical_datum", vertical_datum)?;
+        keys.set_item("vertical_unit", vertical_unit)?;
+        keys.set_item("height_scale", height_scale)?;
+        keys.set_item("height_offset", height_offset)?;
+        keys.set_item("cell", cell)?;
+        Ok(Some((path.clone(), keys)))
     }
 
     /// (rows, columns).

@@ -21,6 +21,7 @@ mod rasters;
 mod remote;
 mod results;
 mod scene;
+mod scene_data;
 mod symbol;
 
 use pyo3::prelude::*;
@@ -44,6 +45,8 @@ mod _sandtable {
     use crate::results::{PyLineOfSight, PyProfile};
     #[pymodule_export]
     use crate::scene::PyScene;
+    #[pymodule_export]
+    use crate::scene_data::{PyFeatureLayer, features};
     #[pymodule_export]
     use crate::symbol::PySymbol;
     #[pymodule_export]

@@ -5,23 +5,25 @@ use std::sync::OnceLock;
 
 use numpy::{PyArray1, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
-use sandtable::{Crs, Finding, Scene, SceneOptions, StopFlag};
+use pyo3::types::{PyBytes, PyDict, PyTuple};
+use sandtable::{Crs, Finding, Scene, SceneOptions, StopFlag, View};
 
 use crate::analysis::analyzed;
 use crate::arguments::crs_or;
 use crate::error::{failed, wrong_value};
 use crate::findings::PyFinding;
+use crate::scene_data::scene_data;
 
 /// Pixels on a side of a picture, least and most.
 const SIDES: std::ops::RangeInclusive<u32> = 16..=16384;
 
-/// A scene: the ground, the features on it, and its cameras. Made by `Scene.open`.
-#[pyclass(name = "Scene", module = "sandtable", frozen)]
+/// What messages call the text of a scene that is in no file.
+const TEXT_NAME: &str = "<scene>";
+
+/// A scene that is built: the ground, the features on it, and its cameras.
+#[pyclass(name = "_BuiltScene", module = "sandtable", frozen)]
 pub struct PyScene {
     scene: Scene,
-    path: PathBuf,
-    allowed: Vec<PathBuf>,
     findings: OnceLock<Vec<Finding>>,
 }
 
@@ -37,7 +39,25 @@ impl PyScene {
     fn open(py: Python<'_>, path: PathBuf, allow: Vec<PathBuf>, allow_remote: Vec<String>) -> PyResult<Self> {
         crate::remote::allow(&allow_remote)?;
         let scene = py.detach(|| Scene::open_with(&path, &options(&allow))).map_err(failed)?;
-        Ok(Self { scene, path, allowed: allow, findings: OnceLock::new() })
+        Ok(Self { scene, findings: OnceLock::new() })
+    }
+
+    /// Builds the scene of a text that is in no file: names are relative to the current folder. `given` are pairs of a name in the
+    /// text and features, a Dem of an array or bytes; all else is as in `open`.
+    #[staticmethod]
+    #[pyo3(signature = (text, given, *, allow = Vec::new(), allow_remote = Vec::new()), text_signature = "(text, given, *, allow=(), allow_remote=())")]
+    fn build(
+        py: Python<'_>,
+        text: &str,
+        given: Vec<(String, Bound<'_, PyAny>)>,
+        allow: Vec<PathBuf>,
+        allow_remote: Vec<String>,
+    ) -> PyResult<Self> {
+        crate::remote::allow(&allow_remote)?;
+        let data = scene_data(&given)?;
+        let build = || Scene::from_text(TEXT_NAME, text, &data, &options(&allow));
+        let scene = py.detach(build).map_err(failed)?;
+        Ok(Self { scene, findings: OnceLock::new() })
     }
 
     /// The names of the cameras, the first one that of the default.
@@ -52,13 +72,18 @@ impl PyScene {
         PyTuple::new(py, self.scene.notes())
     }
 
+    /// What was found while it was built: fewer findings than `findings` has.
+    #[getter]
+    fn built_findings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.scene.findings().iter().map(PyFinding::new).collect::<Vec<_>>())
+    }
+
     /// What is wrong with the scene or looks wrong, as `sandtable check` finds it: the file is read and checked when this is
     /// first asked for.
     #[getter]
     fn findings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         if self.findings.get().is_none() {
-            let checked = py.detach(|| Scene::open_checked(&self.path, &options(&self.allowed)));
-            let (_, found) = checked.map_err(failed)?;
+            let found = py.detach(|| self.scene.check()).map_err(failed)?;
             // Another thread that was first found the same.
             let _ = self.findings.set(found);
         }
@@ -77,16 +102,7 @@ impl PyScene {
         camera: Option<&str>,
         size: Option<(u32, u32)>,
     ) -> PyResult<Bound<'py, PyArray3<u8>>> {
-        let first = || self.scene.view_names().next().unwrap_or_default();
-        let mut view = self.scene.view(camera.unwrap_or_else(first)).map_err(failed)?;
-        if let Some((width, height)) = size {
-            if !SIDES.contains(&width) || !SIDES.contains(&height) {
-                return Err(wrong_value(format!(
-                    "size is ({width}, {height}); give (width, height) of 16 to 16384 pixels each"
-                )));
-            }
-            view = view.with_size(width, height);
-        }
+        let view = self.view(camera, size)?;
         let rendered = py.detach(|| {
             let picture = self.scene.render(&view)?;
             let rgb: Vec<u8> =
@@ -95,6 +111,22 @@ impl PyScene {
         });
         let (rgb, (width, height)) = rendered.map_err(failed)?;
         PyArray1::from_vec(py, rgb).reshape([height as usize, width as usize, 3])
+    }
+
+    /// The picture of `render` as the bytes of a PNG file.
+    ///
+    /// `longest` is the most pixels of a side; a larger picture is drawn as much smaller.
+    #[pyo3(signature = (camera = None, size = None, *, longest = None))]
+    fn png<'py>(
+        &self,
+        py: Python<'py>,
+        camera: Option<&str>,
+        size: Option<(u32, u32)>,
+        longest: Option<u32>,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let view = within(self.view(camera, size)?, longest);
+        let png = py.detach(|| Ok(self.scene.render(&view)?.png())).map_err(failed)?;
+        Ok(PyBytes::new(py, &png))
     }
 
     /// Analyzes the ground, as `sandtable analyze`: `kind` and the keywords are those of `sandtable.kinds()`.
@@ -121,9 +153,35 @@ impl PyScene {
         };
         analyzed(py, (arguments, progress), crs, analyze)
     }
+}
 
-    fn __repr__(&self) -> String {
-        format!("<Scene {}>", self.path.display())
+impl PyScene {
+    /// The view of a camera, the first by default, of a size.
+    fn view(&self, camera: Option<&str>, size: Option<(u32, u32)>) -> PyResult<View> {
+        let first = || self.scene.view_names().next().unwrap_or_default();
+        let view = self.scene.view(camera.unwrap_or_else(first)).map_err(failed)?;
+        let Some((width, height)) = size else { return Ok(view) };
+        if !SIDES.contains(&width) || !SIDES.contains(&height) {
+            return Err(wrong_value(format!(
+                "size is ({width}, {height}); give (width, height) of 16 to 16384 pixels each"
+            )));
+        }
+        Ok(view.with_size(width, height))
+    }
+}
+
+/// The view with sides of at most `longest` pixels.
+fn within(view: View, longest: Option<u32>) -> View {
+    let (width, height) = view.size();
+    match longest {
+        Some(most) if most < width.max(height) => {
+            let scaled = |side: u32| {
+                let side = u64::from(side) * u64::from(most) / u64::from(width.max(height));
+                u32::try_from(side).unwrap_or(most).clamp(*SIDES.start(), *SIDES.end())
+            };
+            view.with_size(scaled(width), scaled(height))
+        }
+        _ => view,
     }
 }
 

@@ -10,7 +10,7 @@ import sandtable
 from conftest import ROOT
 
 
-@pytest.mark.parametrize("page", ["src/book/analysis.md", "src/book/gis-and-python.md", "src/book/many-machines.md", "src/python/README.md"])
+@pytest.mark.parametrize("page", ["src/book/analysis.md", "src/book/gis-and-python.md", "src/book/many-machines.md", "src/book/notebook.md", "src/python/README.md"])
 def test_the_examples_of_the_pages_run(program, page, tmp_path):
     for folder in ["assets", "scenes"]:
         (tmp_path / folder).symlink_to(ROOT / folder)

@@ -10,8 +10,6 @@
 //!
 //! `sandtable-database` opens the file within limits.
 
-mod wkb;
-
 use rusqlite::types::ValueRef;
 use rusqlite::{Connection, ErrorCode, Row};
 use serde_json::{Number, Value};
@@ -19,8 +17,8 @@ use serde_json::{Number, Value};
 use crate::builder::{FeatureParts, LayerBuilder};
 use crate::error::{VectorError, shorten};
 use crate::feature::{Properties, VectorLayer};
-use crate::geopackage::wkb::WkbError;
 use crate::hints::VectorHints;
+use crate::wkb::{self, WkbError};
 use sandtable_base::bytes::ByteCursor;
 use sandtable_database::{open, quoted};
 use sandtable_geom::crs::Crs;

@@ -12,9 +12,10 @@ and ``sandtable.dask`` does plans on a Dask cluster.
 
 from . import plot
 from ._analysis import Analysis, kinds
-from ._errors import SandtableError
-from ._sandtable import Dem, Finding, LineOfSight, Mesh, Plan, Profile, Raster, Scene, Symbol, licenses, set_limit
+from ._errors import SandtableError, SandtableWarning
+from ._sandtable import Dem, Finding, LineOfSight, Mesh, Plan, Profile, Raster, Symbol, licenses, set_limit
 from ._sandtable import __VERSION__ as __version__
+from ._scene import Scene
 
 __all__ = [
     "Analysis",
@@ -26,6 +27,7 @@ __all__ = [
     "Profile",
     "Raster",
     "SandtableError",
+    "SandtableWarning",
     "Scene",
     "Symbol",
     "__version__",

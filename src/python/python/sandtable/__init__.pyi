@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import plot as plot
 from ._analysis import Analysis as Analysis
 from ._analysis import kinds as kinds
+from ._scene import Scene as Scene
 
 _Interpolation = Literal["bilinear", "planar", "nearest", "cubic", "distance-weighted"]
 _Surface = Literal["source", "ground", "scene"]
@@ -30,6 +31,10 @@ class SandtableError(Exception):
         column: int | None = None,
         findings: Sequence[Finding] = (),
     ) -> None: ...
+
+class SandtableWarning(UserWarning):
+    finding: Finding
+    def __init__(self, finding: Finding) -> None: ...
 
 @final
 class Finding:
@@ -109,6 +114,8 @@ class LineOfSight:
 
 @final
 class Dem:
+    @property
+    def _source(self) -> tuple[Any, dict[str, Any]] | None: ...
     @staticmethod
     def open(
         path: str | PathLike[str],
@@ -218,33 +225,6 @@ class Symbol:
     def render(self, size: float = 100.0) -> NDArray[np.uint8]: ...
     def _repr_svg_(self) -> str: ...
     def _repr_png_(self) -> bytes: ...
-
-@final
-class Scene:
-    @staticmethod
-    def open(
-        path: str | PathLike[str],
-        *,
-        allow: Sequence[str | PathLike[str]] = (),
-        allow_remote: Sequence[str] = (),
-    ) -> Scene: ...
-    @property
-    def cameras(self) -> tuple[str, ...]: ...
-    @property
-    def notes(self) -> tuple[str, ...]: ...
-    @property
-    def findings(self) -> tuple[Finding, ...]: ...
-    def render(
-        self, camera: str | None = None, size: tuple[int, int] | None = None
-    ) -> NDArray[np.uint8]: ...
-    def analyze(
-        self,
-        kind: str,
-        *,
-        crs: _Crs | None = None,
-        progress: bool | Callable[[float], object] | None = None,
-        **arguments: Any,
-    ) -> Any: ...
 
 @final
 class Plan:

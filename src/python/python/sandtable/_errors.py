@@ -1,4 +1,4 @@
-"""The exception of the package."""
+"""The exception and the warning of the package."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class SandtableError(Exception):
     Attributes
     ----------
     file : str or None
-        The file that is wrong.
+        The file that is wrong; ``<scene>`` for the text of a scene that is made in Python, as ``Scene.toml`` gives it.
     line, column : int or None
         The place in a scene file, both from 1; the column in characters.
     findings : tuple of Finding
@@ -35,3 +35,20 @@ class SandtableError(Exception):
         self.line = line
         self.column = column
         self.findings = tuple(findings)
+
+
+class SandtableWarning(UserWarning):
+    """Something in a scene that somebody should look at.
+
+    Attributes
+    ----------
+    finding : Finding
+        Its code, message, remedy and place: ``<scene>`` is the text of a scene that is made in Python, as ``Scene.toml``
+        gives it.
+    """
+
+    def __init__(self, finding: Finding) -> None:
+        place = "" if finding.file is None else f"{finding.file}:{finding.line}:{finding.column}: "
+        remedy = "" if finding.help is None else f"; {finding.help}"
+        super().__init__(f"{place}{finding.message}{remedy} [{finding.code}]")
+        self.finding = finding

@@ -1,4 +1,4 @@
-//! Well-known binary, the shapes of a GeoPackage (ISO 13249-3:2016 with Z and M, and the flags of PostGIS's EWKB).
+//! Well-known binary, the shapes of GeoPackages and of tables in memory (ISO 13249-3:2016 with Z and M, and the flags of PostGIS's EWKB).
 //!
 //! ```text
 //! byte order:u8  type:u32  [count:u32]  then
