@@ -40,7 +40,9 @@ def crs_text(crs: Any) -> str:
     """The coordinate system of a text, an EPSG code, a ``pyproj.CRS`` or a ``rasterio.crs.CRS``, as a scene file states it."""
     if isinstance(crs, str):
         return crs
-    code = crs if isinstance(crs, int) else crs.to_epsg()
+    if isinstance(crs, int):
+        return f"EPSG:{crs}"
+    code = crs.to_epsg()
     return f"EPSG:{code}" if code is not None else crs.to_wkt(version="WKT1_GDAL")
 
 
@@ -70,11 +72,15 @@ def ground(dem: Any, transform: Any, crs: Any, nodata: float | None) -> Given:
     if hasattr(dem, "dims") and hasattr(dem, "to_numpy"):
         return Given({"dem": "{name}"}, _dem_of_xarray(dem, crs, nodata))
     if hasattr(dem, "read") and hasattr(dem, "transform"):
-        if _exists(dem.name):
-            return _elevation_files([dem.name], crs, nodata)
-        crs, nodata = crs or dem.crs, dem.nodata if nodata is None else nodata
-        return Given({"dem": "{name}"}, _dem_of_array(dem.read(1), tuple(dem.transform), crs, nodata))
+        return _dataset(dem, crs, nodata)
     return Given({"dem": "{name}"}, _dem_of_array(dem, transform, crs, nodata))
+
+
+def _dataset(dem: Any, crs: Any, nodata: float | None) -> Given:
+    if _exists(dem.name):
+        return _elevation_files([dem.name], crs, nodata)
+    crs, nodata = crs or dem.crs, dem.nodata if nodata is None else nodata
+    return Given({"dem": "{name}"}, _dem_of_array(dem.read(1), tuple(dem.transform), crs, nodata))
 
 
 def _opened_dem(dem: Dem) -> Given:
@@ -124,7 +130,7 @@ def features(source: Any, crs: Any, at: Any) -> Given:
         return Given({"file": named}, None, allow)
     if isinstance(source, (bytes, bytearray)):
         return Given({"file": "{name}"}, bytes(source))
-    if hasattr(source, "geometry") and hasattr(source.geometry, "to_wkb"):
+    if hasattr(getattr(source, "geometry", None), "to_wkb"):
         return Given({"file": "{name}"}, _geo_frame(source, crs))
     if hasattr(source, "to_csv"):
         return _table(source, crs, at)

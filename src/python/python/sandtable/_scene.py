@@ -158,7 +158,7 @@ class Scene(SceneTables):
             return _data.crs_text(value)
         if isinstance(value, dict):
             return {inner: self._value(table, inner, part) for inner, part in value.items()}
-        if isinstance(value, (bytes, bytearray)) or hasattr(value, "geometry") and hasattr(value.geometry, "to_wkb"):
+        if isinstance(value, (bytes, bytearray)) or hasattr(getattr(value, "geometry", None), "to_wkb"):
             given = _data.features(value, None, None)
             name = self._free_name(f"{table}-{key}", given.ending)
             self._given[name] = given.data
