@@ -39,7 +39,7 @@ const SKY_PX: f32 = 7.0;
 const MOST_NAMES: usize = 2048;
 
 /// A name, set.
-struct PreparedName<'a> {
+struct PreparedSkylineName<'a> {
     name: &'a SkylineName,
     /// With the starts of their baselines, from the left end of the block's first baseline.
     lines: Vec<(TypesetLine, Vec2)>,
@@ -58,8 +58,8 @@ pub fn draw(
     let (sheet, mut drawing) = (composer.sheet, Drawing::default());
     let halo_px = sheet.px(2.2).max(1.5);
     let names = names.iter().take(MOST_NAMES).filter(|name| sheet.bounds().contains(name.at_px));
-    let prepared: Vec<PreparedName<'_>> =
-        names.filter_map(|name| PreparedName::new(name, halo_px, composer)).collect();
+    let prepared: Vec<PreparedSkylineName<'_>> =
+        names.filter_map(|name| PreparedSkylineName::new(name, halo_px, composer)).collect();
     let row_px = prepared.iter().map(|name| name.area.size().y).fold(0.0, f32::max) + sheet.px(4.0);
     let field = LabelField {
         bounds: sheet.bounds().grown(-(sheet.margin() * 0.4).round()),
@@ -67,7 +67,7 @@ pub fn draw(
         leader_gap: sheet.px(3.0),
     };
     let is_sky = |area: &PixelBox| cover.is_none_or(|cover| cover.share(&area.grown(SKY_PX)) == 0.0);
-    let request = |name: &PreparedName<'_>| LabelRequest {
+    let request = |name: &PreparedSkylineName<'_>| LabelRequest {
         candidates: name.candidates(&field, row_px, sheet.px(LEADER_PX), sheet.px(ABOVE_PX), &is_sky),
         reserved: None,
     };
@@ -104,7 +104,7 @@ pub fn draw(
     drawing
 }
 
-impl<'a> PreparedName<'a> {
+impl<'a> PreparedSkylineName<'a> {
     /// `None` for a name without letters.
     fn new(name: &'a SkylineName, halo_px: f32, composer: &mut Composer) -> Option<Self> {
         let widest = composer.sheet.size.x * WIDEST_SHARE;

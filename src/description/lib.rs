@@ -22,6 +22,7 @@ pub mod graphics;
 pub mod include;
 mod key;
 pub mod overlays;
+pub mod panorama_keys;
 pub mod parse;
 pub mod phases;
 mod reader;

@@ -11,8 +11,9 @@ use crate::scene_view::{FittedView, PanoramaView, ParallelView, SceneView, ViewA
 use crate::vertical_scale::DrawnGround;
 use crate::world_frame::WorldFrame;
 use sandtable_description::diagnostic::Diagnostic;
-use sandtable_description::document::{CameraTable, Document, PAPER_DPI, panorama_span_deg, paper_mm};
+use sandtable_description::document::{CameraTable, Document, PAPER_DPI, paper_mm};
 use sandtable_description::finding_code::FindingCode;
+use sandtable_description::panorama_keys::panorama_span_deg;
 use sandtable_description::stated::Stated;
 use sandtable_description::words::{CameraProjection, SheetLayout};
 use sandtable_geom::position::Position;
