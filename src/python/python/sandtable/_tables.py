@@ -818,14 +818,16 @@ class SceneTables:
         eye_elevation: float | None = None,
         eye_height: float | None = None,
         field_of_view: float | None = None,
+        from_: float | None = None,
         look_at: Point | None = None,
         look_at_height: float | None = None,
         paper: Literal["A4", "A3", "A2", "A1", "A0"] | None = None,
         pitch: float | None = None,
         portrait: bool | None = None,
-        projection: Literal["perspective", "plan", "orthographic", "oblique"] | None = None,
+        projection: Literal["perspective", "plan", "orthographic", "oblique", "panorama"] | None = None,
         scale: float | None = None,
         shows: Sequence[Point] | None = None,
+        to: float | None = None,
     ) -> _T:
         """Views; the first is the default. Without any, one is fitted to the whole ground.
 
@@ -850,6 +852,9 @@ class SceneTables:
         field_of_view : number, from 1 to 170
             Vertical field of view; 40 is about that of a normal lens held upright, 28 that of a portrait lens. Unit:
             °. Default: 40 with an eye, 28 without.
+        from_ : number, from -360 to 360
+            Of a panorama: the azimuth of its left border, clockwise from north. Unit: °. Default: 180: north is in
+            the middle.
         look_at
             Place on the ground that the camera looks at. Default: by `azimuth` and `pitch`.
         look_at_height : number, from -1e+07 to 1e+07
@@ -857,32 +862,76 @@ class SceneTables:
         paper
             The paper that the picture fills at `dpi`, unless the command line states a size in pixels. `A4`: 297 ×
             210 mm; `A3`: 420 × 297 mm; `A2`: 594 × 420 mm; `A1`: 841 × 594 mm; `A0`: 1189 × 841 mm. Default: none:
-            1920 × 1080 px; not in perspective and without `scale`, as many in the shape of what it shows, from 1:2 to
-            2:1.
+            1920 × 1080 px; with one scale that nothing states, as many in the shape of what it shows, from 1:2 to
+            2:1; of a panorama 16 px a degree, as high as its relief needs.
         pitch : number, from 5 to 89
             Of a camera without an eye: how far it looks down from the horizon. Unit: °. Default: what fills the
             picture best, from 40 to 50; 45 of an orthographic one.
         portrait
             Whether the paper stands upright. Default: false.
         projection
-            How the ground is drawn. All but `perspective` have one scale everywhere, and no eye. `perspective`: as an
-            eye sees it: what is far is small; `plan`: straight from above, as a map, with `azimuth` up; one scale,
-            and heights do not show; `orthographic`: by parallel rays along `azimuth` and `pitch`: one scale across
-            the view; `oblique`: the ground as in plan, and heights straight up at the same scale (a military
-            oblique). Default: "perspective".
+            How the ground is drawn. `plan`, `orthographic` and `oblique` have one scale everywhere, and no eye.
+            `perspective`: as an eye sees it: what is far is small; `plan`: straight from above, as a map, with
+            `azimuth` up; one scale, and heights do not show; `orthographic`: by parallel rays along `azimuth` and
+            `pitch`: one scale across the view; `oblique`: the ground as in plan, and heights straight up at the same
+            scale (a military oblique); `panorama`: on a cylinder around the `eye`, with the names of the peaks in
+            sight and a scale of azimuths. Default: "perspective".
         scale : number, from 1 to 1e+09
-            Of a camera that is not in perspective: `n` of the map scale 1:n, with the middle of what it `shows` in
-            the picture's middle. Default: as large as what it shows fits the picture, `n` rounded up to two figures.
+            Of a camera with one scale: `n` of the map scale 1:n, with the middle of what it `shows` in the picture's
+            middle. Default: as large as what it shows fits the picture, `n` rounded up to two figures.
         shows
             Of a camera without an eye: points around what it shows, such as two corners of a map. Default: the whole
             ground.
+        to : number, from -360 to 360
+            Of a panorama: the azimuth of its right border, at least 10° from the left one. Unit: °. Default: the
+            whole circle.
         """
         return self._with(
             "camera", "[[camera]]", None,
             {"name": name, "azimuth": azimuth, "crs": crs, "dpi": dpi, "eye": eye, "eye_elevation": eye_elevation,
-             "eye_height": eye_height, "field_of_view": field_of_view, "look_at": look_at,
+             "eye_height": eye_height, "field_of_view": field_of_view, "from_": from_, "look_at": look_at,
              "look_at_height": look_at_height, "paper": paper, "pitch": pitch, "portrait": portrait,
-             "projection": projection, "scale": scale, "shows": shows},
+             "projection": projection, "scale": scale, "shows": shows, "to": to},
+        )
+
+    def coasts(
+        self: _T,
+        source: Source | None = None,
+        *,
+        columns: Mapping[str, Any] | None = None,
+        crs: Crs | None = None,
+        layer: str | None = None,
+        phases: str | Sequence[str] | None = None,
+        style: str | None = None,
+        where: Mapping[str, Any] | Expression | None = None,
+    ) -> _T:
+        """Coastlines: the ground is level with the sea on one side of them, and above it on the other.
+
+        Parameters
+        ----------
+        source : Source
+            Where its features lie: data, the path of a file, or positions.
+        columns
+            With a table (CSV, spreadsheet) as `file`: the columns by what they hold, `position`, `lon`, `lat`, `x`,
+            `y`, `zone`, `z` or `shape`, or the name of a property, such as `{ position = "Grid" }`. Default: by the
+            names of the columns.
+        crs
+            Coordinate system of `points`, or of a file that names none or a wrong one. Default: the scene's
+            `points_crs`, or what the file names.
+        layer
+            With `file`: the layer of a file that holds several. Default: the file's only layer.
+        phases
+            Names of the phases in which it is there. Default: all of them.
+        style
+            Name of a style: the keys of `[styles.NAME]` that this table does not state count as its own. Default:
+            none.
+        where
+            With `file`: the features that are taken, by the values of their properties, such as `{ highway =
+            ["primary", "trunk"] }`, or by an expression that holds for them. Default: all features.
+        """
+        return self._with(
+            "coast", "[[coast]]", source,
+            {"columns": columns, "crs": crs, "layer": layer, "phases": phases, "style": style, "where": where},
         )
 
     def earthworks(
@@ -1918,8 +1967,10 @@ class SceneTables:
         imagery
             A picture of the ground over the colors by height, such as an aerial photograph. Default: no picture.
         land_cover
-            Whether meadow, scree, rock and snow tint the ground by its elevation, slope and aspect, by at most 6 of
-            lightness; the tree line and the snow line are those of the latitude. Default: false.
+            Whether the ground looks like ground: woods, meadow, scree, rock and snow, inferred from the place's
+            climate and from elevation, slope, aspect and hollows, tint it by at most 12 of lightness and give it
+            texture, near by with forms too small for the model's cells; its shade is filled by the sky. Heights stay
+            as they are. `new` switches it on. Default: false.
         light
             Where the light comes from.
         preset
