@@ -76,7 +76,7 @@ pub enum CoastError {
 
 /// Where a post lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Side {
+enum CoastSide {
     Untold,
     Land,
     Sea,
@@ -103,7 +103,7 @@ pub fn follow(
 }
 
 /// The sides of the posts near the lines; `None` where no line comes near the ground.
-fn sides_beside(lattice: &Lattice, lines: &[Vec<DVec2>]) -> Result<Option<Vec<Side>>, CoastError> {
+fn sides_beside(lattice: &Lattice, lines: &[Vec<DVec2>]) -> Result<Option<Vec<CoastSide>>, CoastError> {
     let ends = LineEnds::of(lines);
     let cell = lattice.cell();
     let near = Rect {
@@ -111,7 +111,7 @@ fn sides_beside(lattice: &Lattice, lines: &[Vec<DVec2>]) -> Result<Option<Vec<Si
         max: lattice.extent().max + cell * BAND_CELLS as f64,
     };
     let mut nearest: Vec<f32> = Vec::new();
-    let mut sides: Vec<Side> = Vec::new();
+    let mut sides: Vec<CoastSide> = Vec::new();
     let mut steps = 0;
     for line in lines {
         for index in 1..line.len() {
@@ -124,7 +124,7 @@ fn sides_beside(lattice: &Lattice, lines: &[Vec<DVec2>]) -> Result<Option<Vec<Si
             }
             if sides.is_empty() {
                 nearest = vec![f32::INFINITY; lattice.heights().len()];
-                sides = vec![Side::Untold; lattice.heights().len()];
+                sides = vec![CoastSide::Untold; lattice.heights().len()];
             }
             let corners = [ends.corner(line, index - 1), ends.corner(line, index)];
             for step in 0..=length {
@@ -169,42 +169,42 @@ enum Corner {
 
 /// The side of a place whose nearest place on a segment lies at `part` of it: at a corner the sides of both of its segments
 /// differ, and the normal between them tells (Bærentzen and Aanæs 2005, in the plane).
-fn side((from, to): (DVec2, DVec2), corners: [Corner; 2], part: f64, place: DVec2) -> Side {
+fn side((from, to): (DVec2, DVec2), corners: [Corner; 2], part: f64, place: DVec2) -> CoastSide {
     let at_corner = match part {
         0.0 => Some((from, corners[0])),
         1.0 => Some((to, corners[1])),
         _ => None,
     };
     let to_the_left = match at_corner {
-        Some((_, Corner::Open)) => return Side::Neither,
+        Some((_, Corner::Open)) => return CoastSide::Neither,
         Some((corner, Corner::Normal(normal))) => (place - corner).dot(normal),
         None => (to - from).perp_dot(place - from),
     };
     // On the line itself, as a line on whole meters may have posts, is land.
-    if to_the_left >= 0.0 { Side::Land } else { Side::Sea }
+    if to_the_left >= 0.0 { CoastSide::Land } else { CoastSide::Sea }
 }
 
 /// The lines that begin and end at each place.
 struct LineEnds {
     /// The segment of a line that leaves each place, and of another that arrives there, while each is the only one.
-    at: BTreeMap<VertexKey, [Meeting; 2]>,
+    at: BTreeMap<VertexKey, [CoastEnds; 2]>,
 }
 
 /// How many lines begin, or end, at a place, and the direction of the last of them.
 #[derive(Clone, Copy, Debug, Default)]
-struct Meeting {
+struct CoastEnds {
     lines: usize,
     along: DVec2,
 }
 
 impl LineEnds {
     fn of(lines: &[Vec<DVec2>]) -> Self {
-        let mut at: BTreeMap<VertexKey, [Meeting; 2]> = BTreeMap::new();
+        let mut at: BTreeMap<VertexKey, [CoastEnds; 2]> = BTreeMap::new();
         for line in lines {
             if let ([first, second, ..], [.., before, last]) = (&line[..], &line[..]) {
                 for (place, which, along) in [(first, 0, *second - *first), (last, 1, *last - *before)] {
                     let meeting = &mut at.entry(vertex_key(*place)).or_default()[which];
-                    *meeting = Meeting { lines: meeting.lines + 1, along };
+                    *meeting = CoastEnds { lines: meeting.lines + 1, along };
                 }
             }
         }
@@ -230,8 +230,8 @@ impl LineEnds {
 
 /// # Errors
 /// The ground on the right of the lines is higher than that on their left.
-fn check_direction(lattice: &Lattice, sides: &[Side]) -> Result<(), CoastError> {
-    let mean = |wanted: Side| {
+fn check_direction(lattice: &Lattice, sides: &[CoastSide]) -> Result<(), CoastError> {
+    let mean = |wanted: CoastSide| {
         let heights = sides
             .iter()
             .zip(lattice.heights())
@@ -240,7 +240,7 @@ fn check_direction(lattice: &Lattice, sides: &[Side]) -> Result<(), CoastError> 
             heights.fold((0.0, 0u32), |(sum, count), (_, height)| (sum + f64::from(*height), count + 1));
         (count > 0).then(|| sum / f64::from(count))
     };
-    match (mean(Side::Sea), mean(Side::Land)) {
+    match (mean(CoastSide::Sea), mean(CoastSide::Land)) {
         (Some(sea_m), Some(land_m)) if sea_m > land_m + NOISE_M => {
             Err(CoastError::LandOnTheRight(sea_m - land_m))
         }
@@ -249,8 +249,9 @@ fn check_direction(lattice: &Lattice, sides: &[Side]) -> Result<(), CoastError> 
 }
 
 /// Gives every post without a side that of the nearest one with it, by steps east, north, west and south.
-fn spread(lattice: &Lattice, sides: &mut [Side]) {
-    let mut queue: VecDeque<usize> = (0..sides.len()).filter(|&index| sides[index] != Side::Untold).collect();
+fn spread(lattice: &Lattice, sides: &mut [CoastSide]) {
+    let mut queue: VecDeque<usize> =
+        (0..sides.len()).filter(|&index| sides[index] != CoastSide::Untold).collect();
     let columns = lattice.columns() as usize;
     while let Some(index) = queue.pop_front() {
         let column = index % columns;
@@ -261,7 +262,7 @@ fn spread(lattice: &Lattice, sides: &mut [Side]) {
             Some(index + columns).filter(|&north| north < sides.len()),
         ];
         for other in beside.into_iter().flatten() {
-            if sides[other] == Side::Untold {
+            if sides[other] == CoastSide::Untold {
                 sides[other] = sides[index];
                 queue.push_back(other);
             }
@@ -270,7 +271,7 @@ fn spread(lattice: &Lattice, sides: &mut [Side]) {
 }
 
 /// Moves the ground.
-fn shape(lattice: &mut Lattice, sides: &[Side], sea: SeaGround<'_>) -> CoastChanges {
+fn shape(lattice: &mut Lattice, sides: &[CoastSide], sea: SeaGround<'_>) -> CoastChanges {
     let mut changes = CoastChanges::default();
     let cell_m2 = lattice.cell_m2();
     let least_m = sea.level_m + LEAST_LAND_M;
@@ -278,13 +279,13 @@ fn shape(lattice: &mut Lattice, sides: &[Side], sea: SeaGround<'_>) -> CoastChan
         let post = lattice.post_at(index);
         let height_m = lattice.height(post);
         let new_m = match sides[index] {
-            Side::Sea => {
+            CoastSide::Sea => {
                 changes.sea_posts += 1;
                 let above_m = f64::from(height_m) - f64::from(sea.level_m);
                 changes.highest_cut_m = changes.highest_cut_m.max(above_m);
                 if sea.holds_depths && height_m < sea.level_m { height_m } else { sea.level_m }
             }
-            Side::Land if height_m < least_m => {
+            CoastSide::Land if height_m < least_m => {
                 let is_at_sea = sea.is_water.get(index) == Some(&true) || is_beside_sea(lattice, sides, post);
                 changes.raised_posts += usize::from(is_at_sea);
                 if is_at_sea { least_m } else { height_m }
@@ -300,11 +301,11 @@ fn shape(lattice: &mut Lattice, sides: &[Side], sea: SeaGround<'_>) -> CoastChan
 }
 
 /// Whether one of the eight posts around a post lies in the sea.
-fn is_beside_sea(lattice: &Lattice, sides: &[Side], post: Post) -> bool {
+fn is_beside_sea(lattice: &Lattice, sides: &[CoastSide], post: Post) -> bool {
     let range = |at: u32, posts: u32| at.saturating_sub(1)..(at + 2).min(posts);
     range(post.row, lattice.rows()).any(|row| {
         range(post.column, lattice.columns())
-            .any(|column| sides[lattice.index(Post { column, row })] == Side::Sea)
+            .any(|column| sides[lattice.index(Post { column, row })] == CoastSide::Sea)
     })
 }
 
