@@ -8,6 +8,8 @@ mod common;
 mod broken;
 #[path = "real_data/first_picture.rs"]
 mod first_picture;
+#[path = "real_data/ground_looks.rs"]
+mod ground_looks;
 #[path = "real_data/line_widths.rs"]
 mod line_widths;
 #[path = "real_data/new_choices.rs"]

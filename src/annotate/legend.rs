@@ -35,6 +35,8 @@ pub struct Legend {
     pub vertical_exaggeration: f32,
     /// The greatest scale of a model that is drawn larger than it is, as a symbol.
     pub model_enlargement: Option<f32>,
+    /// Whether woods, rock and other covers, and forms below the model's cells, are inferred: symbols of such ground.
+    pub has_inferred_cover: bool,
     /// Whether the picture shows places without data, which are hatched.
     pub has_voids: bool,
     /// Height between contour lines in meters, where there are any.
@@ -108,6 +110,9 @@ fn notes(legend: &Legend, composer: &mut Composer) -> Vec<(String, TypesetLine)>
     }
     if let Some(enlargement) = legend.model_enlargement {
         texts.push(format!("Models up to ×{}", format_trimmed(enlargement.into(), 1)));
+    }
+    if legend.has_inferred_cover {
+        texts.push("Ground cover inferred".to_owned());
     }
     if let Some(datum) = &legend.vertical_datum {
         texts.extend(written_lines(datum, 1).0);
@@ -189,6 +194,7 @@ mod tests {
             high_m: 1062.0,
             vertical_exaggeration: 1.5,
             model_enlargement: None,
+            has_inferred_cover: false,
             has_voids: false,
             contour_interval: Some(20.0),
             vertical_datum: Some("NAVD88".to_owned()),

@@ -219,6 +219,7 @@ mod tests {
                 high_m: 100.0,
                 vertical_exaggeration: 1.0,
                 model_enlargement: None,
+                has_inferred_cover: false,
                 has_voids: false,
                 contour_interval: None,
                 vertical_datum: None,

@@ -97,7 +97,7 @@ words! {
 
     /// A built-in color ramp from the lowest to the highest ground, lighter with height all the way.
     enum RampName {
-        Atlas = "atlas": "green lowland over yellow to pale brown, and white above the snow line of the latitude",
+        Atlas = "atlas": "the lowland's tint by the climate of the place (green, olive, sand, gray green) over yellow to pale brown, and white above the snow line of the latitude",
         Desert = "desert": "red rock under sand",
         Gray = "gray": "dark to light",
         Viridis = "viridis": "blue over green to yellow in steps that look equal",

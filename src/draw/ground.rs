@@ -8,6 +8,7 @@ use std::sync::Arc;
 use glam::{Vec2, Vec3};
 
 use crate::color::Srgba;
+use crate::cover_noise::CoverNoise;
 use crate::ground_cover::GroundCover;
 use crate::ground_imagery::{DrapedColor, GroundImagery};
 use crate::lighting::ReliefShading;
@@ -168,8 +169,8 @@ impl Contours {
 pub struct GroundDetail {
     /// The factor of [`ground_grain`](crate::ground_grain::ground_grain).
     pub grain: f32,
-    /// [`cover_noise`](crate::ground_cover::cover_noise); read where the map has a cover.
-    pub uneven: f32,
+    /// The noise of the place; read where the map has a cover.
+    pub cover: CoverNoise,
     /// The picture over the map.
     pub draped: DrapedColor,
 }
@@ -244,7 +245,7 @@ impl GroundMap {
     /// across it: the ramp with land cover and [`Undergrowth`], or water, under a draped picture and contours.
     pub fn albedo(&self, post: &GroundPost, change: PixelChange, detail: &GroundDetail) -> Vec3 {
         let tint = self.ramp.linear_at(post.height_m);
-        let land = self.cover.map_or(tint, |cover| cover.over(tint, post, detail.uneven));
+        let land = self.cover.map_or(tint, |cover| cover.over(tint, post, change.height_m, &detail.cover));
         // Nearly everywhere there are no trees, and no share of undergrowth changes nothing.
         let woods = Undergrowth::cover(post.water);
         let land = if woods > 0.0 { Undergrowth::over(land, woods) } else { land } * detail.grain;

@@ -1,41 +1,61 @@
-//! Natural land cover: meadow, scree, rock and snow by elevation, slope and aspect, as tints over the ramp's.
+//! Natural land cover, inferred: woods, meadow, scree, rock and snow by elevation, slope, aspect, hollows and climate, as
+//! tints over the ramp's, with the texture of each.
 //!
-//! Trees end at the tree line and snow begins at the snow line, both higher on slopes toward the equator. Scree lies up to
-//! its angle of repose, about 36°; what is steeper is rock, and holds no snow. Value noise of three wavelengths in the
-//! world moves all borders, so that they look grown and not drawn. Each cover keeps the tint's luminance but for a factor
-//! that is at most 6 of lightness L*: relief and tint by height stay readable.
+//! Trees grow where it is moist enough: it is moister on high ground, on shady slopes and in hollows. They leave level ground
+//! to fields, and end at the tree line; snow begins at the snow line; both lie higher on slopes toward the equator. Scree
+//! lies up to its angle of repose, about 36°; what is steeper is rock, and holds no snow. [`CoverNoise`] moves all borders, so
+//! that they look grown and not drawn.
+//!
+//! Each cover keeps the tint's luminance but for a factor that is at most 12 of lightness L*: relief and tint by height stay
+//! readable. Near the eye crowns make woods rough, strata run through rock, and ridges too small for the model's cells shade
+//! the ground: symbols of what such ground looks like, which change no height.
 
 use glam::{FloatExt, Vec2, Vec3};
 
-use crate::color::luminance;
+use crate::color::{Srgba, luminance};
+use crate::cover_noise::CoverNoise;
 use crate::ground::GroundPost;
-use crate::ground_grain::noise_of;
+use crate::ground_grain::{WIDE_PX, noise};
 
-/// Wavelengths in meters with their shares of the noise: from a gully to a mountainside.
-pub(crate) const WAVES: [(f32, f32); 3] = [(60.0, 0.25), (170.0, 0.35), (480.0, 0.4)];
 /// How far the noise moves the borders between covers, in meters of elevation and in rise.
-pub(crate) const UNEVEN_M: f32 = 160.0;
-pub(crate) const UNEVEN_RISE: f32 = 0.2;
+pub(crate) const UNEVEN_M: f32 = 130.0;
+pub(crate) const UNEVEN_RISE: f32 = 0.15;
 /// How much higher shady ground counts than sunny ground where it is as steep as 45°, in meters.
 pub(crate) const ASPECT_M: f32 = 150.0;
-/// From and to which rise scree and rock take the place of what grows.
+/// From and to which rise scree and rock take the place of what grows, in a moist climate.
 pub(crate) const SCREE_RISE: [f32; 2] = [0.50, 0.66];
-pub(crate) const ROCK_RISE: [f32; 2] = [0.78, 1.05];
+pub(crate) const ROCK_RISE: [f32; 2] = [0.78, 1.08];
+/// The share of these in a desert, whose slopes are bare.
+pub(crate) const DRY_RISE: f32 = 0.55;
 /// How far below the tree line meadows begin and below the snow line they end, and half the width of the snow's border;
 /// meters.
 pub(crate) const MEADOW_M: [f32; 3] = [300.0, 500.0, 200.0];
-
-/// The hues of meadow, scree, rock and snow, linear, and the factors on a tint's luminance.
-pub(crate) const COVERS: [(Vec3, f32); 4] = [
-    (Vec3::new(0.42, 0.55, 0.25), 0.92),
-    (Vec3::new(0.56, 0.53, 0.48), 0.97),
-    (Vec3::new(0.45, 0.43, 0.42), 0.80),
-    (Vec3::new(0.86, 0.90, 0.97), 1.2),
-];
+/// What is added to the climate's moisture: for a meter of elevation, on a slope of 45° in the shade, in a hollow without
+/// sky, and by the noise.
+pub(crate) const MOISTER: [f32; 4] = [1.5e-4, 0.35, 0.5, 0.22];
+/// From and to which moisture trees grow.
+pub(crate) const WOODS_MOISTURE: [f32; 2] = [0.46, 0.72];
+/// From and to which rise woods leave no fields, and the patches of the noise that are copses on level ground.
+pub(crate) const WOODS_RISE: [f32; 2] = [0.04, 0.20];
+pub(crate) const COPSES: [f32; 2] = [0.12, 0.36];
+/// The greatest share of meadows among fields.
+pub(crate) const FIELD_MEADOW: f32 = 0.5;
 /// The greatest share of a cover over the tint.
-pub(crate) const MOST: f32 = 0.8;
+pub(crate) const MOST: f32 = 0.85;
+/// By how much the light of a cover's patches, of crowns, of strata in rock differs from the mean at the most.
+pub(crate) const PATCHES: f32 = 0.13;
+pub(crate) const CROWNS: f32 = 0.50;
+pub(crate) const STRATA: f32 = 0.20;
+/// Wavelengths of strata in meters of elevation.
+pub(crate) const STRATA_M: [f32; 2] = [13.0, 47.0];
+/// The rise of forms too small for the cells: on level ground, and its part of the ground's own rise.
+pub(crate) const FORM_LEVEL: f32 = 0.03;
+pub(crate) const FORM_RISE: f32 = 0.6;
+/// By how much their ridges are lighter and what lies between darker on ground as steep as 45°: shade alone shows none of
+/// them.
+pub(crate) const RIDGES: f32 = 0.4;
 
-/// The elevations at which covers change.
+/// The covers of natural ground, and where they change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundCover {
     /// The elevation of the tree line, meters.
@@ -46,37 +66,97 @@ pub struct GroundCover {
     pub true_rise: f32,
     /// 1 where the shady side is the north, −1 where it is the south.
     pub shady_north: f32,
+    /// The climate's moisture at sea level: 0 in a desert, 1 where it rains all year.
+    pub moisture: f32,
+    /// Whether the ground is drawn with forms too small for its cells: not under a picture, which shows its own.
+    pub has_forms: bool,
+    /// The colors of woods, meadow, scree, rock and snow.
+    pub colors: [CoverColor; 5],
 }
 
-impl GroundCover {
-    /// The color of covered ground in linear light, over the ramp's `tint` where the map reads `post`; `uneven` is
-    /// [`cover_noise`] there.
-    pub fn over(&self, tint: Vec3, post: &GroundPost, uneven: f32) -> Vec3 {
-        let slope = Vec2::new(post.slope_east, post.slope_north) * self.true_rise;
-        let shade = (-slope.y * self.shady_north).clamp(-1.0, 1.0);
-        let height = post.height_m + UNEVEN_M * uneven + ASPECT_M * shade;
-        let rise = slope.length() + UNEVEN_RISE * uneven;
-        let [below_trees, below_snow, half] = MEADOW_M;
-        let above_trees = step(height, [self.tree_m - below_trees, self.tree_m]);
-        let meadow = above_trees * (1.0 - step(height, [self.snow_m - below_snow, self.snow_m]));
-        let scree = above_trees * step(rise, SCREE_RISE);
-        let rock = step(rise, ROCK_RISE);
-        let snow = step(height, [self.snow_m - half, self.snow_m + half]) * (1.0 - rock);
-        let own = luminance(tint);
-        let mut color = tint;
-        for ((hue, light), share) in COVERS.into_iter().zip([meadow, scree, rock, snow]) {
-            if share == 0.0 {
-                continue;
-            }
-            color = color.lerp(hue * (own * light / luminance(hue)), MOST * share);
-        }
-        color
+/// The color of a cover: a hue at the tint's own luminance, times a factor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CoverColor {
+    /// Linear light of luminance 1.
+    pub hue: Vec3,
+    /// The factor on the tint's luminance.
+    pub light: f32,
+}
+
+impl CoverColor {
+    /// The hue of `color`, which is not black, at `light` times the luminance of the tint.
+    pub fn new(color: Srgba, light: f32) -> Self {
+        let linear = color.linear().max(Vec3::splat(1e-3));
+        Self { hue: linear / luminance(linear), light }
+    }
+
+    /// The mean of two colors, weighted by `share` for `other`.
+    pub fn lerp(&self, other: &Self, share: f32) -> Self {
+        Self { hue: self.hue.lerp(other.hue, share), light: self.light.lerp(other.light, share) }
     }
 }
 
-/// The noise at world X and Y over a pixel `pixel_m` meters wide, -1..=1.
-pub fn cover_noise(at: Vec2, pixel_m: f32) -> f32 {
-    noise_of(&WAVES, at, pixel_m)
+impl GroundCover {
+    /// The color of covered ground in linear light, over the ramp's `tint` where the map reads `post`, whose height changes by
+    /// `change_m` across the pixel; `noise` is that of the place.
+    pub fn over(&self, tint: Vec3, post: &GroundPost, change_m: f32, noise: &CoverNoise) -> Vec3 {
+        let CoverNoise { uneven, patch, fine, ridge, .. } = *noise;
+        let slope = Vec2::new(post.slope_east, post.slope_north) * self.true_rise;
+        let shade = (-slope.y * self.shady_north).clamp(-1.0, 1.0);
+        let height = post.height_m + UNEVEN_M * uneven + ASPECT_M * shade;
+        let steep = slope.length();
+        let rise = steep + UNEVEN_RISE * uneven;
+        let hollow = (1.0 - post.sky_visibility).clamp(0.0, 1.0);
+        let [higher, shadier, hollower, noisier] = MOISTER;
+        let moist =
+            self.moisture + higher * post.height_m + shadier * shade + hollower * hollow + noisier * uneven;
+        let [below_trees, below_snow, half] = MEADOW_M;
+        let above_trees = step(height, [self.tree_m - below_trees, self.tree_m]);
+        let below_snow = 1.0 - step(height, [self.snow_m - below_snow, self.snow_m]);
+        let green = step(moist, WOODS_MOISTURE);
+        let copses = step(patch + fine, COPSES);
+        let woods = (1.0 - above_trees) * green * copses.lerp(1.0, step(rise, WOODS_RISE));
+        let fields = FIELD_MEADOW * green * (0.5 + patch).clamp(0.0, 1.0);
+        let meadow = fields.lerp(below_snow, above_trees);
+        let bare = DRY_RISE.lerp(1.0, step(moist, [0.0, WOODS_MOISTURE[1]]));
+        let scree = above_trees.max(1.0 - green) * step(rise, SCREE_RISE.map(|rise| rise * bare));
+        let rock = step(rise, ROCK_RISE.map(|rise| rise * bare));
+        let snow = step(height, [self.snow_m - half, self.snow_m + half]) * (1.0 - rock);
+        let own = luminance(tint);
+        let mut color = tint;
+        for (cover, share) in [1, 0, 2, 3, 4].into_iter().zip([meadow, woods, scree, rock, snow]) {
+            let CoverColor { hue, light } = self.colors[cover];
+            color = color.lerp(hue * (own * light), MOST * share);
+        }
+        let open = (1.0 - snow).max(0.0);
+        let wooded = woods * (1.0 - rock) * open;
+        let layered = rock.max(scree * (1.0 - green)) * open;
+        let ridges = if self.has_forms { RIDGES * ridge * steep.min(1.0) } else { 0.0 };
+        let texture = PATCHES * patch * open + CROWNS * fine * wooded + ridges;
+        // Nearly everywhere there is no rock, whose layers would be noise for nothing.
+        let layers = if layered > 0.0 { layered * strata(post.height_m, change_m, uneven) } else { 0.0 };
+        color * (1.0 + texture + STRATA * layers).max(0.3)
+    }
+
+    /// The rise eastward and northward of the drawn forms that are too small for the cells of the map, where it reads `post`;
+    /// `noise` is that of the place. None under water.
+    pub fn form(&self, post: &GroundPost, noise: &CoverNoise) -> Vec2 {
+        if !self.has_forms {
+            return Vec2::ZERO;
+        }
+        let rise = Vec2::new(post.slope_east, post.slope_north).length().min(1.0);
+        let dry = (1.0 - 4.0 * post.water.max(0.0)).max(0.0);
+        noise.form * ((FORM_LEVEL / self.true_rise + FORM_RISE * rise) * dry)
+    }
+}
+
+/// Layers of rock at a height that changes by `change_m` across a pixel, -1..=1; `uneven` bends them.
+fn strata(height_m: f32, change_m: f32, uneven: f32) -> f32 {
+    let layers = |wave_m: f32| {
+        let shown = (2.0 * wave_m / (WIDE_PX * change_m.max(1e-6)) - 1.0).clamp(0.0, 1.0);
+        shown * noise(Vec2::new(height_m / wave_m + 2.0 * uneven, 0.5))
+    };
+    STRATA_M.into_iter().map(layers).sum()
 }
 
 fn step(value: f32, [from, to]: [f32; 2]) -> f32 {
@@ -88,35 +168,82 @@ mod tests {
     use super::*;
     use crate::color::lightness;
 
-    const ALPS: GroundCover =
-        GroundCover { tree_m: 2100.0, snow_m: 2900.0, true_rise: 1.0, shady_north: 1.0 };
     const TINT: Vec3 = Vec3::new(0.62, 0.60, 0.45);
 
+    fn alps() -> GroundCover {
+        let color = |red, green, blue, light| CoverColor::new(Srgba::opaque(red, green, blue), light);
+        GroundCover {
+            tree_m: 2100.0,
+            snow_m: 2900.0,
+            true_rise: 1.0,
+            shady_north: 1.0,
+            moisture: 0.9,
+            has_forms: true,
+            colors: [
+                color(104, 122, 84, 0.64),
+                color(168, 178, 118, 0.97),
+                color(176, 170, 160, 0.97),
+                color(150, 145, 142, 0.8),
+                color(240, 244, 250, 1.2),
+            ],
+        }
+    }
+
     fn post(height_m: f32, slope_north: f32) -> GroundPost {
-        GroundPost { height_m, slope_north, ..GroundPost::default() }
+        GroundPost { height_m, slope_north, sky_visibility: 1.0, ..GroundPost::default() }
     }
 
     #[test]
-    fn no_cover_changes_lightness_by_more_than_6() {
+    fn no_cover_changes_lightness_by_more_than_12_from_afar() {
         for height in (0..4500).step_by(50) {
             for rise in -15..15 {
                 for uneven in [-1.0, 0.0, 1.0] {
-                    let shown = ALPS.over(TINT, &post(height as f32, rise as f32 * 0.1), uneven);
+                    let noise = CoverNoise { uneven, ..CoverNoise::default() };
+                    let shown = alps().over(TINT, &post(height as f32, rise as f32 * 0.1), 1e3, &noise);
                     let change = lightness(shown) - lightness(TINT);
-                    assert!(change.abs() <= 6.0, "{height} m, rise {rise}: {change}");
+                    assert!(change.abs() <= 12.0, "{height} m, rise {rise}: {change}");
                 }
             }
         }
     }
 
     #[test]
-    fn meadows_lie_over_forests_under_snow_and_walls_are_rock() {
-        let seen = |height: f32, rise: f32| ALPS.over(TINT, &post(height, rise), 0.0);
-        assert_eq!(seen(1000.0, 0.1), TINT, "below the tree line the ramp speaks");
+    fn woods_lie_under_meadows_under_snow_and_walls_are_rock() {
+        let noise = CoverNoise { patch: -0.6, ..CoverNoise::default() };
+        let seen = |height: f32, rise: f32| alps().over(TINT, &post(height, rise), 1e3, &noise);
+        assert!(seen(1000.0, 0.3).y > 1.15 * seen(1000.0, 0.3).x, "woods on slopes");
+        assert!(lightness(seen(1000.0, 0.0)) > lightness(seen(1000.0, 0.3)) + 4.0, "fields in valleys");
         assert!(seen(2250.0, 0.1).y / seen(2250.0, 0.1).x > 1.1 * TINT.y / TINT.x, "green");
-        assert!(seen(3500.0, 0.1).z > seen(3500.0, 0.1).x, "snow is cool");
+        assert!(seen(3500.0, 0.1).z > 0.95 * seen(3500.0, 0.1).x, "snow is cool");
         assert!(lightness(seen(1000.0, 1.5)) < lightness(TINT) - 3.0, "rock is dark");
         assert_eq!(seen(3500.0, 1.5), seen(4500.0, 1.5), "and holds no snow");
         assert!(seen(2900.0, -0.4).z > seen(2900.0, 0.4).z, "shady slopes keep snow longer");
+    }
+
+    #[test]
+    fn deserts_have_trees_on_high_and_shady_ground_alone() {
+        let desert = GroundCover { moisture: 0.15, tree_m: 3500.0, snow_m: 4500.0, ..alps() };
+        let green = |height: f32, rise: f32| {
+            let shown = desert.over(TINT, &post(height, rise), 1e3, &CoverNoise::default());
+            shown.y / shown.x
+        };
+        assert!((green(300.0, 0.2) - TINT.y / TINT.x).abs() < 0.02, "{}", green(300.0, 0.2));
+        assert!(green(3000.0, -0.3) > 1.15 * green(300.0, -0.3));
+        assert!(green(2200.0, -0.3) > 1.05 * green(2200.0, 0.3));
+    }
+
+    #[test]
+    fn forms_grow_with_slope_and_there_are_none_under_water_or_a_picture() {
+        let noise = CoverNoise { form: Vec2::X, ..CoverNoise::default() };
+        let rise = |post: &GroundPost| alps().form(post, &noise).x;
+        assert!(rise(&post(0.0, 0.5)) > 3.0 * rise(&post(0.0, 0.0)));
+        assert_eq!(rise(&GroundPost { water: 0.6, ..post(0.0, 0.5) }), 0.0);
+        assert_eq!(GroundCover { has_forms: false, ..alps() }.form(&post(0.0, 0.5), &noise), Vec2::ZERO);
+    }
+
+    #[test]
+    fn strata_follow_heights_and_fade_from_afar() {
+        assert!(strata(500.0, 0.5, 0.0) != strata(506.0, 0.5, 0.0));
+        assert_eq!(strata(500.0, 50.0, 0.0), 0.0);
     }
 }

@@ -54,6 +54,13 @@ pub(crate) fn noise(at: Vec2) -> f32 {
 
 /// A number from -1 to 1 for a lattice point.
 fn hash(at: UVec2) -> f32 {
+    let [x, _] = mixed(at);
+    // 24 bits are exact in an f32.
+    (x >> 8) as f32 / 8_388_608.0 - 1.0
+}
+
+/// Two numbers of which each depends on all bits of a lattice point.
+pub(crate) fn mixed(at: UVec2) -> [u32; 2] {
     const FACTOR: u32 = 1_664_525;
     let step = |value: u32| value.wrapping_mul(FACTOR).wrapping_add(1_013_904_223);
     let (mut x, mut y) = (step(at.x), step(at.y));
@@ -62,9 +69,10 @@ fn hash(at: UVec2) -> f32 {
     x ^= x >> 16;
     y ^= y >> 16;
     x = x.wrapping_add(y.wrapping_mul(FACTOR));
+    y = y.wrapping_add(x.wrapping_mul(FACTOR));
     x ^= x >> 16;
-    // 24 bits are exact in an f32.
-    (x >> 8) as f32 / 8_388_608.0 - 1.0
+    y ^= y >> 16;
+    [x, y]
 }
 
 #[cfg(test)]

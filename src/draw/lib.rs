@@ -6,6 +6,7 @@ pub mod bathymetry;
 pub mod border;
 pub mod color;
 pub mod contour_ground;
+pub mod cover_noise;
 pub mod font;
 pub mod ground;
 pub mod ground_cover;

@@ -11,6 +11,7 @@ use std::f32::consts::FRAC_1_SQRT_2;
 use glam::{Vec2, Vec3};
 
 use crate::backdrop::Backdrop;
+use crate::color::luminance;
 
 /// The light of a scene; colors are linear.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,6 +105,9 @@ impl Lighting {
 ///     · mix(CLOSED, 1, sky visibility)
 /// ```
 ///
+/// Natural ground also returns the light of the sky in its shade, `fill · FILL · mix(albedo, gray, FILL_GRAY) · (1 − soft)`, so
+/// that dark slopes keep their tints, cooler and paler than in the sun.
+///
 /// `gain` is [`Self::GAIN`] in light and [`Self::shade_gain`] in shade, so that the darkest slopes of gentle ground are as
 /// dark as those of mountains. Shadows need no such help: they are as dark on every ground. Ground that lies under symbols and
 /// graphics has [`Self::BASE_GAIN`] in shade, so that they stand out.
@@ -118,6 +122,8 @@ pub struct ReliefShading {
     pub sides: [Vec3; 4],
     /// The change of brightness with shade on slopes darker than level ground, [`Self::BASE_GAIN`] or at least [`Self::GAIN`].
     pub shade_gain: f32,
+    /// The share of [`Self::FILL`] that shade receives, 0..=1.
+    pub fill: f32,
 }
 
 /// A place on the ground as relief shading sees it.
@@ -157,6 +163,10 @@ impl ReliefShading {
     pub const WARM: Vec3 = Vec3::new(1.06, 1.0, 0.90);
     /// The color of the light in shade.
     pub const COOL: Vec3 = Vec3::new(0.80, 0.90, 1.12);
+    /// The light of the sky in the deepest shade of natural ground, which the sun does not outshine there.
+    pub const FILL: Vec3 = Vec3::new(0.12, 0.165, 0.26);
+    /// The share of gray in the color that this light shows: colors are paler in shade.
+    pub const FILL_GRAY: f32 = 0.4;
     /// Brightness where no sky is seen.
     pub const CLOSED: f32 = 0.5;
     /// The contrast of the lowest ground; that of the highest quarter is 1.
@@ -171,6 +181,7 @@ impl ReliefShading {
             to_sun,
             sides: [side(Vec2::Y), side(half), side(Vec2::X), side(half * Vec2::new(1.0, -1.0))],
             shade_gain: Self::GAIN,
+            fill: 0.0,
         }
     }
 
@@ -206,7 +217,9 @@ impl ReliefShading {
         let tint = Self::COOL.lerp(Self::WARM, (0.5 + 1.2 * (relief - shadow)).clamp(0.0, 1.0));
         let level = Self::COOL.lerp(Self::WARM, 0.5);
         let sky = Self::CLOSED + (1.0 - Self::CLOSED) * point.sky_visibility;
-        albedo * tint / level * (brightness * sky)
+        let pale = albedo.lerp(Vec3::splat(luminance(albedo)), Self::FILL_GRAY);
+        let fill = pale * Self::FILL * (self.fill * (1.0 - brightness).clamp(0.0, 1.0));
+        (albedo * tint / level * brightness + fill) * sky
     }
 
     /// A brightness bent toward the darkest and the brightest.
@@ -273,6 +286,18 @@ mod tests {
         let (lit, dark) = (slope(1.0), slope(-1.0));
         assert!(lit.y > 1.2 && lit.x > lit.z, "{lit}");
         assert!(dark.y < 0.4 && dark.x < dark.z, "{dark}");
+    }
+
+    #[test]
+    fn filled_shade_is_lighter_cooler_and_paler_and_level_ground_keeps_its_albedo() {
+        let (plain, natural) = (shading(), ReliefShading { fill: 1.0, ..shading() });
+        let albedo = Vec3::new(0.3, 0.5, 0.25);
+        assert!(natural.shade(albedo, &LEVEL).abs_diff_eq(albedo, 1e-6));
+        let shadow = ReliefPoint { sun_visibility: 0.0, ..LEVEL };
+        let [dark, filled] = [plain, natural].map(|shading| shading.shade(albedo, &shadow));
+        let chroma = |color: Vec3| (color.max_element() - color.min_element()) / color.max_element();
+        assert!(luminance(filled) > 1.3 * luminance(dark), "{filled} {dark}");
+        assert!(filled.z / filled.x > 1.1 * dark.z / dark.x && chroma(filled) < chroma(dark));
     }
 
     #[test]

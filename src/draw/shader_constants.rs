@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use crate::lighting::ReliefShading;
 use crate::water::WaterColor;
-use crate::{ground_cover, ground_grain, hatching, lighting, water, wireframe};
+use crate::{cover_noise, ground_cover, ground_grain, hatching, lighting, water, wireframe};
 
 /// A language that shaders are written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,7 +19,7 @@ pub enum ShaderLanguage {
 }
 
 impl ShaderLanguage {
-    /// Returns a line that declares each constant by its name: one number as a scalar, two or three as a vector.
+    /// Returns a line that declares each constant by its name: one number as a scalar, two to four as a vector.
     pub fn declarations(self, constants: &[(&str, Vec<f32>)]) -> String {
         let mut text = String::new();
         for (name, values) in constants {
@@ -40,7 +40,6 @@ pub fn shader_constants() -> Vec<(&'static str, Vec<f32>)> {
     let vector = |color: Vec3| color.to_array().to_vec();
     let lengths = |waves: &[(f32, f32); 3]| waves.iter().map(|wave| wave.0).collect();
     let shares = |waves: &[(f32, f32); 3]| waves.iter().map(|wave| wave.1).collect();
-    let [meadow, scree, rock, snow] = ground_cover::COVERS;
     vec![
         ("RELIEF_SHARES", ReliefShading::SHARES.to_vec()),
         ("RELIEF_SIDE_RISE", vec![lighting::SIDE_RISE]),
@@ -51,6 +50,8 @@ pub fn shader_constants() -> Vec<(&'static str, Vec<f32>)> {
         ("RELIEF_BRIGHTEST", vec![ReliefShading::BRIGHTEST]),
         ("RELIEF_WARM", vector(ReliefShading::WARM)),
         ("RELIEF_COOL", vector(ReliefShading::COOL)),
+        ("RELIEF_FILL", vector(ReliefShading::FILL)),
+        ("RELIEF_FILL_GRAY", vec![ReliefShading::FILL_GRAY]),
         ("RELIEF_CLOSED", vec![ReliefShading::CLOSED]),
         ("RELIEF_LOW_CONTRAST", vec![ReliefShading::LOW_CONTRAST]),
         ("GRAIN_WAVES_M", lengths(&ground_grain::WAVES)),
@@ -58,23 +59,35 @@ pub fn shader_constants() -> Vec<(&'static str, Vec<f32>)> {
         ("GRAIN_WAVE_PX", vec![ground_grain::WIDE_PX]),
         ("GRAIN_LEVEL", vec![ground_grain::LEVEL]),
         ("GRAIN_STEEP", vec![ground_grain::STEEP]),
-        ("COVER_WAVES_M", lengths(&ground_cover::WAVES)),
-        ("COVER_SHARES", shares(&ground_cover::WAVES)),
+        ("NOISE_FIRST_M", vec![cover_noise::FIRST_M]),
+        ("NOISE_FINER", vec![cover_noise::FINER]),
+        ("NOISE_OCTAVES", vec![cover_noise::OCTAVES as f32]),
+        ("NOISE_FIRST_FINE", vec![cover_noise::FIRST_FINE as f32]),
+        ("NOISE_SHARE", vec![cover_noise::SHARE]),
+        ("NOISE_TURN", cover_noise::TURN.to_array().to_vec()),
+        ("NOISE_FORM_CELLS", vec![cover_noise::FORM_CELLS]),
+        ("NOISE_CREST", vec![cover_noise::CREST]),
+        ("NOISE_MEAN_AWAY", vec![cover_noise::MEAN_AWAY]),
         ("COVER_UNEVEN_M", vec![ground_cover::UNEVEN_M]),
         ("COVER_UNEVEN_RISE", vec![ground_cover::UNEVEN_RISE]),
         ("COVER_ASPECT_M", vec![ground_cover::ASPECT_M]),
         ("COVER_SCREE_RISE", ground_cover::SCREE_RISE.to_vec()),
         ("COVER_ROCK_RISE", ground_cover::ROCK_RISE.to_vec()),
+        ("COVER_DRY_RISE", vec![ground_cover::DRY_RISE]),
         ("COVER_MEADOW_M", ground_cover::MEADOW_M.to_vec()),
+        ("COVER_MOISTER", ground_cover::MOISTER.to_vec()),
+        ("COVER_WOODS_MOISTURE", ground_cover::WOODS_MOISTURE.to_vec()),
+        ("COVER_WOODS_RISE", ground_cover::WOODS_RISE.to_vec()),
+        ("COVER_COPSES", ground_cover::COPSES.to_vec()),
+        ("COVER_FIELD_MEADOW", vec![ground_cover::FIELD_MEADOW]),
         ("COVER_MOST", vec![ground_cover::MOST]),
-        ("MEADOW_HUE", vector(meadow.0)),
-        ("MEADOW_LIGHT", vec![meadow.1]),
-        ("SCREE_HUE", vector(scree.0)),
-        ("SCREE_LIGHT", vec![scree.1]),
-        ("ROCK_HUE", vector(rock.0)),
-        ("ROCK_LIGHT", vec![rock.1]),
-        ("SNOW_HUE", vector(snow.0)),
-        ("SNOW_LIGHT", vec![snow.1]),
+        ("COVER_PATCHES", vec![ground_cover::PATCHES]),
+        ("COVER_CROWNS", vec![ground_cover::CROWNS]),
+        ("COVER_STRATA", vec![ground_cover::STRATA]),
+        ("COVER_STRATA_M", ground_cover::STRATA_M.to_vec()),
+        ("COVER_FORM_LEVEL", vec![ground_cover::FORM_LEVEL]),
+        ("COVER_RIDGES", vec![ground_cover::RIDGES]),
+        ("COVER_FORM_RISE", vec![ground_cover::FORM_RISE]),
         ("RIPPLE_WAVES_M", lengths(&water::RIPPLES)),
         ("RIPPLE_STEEPNESS", shares(&water::RIPPLES)),
         ("RIPPLE_WAVE_PX", vec![water::RIPPLE_PX]),

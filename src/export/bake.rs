@@ -4,8 +4,8 @@ use glam::Vec2;
 use rayon::prelude::*;
 
 use sandtable_draw::color::Srgba;
+use sandtable_draw::cover_noise::CoverNoise;
 use sandtable_draw::ground::{GroundDetail, GroundMap, GroundPost, PixelChange};
-use sandtable_draw::ground_cover::cover_noise;
 use sandtable_draw::pixels::Pixels;
 
 /// The longest side in pixels: the most that every graphics adapter supports.
@@ -58,8 +58,8 @@ fn color(map: &GroundMap, at: Vec2, step: Vec2) -> Srgba {
         |of: fn(&GroundPost) -> f32| Vec2::new(of(&east) - of(&west), of(&north) - of(&south)).length();
     let change = PixelChange { height_m: change(|post| post.height_m), water: change(|post| post.water) };
     let draped = map.imagery.as_deref().map(|imagery| imagery.at(at)).unwrap_or_default();
-    let uneven = if map.cover.is_some() { cover_noise(at, step.max_element()) } else { 0.0 };
-    let detail = GroundDetail { grain: 1.0, uneven, draped };
+    let noise = |_| CoverNoise::new(at, step.max_element(), map.cell.max_element());
+    let detail = GroundDetail { grain: 1.0, cover: map.cover.map(noise).unwrap_or_default(), draped };
     Srgba::from_linear(map.albedo(&map.sample(at), change, &detail))
 }
 

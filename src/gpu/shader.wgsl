@@ -35,6 +35,8 @@ struct Frame {
     imagery: vec4f,       // x and y of the south-west corner of the draped picture, 1 / its width and height
     imagery_size: vec4f,  // its columns and rows; 1 where there is one; 1 where it is shaded
     cover: vec4f,         // tree line and snow line in meters, true rise over drawn (0: no cover), 1 where the north is shady
+    cover_more: vec4f,    // moisture; cell of the ground in meters; 1 where it has forms too small for that; share of the fill
+    cover_colors: array<vec4f, 5>, // rgb of luminance 1, factor on the tint's luminance: woods, meadow, scree, rock, snow
     contour: vec4f,       // rgb, strength
     contour_shape: vec4f, // interval in meters (0: none), width in pixels, every how many is heavier; 1 where the ground has a grain
     ground_levels: array<vec4u, 24>, // columns, rows, first post of all; binary logarithm of the texels in a row
@@ -409,7 +411,7 @@ fn draped_at(at: vec2f, right: vec2f, down: vec2f) -> vec4f {
 }
 
 // The functions of src/draw/ground_grain.rs.
-fn grain_hash(at: vec2u) -> f32 {
+fn mixed_bits(at: vec2u) -> vec2u {
     var x = at.x * 1664525u + 1013904223u;
     var y = at.y * 1664525u + 1013904223u;
     x += y * 1664525u;
@@ -417,8 +419,14 @@ fn grain_hash(at: vec2u) -> f32 {
     x ^= x >> 16u;
     y ^= y >> 16u;
     x += y * 1664525u;
+    y += x * 1664525u;
     x ^= x >> 16u;
-    return f32(x >> 8u) / 8388608.0 - 1.0;
+    y ^= y >> 16u;
+    return vec2u(x, y);
+}
+
+fn grain_hash(at: vec2u) -> f32 {
+    return f32(mixed_bits(at).x >> 8u) / 8388608.0 - 1.0;
 }
 
 fn grain_noise(at: vec2f) -> f32 {
@@ -450,31 +458,111 @@ fn ground_grain(at: vec2f, pixel_m: f32, rise: f32) -> f32 {
     return 1.0 + (GRAIN_LEVEL + (GRAIN_STEEP - GRAIN_LEVEL) * clamp(rise, 0.0, 1.0)) * sum;
 }
 
+// CoverNoise.
+struct Noise {
+    uneven: f32,
+    patches: f32,
+    fine: f32,
+    form: vec2f,
+    ridge: f32,
+}
+
+fn noise_values(at: vec2u) -> vec2f {
+    return vec2f(mixed_bits(at) >> vec2u(8u)) / 8388608.0 - 1.0;
+}
+
+fn cover_noise(at: vec2f, pixel_m: f32) -> Noise {
+    var sum = Noise(0.0, 0.0, 0.0, vec2f(0.0), 0.0);
+    var wave_m = NOISE_FIRST_M;
+    var turn = vec2f(1.0, 0.0);
+    let widest = NOISE_FORM_CELLS * frame.cover_more.y;
+    for (var octave = 0.0; octave < NOISE_OCTAVES; octave += 1.0) {
+        let shown = clamp(2.0 * wave_m / (GRAIN_WAVE_PX * pixel_m) - 1.0, 0.0, 1.0);
+        if shown > 0.0 {
+            let place = vec2f(turn.x * at.x - turn.y * at.y, turn.y * at.x + turn.x * at.y) / wave_m;
+            let cell = floor(place);
+            let part = place - cell;
+            let smoothed = part * part * (3.0 - 2.0 * part);
+            let steep = 6.0 * part * (1.0 - part);
+            let corner = vec2u(vec2i(cell));
+            let sw = noise_values(corner);
+            let se = noise_values(corner + vec2u(1u, 0u));
+            let nw = noise_values(corner + vec2u(0u, 1u));
+            let ne = noise_values(corner + vec2u(1u, 1u));
+            let south = mix(sw, se, smoothed.x);
+            let north = mix(nw, ne, smoothed.x);
+            let value = mix(south, north, smoothed.y);
+            let rise = vec2f(mix(se.x - sw.x, ne.x - nw.x, smoothed.y), north.x - south.x) * steep;
+            let share = NOISE_SHARE * shown;
+            sum.uneven += share * value.x;
+            let is_fine = octave >= NOISE_FIRST_FINE;
+            sum.patches += select(share * value.y, 0.0, is_fine);
+            sum.fine += select(0.0, share * value.y, is_fine);
+            let within = clamp((widest - wave_m) / (0.75 * widest), 0.0, 1.0);
+            let away = sqrt(value.x * value.x + NOISE_CREST * NOISE_CREST);
+            let crest = -value.x / away;
+            let back = vec2f(turn.x * rise.x + turn.y * rise.y, turn.x * rise.y - turn.y * rise.x);
+            sum.form += back * (share * within * crest);
+            sum.ridge += share * within * 2.0 * (NOISE_MEAN_AWAY - away);
+        }
+        wave_m *= NOISE_FINER;
+        turn = vec2f(NOISE_TURN.x * turn.x - NOISE_TURN.y * turn.y, NOISE_TURN.y * turn.x + NOISE_TURN.x * turn.y);
+    }
+    return sum;
+}
+
 // The functions of src/draw/ground_cover.rs.
-fn cover_noise(at: vec2f, pixel_m: f32) -> f32 {
-    return grain_waves(at, pixel_m, COVER_WAVES_M, COVER_SHARES);
+fn covered_by(color: vec3f, own: f32, cover: vec4f, share: f32) -> vec3f {
+    return mix(color, cover.rgb * (own * cover.w), COVER_MOST * share);
 }
 
-fn covered_by(color: vec3f, tint: vec3f, hue: vec3f, light: f32, share: f32) -> vec3f {
-    let luminance = vec3f(0.2126, 0.7152, 0.0722);
-    return mix(color, hue * (dot(tint, luminance) * light / dot(hue, luminance)), COVER_MOST * share);
+fn strata_wave(height: f32, change: f32, uneven: f32, wave_m: f32) -> f32 {
+    let shown = clamp(2.0 * wave_m / (GRAIN_WAVE_PX * max(change, 1e-6)) - 1.0, 0.0, 1.0);
+    return shown * grain_noise(vec2f(height / wave_m + 2.0 * uneven, 0.5));
 }
 
-fn with_cover(tint: vec3f, post: Post, uneven: f32) -> vec3f {
+fn with_cover(tint: vec3f, post: Post, change: f32, noise: Noise) -> vec3f {
     let slope = post.slope * frame.cover.z;
     let shade = clamp(-slope.y * frame.cover.w, -1.0, 1.0);
-    let height = post.height + COVER_UNEVEN_M * uneven + COVER_ASPECT_M * shade;
-    let rise = length(slope) + COVER_UNEVEN_RISE * uneven;
+    let height = post.height + COVER_UNEVEN_M * noise.uneven + COVER_ASPECT_M * shade;
+    let rise = length(slope) + COVER_UNEVEN_RISE * noise.uneven;
+    let hollow = clamp(1.0 - post.visibility.y, 0.0, 1.0);
+    let moist = frame.cover_more.x + dot(COVER_MOISTER, vec4f(post.height, shade, hollow, noise.uneven));
     let above_trees = smoothstep(frame.cover.x - COVER_MEADOW_M.x, frame.cover.x, height);
-    let meadow = above_trees * (1.0 - smoothstep(frame.cover.y - COVER_MEADOW_M.y, frame.cover.y, height));
-    let scree = above_trees * smoothstep(COVER_SCREE_RISE.x, COVER_SCREE_RISE.y, rise);
-    let rock = smoothstep(COVER_ROCK_RISE.x, COVER_ROCK_RISE.y, rise);
+    let below_snow = 1.0 - smoothstep(frame.cover.y - COVER_MEADOW_M.y, frame.cover.y, height);
+    let green = smoothstep(COVER_WOODS_MOISTURE.x, COVER_WOODS_MOISTURE.y, moist);
+    let copses = smoothstep(COVER_COPSES.x, COVER_COPSES.y, noise.patches + noise.fine);
+    let sloping = smoothstep(COVER_WOODS_RISE.x, COVER_WOODS_RISE.y, rise);
+    let woods = (1.0 - above_trees) * green * mix(copses, 1.0, sloping);
+    let fields = COVER_FIELD_MEADOW * green * clamp(0.5 + noise.patches, 0.0, 1.0);
+    let meadow = mix(fields, below_snow, above_trees);
+    let bare = mix(COVER_DRY_RISE, 1.0, smoothstep(0.0, COVER_WOODS_MOISTURE.y, moist));
+    let scree = max(above_trees, 1.0 - green) * smoothstep(COVER_SCREE_RISE.x * bare, COVER_SCREE_RISE.y * bare, rise);
+    let rock = smoothstep(COVER_ROCK_RISE.x * bare, COVER_ROCK_RISE.y * bare, rise);
     let half = COVER_MEADOW_M.z;
     let snow = smoothstep(frame.cover.y - half, frame.cover.y + half, height) * (1.0 - rock);
-    var color = covered_by(tint, tint, MEADOW_HUE, MEADOW_LIGHT, meadow);
-    color = covered_by(color, tint, SCREE_HUE, SCREE_LIGHT, scree);
-    color = covered_by(color, tint, ROCK_HUE, ROCK_LIGHT, rock);
-    return covered_by(color, tint, SNOW_HUE, SNOW_LIGHT, snow);
+    let own = dot(tint, vec3f(0.2126, 0.7152, 0.0722));
+    var color = covered_by(tint, own, frame.cover_colors[1], meadow);
+    color = covered_by(color, own, frame.cover_colors[0], woods);
+    color = covered_by(color, own, frame.cover_colors[2], scree);
+    color = covered_by(color, own, frame.cover_colors[3], rock);
+    color = covered_by(color, own, frame.cover_colors[4], snow);
+    let open = max(1.0 - snow, 0.0);
+    let wooded = woods * (1.0 - rock) * open;
+    let strata = strata_wave(post.height, change, noise.uneven, COVER_STRATA_M.x)
+        + strata_wave(post.height, change, noise.uneven, COVER_STRATA_M.y);
+    let layered = max(rock, scree * (1.0 - green)) * open;
+    let ridges = COVER_RIDGES * noise.ridge * min(length(slope), 1.0) * frame.cover_more.z;
+    let texture = COVER_PATCHES * noise.patches * open + COVER_CROWNS * noise.fine * wooded + ridges;
+    return color * max(1.0 + texture + COVER_STRATA * layered * strata, 0.3);
+}
+
+// GroundCover::form.
+fn small_form(post: Post, noise: Noise) -> vec2f {
+    let rise = min(length(post.slope), 1.0);
+    let dry = max(1.0 - 4.0 * max(post.visibility.z, 0.0), 0.0);
+    let level = COVER_FORM_LEVEL / max(frame.cover.z, 1e-6);
+    return noise.form * ((level + COVER_FORM_RISE * rise) * dry * frame.cover_more.z);
 }
 
 // Lines `spacing` meters apart vanish before they run together.
@@ -711,9 +799,9 @@ fn soft_brightness(brightness: f32) -> f32 {
 }
 
 // ReliefShading::shade.
-fn relief_lit(albedo: vec3f, post: Post, at: vec2f, received: vec2f) -> vec3f {
+fn relief_lit(albedo: vec3f, post: Post, small: vec2f, at: vec2f, received: vec2f) -> vec3f {
     let z_factor = frame.to_sun.w;
-    let normal = normalize(vec3f(-post.slope * z_factor, 1.0));
+    let normal = normalize(vec3f(-(post.slope + small) * z_factor, 1.0));
     let form = normalize(vec3f(-ground_on_level(at, frame.ground_size.w).slope * z_factor, 1.0));
     var sides = 0.0;
     for (var side = 0; side < 4; side += 1) {
@@ -733,7 +821,9 @@ fn relief_lit(albedo: vec3f, post: Post, at: vec2f, received: vec2f) -> vec3f {
     let brightness = soft_brightness(1.0 + gain * relief - RELIEF_GAIN * shadow);
     let hue = mix(RELIEF_COOL, RELIEF_WARM, clamp(0.5 + 1.2 * (relief - shadow), 0.0, 1.0));
     let tint = hue / mix(RELIEF_COOL, RELIEF_WARM, 0.5);
-    return albedo * tint * (brightness * mix(RELIEF_CLOSED, 1.0, post.visibility.y * received.y));
+    let pale = mix(albedo, vec3f(dot(albedo, vec3f(0.2126, 0.7152, 0.0722))), RELIEF_FILL_GRAY);
+    let fill = pale * RELIEF_FILL * (frame.cover_more.w * clamp(1.0 - brightness, 0.0, 1.0));
+    return (albedo * tint * brightness + fill) * mix(RELIEF_CLOSED, 1.0, post.visibility.y * received.y);
 }
 
 // The normal on the side that is seen; the triangle's own where its corners have none.
@@ -798,11 +888,11 @@ struct GroundColor {
     unlit: f32,
 }
 
-fn ground_color(at: vec2f, post: Post, right: vec2f, down: vec2f, grain: f32) -> GroundColor {
+fn ground_color(at: vec2f, post: Post, noise: Noise, right: vec2f, down: vec2f, grain: f32) -> GroundColor {
     var seen = GroundColor(ramp_at(post.height), 0.0, 0.0);
     if has(COVER_PART) {
-        let pixel = max(length(right), length(down));
-        let covered = with_cover(seen.color, post, cover_noise(at, pixel));
+        let change = length(vec2f(dot(post.gradient, right), dot(post.gradient, down)));
+        let covered = with_cover(seen.color, post, change, noise);
         seen.color = select(seen.color, covered, frame.cover.z > 0.0);
     }
     if has(MAP_WATER_PART) {
@@ -871,9 +961,15 @@ fn on_ground(color: vec4f, flags: u32, world: vec3f, span: Footprint) -> Shaded 
     if has(NATURAL_PART) && (flags & NATURAL) != 0u {
         shaded.color = vec4f(color.rgb * grain, color.a);
     }
+    var noise = Noise(0.0, 0.0, 0.0, vec2f(0.0), 0.0);
+    var small = vec2f(0.0);
+    if has(COVER_PART) {
+        noise = cover_noise(world.xy, pixel_m(span));
+        small = small_form(post, noise);
+    }
     var unlit = 0.0;
     if has(GROUND_COLOR_PART) && (flags & FROM_GROUND_ALBEDO) != 0u {
-        let seen = ground_color(world.xy, post, span.right.xy, span.down.xy, grain);
+        let seen = ground_color(world.xy, post, noise, span.right.xy, span.down.xy, grain);
         shaded.color = vec4f(seen.color, 1.0);
         shaded.water_share = seen.water_share;
         unlit = seen.unlit;
@@ -881,7 +977,7 @@ fn on_ground(color: vec4f, flags: u32, world: vec3f, span: Footprint) -> Shaded 
     if has(GROUND_LIGHT_PART) && (flags & FROM_GROUND_NORMAL) != 0u {
         let received = vec2f(sun_share(world, face_of(span), false), contact_share(world, false));
         let base = shaded.color.rgb;
-        shaded.light = mix(relief_lit(base, post, world.xy, received), base, unlit);
+        shaded.light = mix(relief_lit(base, post, small, world.xy, received), base, unlit);
     }
     return shaded;
 }

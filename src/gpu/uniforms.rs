@@ -63,6 +63,8 @@ pub struct FrameUniforms {
     imagery: [f32; 4],
     imagery_size: [f32; 4],
     cover: [f32; 4],
+    cover_more: [f32; 4],
+    cover_colors: [[f32; 4]; 5],
     contour: [f32; 4],
     contour_shape: [f32; 4],
     ground_levels: [[u32; 4]; MOST_LEVELS],
@@ -189,6 +191,9 @@ impl FrameUniforms {
         frame.contour_shape[3] = f32::from(u8::from(map.has_grain));
         if let Some(cover) = map.cover {
             frame.cover = [cover.tree_m, cover.snow_m, cover.true_rise, cover.shady_north];
+            let forms = f32::from(u8::from(cover.has_forms));
+            frame.cover_more = [cover.moisture, map.cell.max_element(), forms, 1.0];
+            frame.cover_colors = cover.colors.map(|color| with(color.hue, color.light));
         }
         if let Some(imagery) = &map.imagery {
             let (per_m, [width, height]) = (

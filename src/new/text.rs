@@ -138,8 +138,10 @@ pub(super) fn terrain(draft: &SceneDraft) -> String {
 }
 
 fn style(draft: &SceneDraft) -> String {
-    let mut out = "\n[style]\n# Or \"desert\", \"gray\", or stops of your own: [[0, \"#7f9f6b\"], [400, \"#c9cf97\"]].\n\
-                   ramp = \"atlas\"\n"
+    let mut out = "\n[style]\n# Tints of the place's climate. Or \"desert\", \"gray\", or stops of your own: [[0, \"#7f9f6b\"], [400, \"#c9cf97\"]].\n\
+                   ramp = \"atlas\"\n\
+                   # Woods, meadow, scree, rock and snow, inferred from climate, height and slope; false shows the tints alone.\n\
+                   land_cover = true\n"
         .to_owned();
     if let Some(interval) = draft.contours_m {
         let _ = writeln!(out, "\n# The ground rises by {:.0} m.", draft.relief_m);

@@ -94,7 +94,7 @@ fn nested_ground(
     scene.table = TableTop::None;
     scene.scale = outer.scale;
     scene.contours = outer.contours;
-    scene.latitude_deg = outer.latitude_deg;
+    scene.climate = outer.climate;
     let origin = scene.lattice.origin() - outer.lattice.origin();
     let moved = origin.as_vec2().extend(0.0);
     scene.bounds = (outer.bounds.0 - moved, outer.bounds.1 - moved);

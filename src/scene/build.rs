@@ -17,6 +17,7 @@ use crate::attributes;
 use crate::build_errors::BuildErrors;
 use crate::builder::SceneBuilder;
 use crate::buildings;
+use crate::climate::Climate;
 use crate::exact_ground::ExactGround;
 use crate::fences;
 use crate::finer_elevation::FinerElevation;
@@ -202,7 +203,7 @@ pub fn build_with(
         phase: document.phase.clone(),
         heights,
         ramp,
-        latitude_deg: latitude_deg(&crs, lattice.map_extent().center()),
+        climate: Climate::at(place_deg(&crs, lattice.map_extent().center())),
         land_cover: surroundings.land_cover,
         // Plain lines and areas of an overlay leave the relief as strong as roads do.
         is_base_map: surroundings.is_base_map
@@ -280,9 +281,9 @@ fn height_service(
     Ok(if decks.facets().is_empty() { heights } else { heights.with_decks(Arc::new(decks)) })
 }
 
-/// The latitude of a place in map coordinates; `None` where the system has no place on Earth.
-fn latitude_deg(crs: &Crs, at: DVec2) -> Option<f64> {
-    crs.transform(&Crs::wgs84(), at).ok().map(|place| place.y).filter(|degrees| degrees.is_finite())
+/// The longitude and latitude of a place in map coordinates; `None` where the system has no place on Earth.
+fn place_deg(crs: &Crs, at: DVec2) -> Option<DVec2> {
+    crs.transform(&Crs::wgs84(), at).ok().filter(|place| place.is_finite())
 }
 
 fn layout(document: &Document, lattice: &Lattice) -> Result<PatchLayout, Diagnostic> {

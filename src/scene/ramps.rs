@@ -2,25 +2,72 @@
 //! against shade.
 //!
 //! `atlas` means land cover: green where trees grow, near white where snow lies all year. A model that reaches neither
-//! the tree line nor the snow line of its latitude shows only the tints between. The other ramps mean nothing but height
+//! the tree line nor the snow line of its latitude shows only the tints between. Its tints are those of the place's climate,
+//! after the cross-blended hypsometric tints of Patterson and Jenny (2011): lowlands are green where it rains, olive where
+//! it rains in one season, the color of sand in deserts, gray green in the tundra. The other ramps mean nothing but height
 //! and span the model's range. `viridis` and `cividis` are perceptually uniform: equal steps of height differ equally to
 //! the eye, to one that tells no red from green too (Smith and van der Walt 2015; Nuñez, Anderton and Renslow 2018).
 
-use crate::land_cover::{CoverLines, TRANSITION_M};
+use crate::climate::Climate;
+use crate::land_cover::TRANSITION_M;
 use sandtable_description::words::RampName;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::ground::ColorRamp;
 
-/// The tints of an atlas from the green of lowlands to the white of snow, L* 61 to 94.
-const ATLAS: [(f32, [u8; 3]); 7] = [
-    (0.0, [122, 156, 116]),
-    (0.18, [154, 180, 128]),
-    (0.38, [192, 200, 146]),
-    (0.56, [216, 208, 162]),
-    (0.74, [226, 212, 180]),
-    (0.90, [234, 225, 206]),
-    (1.0, [243, 239, 231]),
+/// Where the tints of an atlas stand, of all its tints.
+const ATLAS_PARTS: [f32; 7] = [0.0, 0.18, 0.38, 0.56, 0.74, 0.90, 1.0];
+/// The tints of an atlas from the green of lowlands to the white of snow, L* 61 to 94, in middle latitudes.
+const HUMID: [[u8; 3]; 7] = [
+    [122, 156, 116],
+    [154, 180, 128],
+    [192, 200, 146],
+    [216, 208, 162],
+    [226, 212, 180],
+    [234, 225, 206],
+    [243, 239, 231],
 ];
+/// The same in the tropics.
+const TROPICAL: [[u8; 3]; 7] = [
+    [104, 152, 104],
+    [134, 174, 106],
+    [176, 196, 116],
+    [212, 204, 140],
+    [224, 208, 164],
+    [234, 224, 202],
+    [243, 239, 231],
+];
+/// The same where it rains in one season: steppe, chaparral, the Mediterranean.
+const SEMIARID: [[u8; 3]; 7] = [
+    [174, 174, 128],
+    [192, 187, 140],
+    [208, 198, 154],
+    [219, 205, 166],
+    [227, 212, 182],
+    [235, 225, 206],
+    [243, 239, 231],
+];
+/// The same in deserts.
+const ARID: [[u8; 3]; 7] = [
+    [190, 150, 114],
+    [208, 168, 124],
+    [220, 184, 140],
+    [226, 197, 158],
+    [231, 210, 180],
+    [237, 225, 207],
+    [243, 239, 231],
+];
+/// The same beyond the polar circles.
+const POLAR: [[u8; 3]; 7] = [
+    [138, 152, 134],
+    [160, 170, 150],
+    [186, 190, 172],
+    [206, 207, 194],
+    [219, 221, 215],
+    [231, 234, 235],
+    [242, 245, 248],
+];
+/// The dryness of a place whose tints are those of [`SEMIARID`], and where those of [`HUMID`] end and those of [`ARID`] begin.
+const DRY_TINTS: [f64; 3] = [0.16, 0.5, 0.85];
 /// Where the atlas' tints are those of open ground above trees, and where those of snow begin.
 const OPEN: f32 = 0.38;
 const SNOW: f32 = 0.9;
@@ -49,8 +96,8 @@ const DARK_PART: f64 = 0.25;
 pub struct TintedGround {
     /// The lowest and the highest ground in meters that is not the bed of a sea.
     pub range_m: (f32, f32),
-    /// Its latitude in degrees; `None` where it has no place on Earth.
-    pub latitude_deg: Option<f64>,
+    /// Its climate.
+    pub climate: Climate,
 }
 
 /// The ramp called `name` over the heights of `ground`.
@@ -66,9 +113,9 @@ pub fn named(name: RampName, ground: &TintedGround) -> ColorRamp {
 
 /// The ramp of an atlas: the default.
 pub fn atlas(ground: &TintedGround) -> ColorRamp {
-    let tints = ColorRamp::new(stops(&ATLAS)).expect("the parts rise");
+    let tints = ColorRamp::new(tints(&ground.climate)).expect("the parts rise");
     let (low, high) = (f64::from(ground.range_m.0), f64::from(ground.range_m.1));
-    let lines = CoverLines::at(ground.latitude_deg);
+    let lines = ground.climate.lines();
     let above =
         |line_m: f64, height_m: f64| ((height_m - line_m) / TRANSITION_M + 0.5).clamp(0.0, 1.0) as f32;
     let first = OPEN * above(lines.tree_m, low);
@@ -83,7 +130,7 @@ pub fn atlas(ground: &TintedGround) -> ColorRamp {
     for pair in anchors.windows(2) {
         let ((from, from_tint), (to, to_tint)) = (pair[0], pair[1]);
         let height = |tint: f32| from + (to - from) * (tint - from_tint) / (to_tint - from_tint);
-        let inner = ATLAS.iter().map(|stop| stop.0).filter(|&tint| from_tint < tint && tint < to_tint);
+        let inner = ATLAS_PARTS.into_iter().filter(|&tint| from_tint < tint && tint < to_tint);
         let mut stop =
             |height: f32, tint: f32| parts.push((height, Srgba::from_linear(tints.linear_at(tint))));
         stop(from, from_tint);
@@ -92,6 +139,20 @@ pub fn atlas(ground: &TintedGround) -> ColorRamp {
     let (end, tint) = anchors[anchors.len() - 1];
     parts.push((end, Srgba::from_linear(tints.linear_at(tint))));
     stretched(parts, ground.range_m)
+}
+
+/// The tints of an atlas in a climate.
+fn tints(climate: &Climate) -> Vec<(f32, Srgba)> {
+    let [humid, semiarid, arid] = DRY_TINTS;
+    let share = |from: f64, to: f64| ((climate.dryness - from) / (to - from)).clamp(0.0, 1.0) as f32;
+    let tint = |index: usize| {
+        let [wet, tropics, steppe, desert, tundra] = [HUMID, TROPICAL, SEMIARID, ARID, POLAR]
+            .map(|table| Srgba::opaque(table[index][0], table[index][1], table[index][2]).linear());
+        let moist = wet.lerp(tropics, climate.tropical as f32);
+        let dry = moist.lerp(steppe, share(humid, semiarid)).lerp(desert, share(semiarid, arid));
+        Srgba::from_linear(dry.lerp(tundra, climate.polar as f32))
+    };
+    ATLAS_PARTS.into_iter().enumerate().map(|(index, part)| (part, tint(index))).collect()
 }
 
 fn stops(table: &[(f32, [u8; 3])]) -> Vec<(f32, Srgba)> {
@@ -118,11 +179,17 @@ fn stretched(stops: Vec<(f32, Srgba)>, (low, high): (f32, f32)) -> ColorRamp {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec2;
     use sandtable_base::message::choice::Choice;
     use sandtable_draw::color::lightness;
 
+    /// Ground in the east of North America, where it rains all year.
     fn ground(low: f32, high: f32, latitude: f64) -> TintedGround {
-        TintedGround { range_m: (low, high), latitude_deg: Some(latitude) }
+        at(low, high, -78.0, latitude)
+    }
+
+    fn at(low: f32, high: f32, longitude: f64, latitude: f64) -> TintedGround {
+        TintedGround { range_m: (low, high), climate: Climate::at(Some(DVec2::new(longitude, latitude))) }
     }
 
     fn lightness_of(ramp: &ColorRamp) -> Vec<f32> {
@@ -139,6 +206,24 @@ mod tests {
                 assert!(all[255] - all[0] > 5.0, "{}: {} to {}", choice.word, all[0], all[255]);
                 assert!(all[0] > 25.0, "{}: shade shows on its darkest tint", choice.word);
             }
+        }
+    }
+
+    #[test]
+    fn lowlands_have_the_tints_of_their_climate_and_all_grow_lighter_with_height() {
+        let ramp = |longitude: f64, latitude: f64| atlas(&at(0.0, 900.0, longitude, latitude));
+        let lowest = |longitude: f64, latitude: f64| ramp(longitude, latitude).stops()[0].1;
+        let (sahara, amazon, wales) = (lowest(10.0, 24.0), lowest(-65.0, -3.0), lowest(-4.0, 52.0));
+        assert!(sahara.x > 1.3 * sahara.y && amazon.y > 1.8 * amazon.x, "{sahara} {amazon}");
+        assert!(wales.y > 1.4 * wales.x && wales != amazon, "{wales}");
+        let cape = lowest(20.4, -34.0);
+        assert!((0.9..1.15).contains(&(cape.y / cape.x)), "olive: {cape}");
+        for (longitude, latitude) in
+            [(10.0, 24.0), (-65.0, -3.0), (20.4, -34.0), (-112.0, 37.3), (16.0, 78.0)]
+        {
+            let all = lightness_of(&ramp(longitude, latitude));
+            assert!(all.windows(2).all(|pair| pair[1] > pair[0] - 0.05), "{longitude} {latitude}: {all:?}");
+            assert!(all[0] > 50.0 && all[255] > all[0] + 15.0, "{longitude} {latitude}");
         }
     }
 

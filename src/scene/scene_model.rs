@@ -5,13 +5,13 @@ use std::sync::{Arc, OnceLock};
 use glam::Vec3;
 
 use crate::analyses::SceneAnalysis;
+use crate::climate::Climate;
 use crate::earthworks::water_beside;
 use crate::feature::{FEATURE_NOUNS, FeatureKind, SceneFeature};
 use crate::feature_meshes::{FeatureSolid, Ribbon, Solid};
 use crate::fences::Barrier;
 use crate::finer_elevation::FinerElevation;
 use crate::ground_map_cache::GroundMapCache;
-use crate::land_cover::CoverLines;
 use crate::military::SceneSymbol;
 use crate::placed_model::Placement;
 use crate::ramps::TintedGround;
@@ -85,8 +85,8 @@ pub struct SceneModel {
     /// Answers height queries in map coordinates.
     pub heights: HeightService,
     pub(crate) ramp: RampSource,
-    /// The latitude of the middle of its ground; `None` where the map coordinates have no place on Earth.
-    pub latitude_deg: Option<f64>,
+    /// The climate of the middle of its ground.
+    pub climate: Climate,
     pub(crate) land_cover: bool,
     /// Whether it is there to carry symbols and graphics.
     pub(crate) is_base_map: bool,
@@ -197,17 +197,14 @@ impl SceneModel {
     pub fn ramp(&self) -> ColorRamp {
         let (low, high) = self.height_range_m;
         let low = self.shore_m().filter(|&shore_m| high > shore_m).map_or(low, |shore_m| low.max(shore_m));
-        self.ramp.over(&TintedGround { range_m: (low, high), latitude_deg: self.latitude_deg })
+        self.ramp.over(&TintedGround { range_m: (low, high), climate: self.climate })
     }
 
     /// The elevations where the covers of natural ground change; `None` where the picture shows none.
     pub fn cover(&self) -> Option<GroundCover> {
-        let lines = CoverLines::at(self.latitude_deg);
         self.land_cover.then(|| GroundCover {
-            tree_m: lines.tree_m as f32,
-            snow_m: lines.snow_m as f32,
-            true_rise: self.scale.0.recip(),
-            shady_north: if self.latitude_deg.is_some_and(|degrees| degrees < 0.0) { -1.0 } else { 1.0 },
+            has_forms: self.imagery.is_none(),
+            ..self.climate.cover(self.scale.0.recip() * coarse_rise(self.lattice.cell().max_element()))
         })
     }
 
@@ -257,8 +254,13 @@ impl SceneModel {
             let area = area(lakes.iter().sum());
             format!("{} level basins are drawn as lakes, {area} in all", lakes.len())
         });
+        let cover = self.land_cover.then(|| {
+            "woods, meadow, scree, rock and snow are inferred from climate, elevation and slope, and forms below the size of the \
+             model's cells are symbols (`land_cover = false` in [style] switches them off)"
+                .to_owned()
+        });
         let off = |note| format!("{note} (inferred; `infer_water = false` in [terrain] switches it off)");
-        sea.into_iter().chain(lakes).map(off).chain(dry).chain(low).collect()
+        sea.into_iter().chain(lakes).map(off).chain(dry).chain(low).chain(cover).collect()
     }
 
     /// Whether [`SceneModel::map`] has been made.
@@ -297,4 +299,13 @@ impl SceneModel {
             .filter(|&(_, count)| count > 0)
             .collect()
     }
+}
+
+/// By how much slopes over cells of this size are steeper in truth: the mean over a cell hides cliffs.
+fn coarse_rise(cell_m: f64) -> f32 {
+    // The cell whose slopes are taken as they are, the factor for each doubling of it, and the greatest.
+    const FINE_M: f64 = 10.0;
+    const STEEPER: f64 = 1.12;
+    const MOST: f64 = 1.5;
+    libm::pow(STEEPER, libm::log2((cell_m / FINE_M).max(1.0))).min(MOST) as f32
 }

@@ -11,6 +11,7 @@ use std::sync::OnceLock;
 use axum::Json;
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
+use glam::DVec2;
 use serde::Serialize;
 
 use crate::reply::{HttpError, OK, quoted};
@@ -27,6 +28,7 @@ use sandtable_query::service::{NamedFile, ServiceOptions};
 use sandtable_query::windowed_elevation::GroundReach;
 use sandtable_raster::raster::Raster;
 use sandtable_scene::analysis_map::{MapTexts, ground_map, scene_map};
+use sandtable_scene::climate::Climate;
 use sandtable_scene::ramps::{self, TintedGround};
 use sandtable_scene::scene_file::open_scene_land;
 use sandtable_scene::scene_model::SceneModel;
@@ -107,8 +109,12 @@ impl ServedDataset {
     pub fn tile_map(&self) -> Result<&TileMap, HttpError> {
         let make = || {
             let overviews = Overviews::new(&self.dataset)?;
-            let latitude_deg = self.bounds.as_ref().map(|bounds| f64::midpoint(bounds.south, bounds.north));
-            let ramp = ramps::atlas(&TintedGround { range_m: overviews.range_m(), latitude_deg });
+            let middle = |bounds: &DatasetBounds| {
+                let (west, east, south, north) = (bounds.west, bounds.east, bounds.south, bounds.north);
+                DVec2::new(f64::midpoint(west, east), f64::midpoint(south, north))
+            };
+            let climate = Climate::at(self.bounds.as_ref().map(middle));
+            let ramp = ramps::atlas(&TintedGround { range_m: overviews.range_m(), climate });
             Ok(TileMap { overviews, ramp })
         };
         let made = self.tile_map.get_or_init(|| make().map_err(|error: QueryError| error_text(&error)));

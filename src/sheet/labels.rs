@@ -143,6 +143,7 @@ fn legend(scene: &SceneModel) -> Legend {
         high_m,
         vertical_exaggeration: scene.scale.0,
         model_enlargement: enlargement(scene),
+        has_inferred_cover: scene.cover().is_some(),
         has_voids: scene.has_voids(),
         contour_interval: scene.contours.map(|contours| contours.interval_m),
         vertical_datum: datum.map(|name| format!("Heights: {name}")),

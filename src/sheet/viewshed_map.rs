@@ -14,6 +14,7 @@ use sandtable_draw::ground::ColorRamp;
 use sandtable_draw::pixels::Pixels;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::declination::true_north;
+use sandtable_scene::climate::Climate;
 use sandtable_scene::ramps::{self, TintedGround};
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::sight::viewshed::{PostVisibility, Viewshed, ViewshedOptions};
@@ -49,7 +50,7 @@ pub fn viewshed_map(
     text: SheetText,
 ) -> Pixels {
     let (low_m, high_m) = lattice.height_range();
-    let ramp = ramps::atlas(&TintedGround { range_m: (low_m, high_m), latitude_deg: None });
+    let ramp = ramps::atlas(&TintedGround { range_m: (low_m, high_m), climate: Climate::at(None) });
     let colors = colors(lattice, viewshed, &ramp);
     let frame = MapFrame::around(lattice);
     let mut map = frame.resampled(&colors);
@@ -65,6 +66,7 @@ pub fn viewshed_map(
             high_m,
             vertical_exaggeration: 1.0,
             model_enlargement: None,
+            has_inferred_cover: false,
             has_voids: false,
             contour_interval: None,
             vertical_datum: text.vertical_datum,

@@ -86,6 +86,7 @@ fn sheet(width: u32, height: u32) -> Annotations {
             high_m: 1071.0,
             vertical_exaggeration: 1.5,
             model_enlargement: None,
+            has_inferred_cover: false,
             has_voids: false,
             contour_interval: Some(20.0),
             vertical_datum: Some("NAVD88".to_owned()),

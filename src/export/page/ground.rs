@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 use crate::page::container::PageSections;
 use sandtable_draw::color::srgb_from_linear;
 use sandtable_draw::ground::{ColorRamp, GroundMap, GroundPost};
+use sandtable_draw::ground_cover::CoverColor;
 use sandtable_draw::ground_levels::{GroundLevel, PostCount, level};
 use sandtable_terrain::lattice::{Lattice, Post};
 
@@ -101,6 +102,10 @@ pub fn map(sections: &mut PageSections, map: &GroundMap) -> Value {
             "snow": cover.snow_m,
             "trueRise": cover.true_rise,
             "shadyNorth": cover.shady_north,
+            "moisture": cover.moisture,
+            "hasForms": cover.has_forms,
+            "cell": map.cell.max_element(),
+            "colors": cover.colors.map(|CoverColor { hue, light }| [hue.x, hue.y, hue.z, light]).concat(),
         })),
         "formLevel": map.form_level.saturating_sub(number),
         "zFactor": map.z_factor,

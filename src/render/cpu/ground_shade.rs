@@ -7,8 +7,8 @@ use glam::{Vec2, Vec3};
 
 use crate::cpu::hit::FacePoint;
 use crate::cpu::texture::{Reading, Texel, TexelFootprint, Texture, Weighting};
+use sandtable_draw::cover_noise::CoverNoise;
 use sandtable_draw::ground::{Contours, GroundDetail, GroundMap, GroundPost, PixelChange};
-use sandtable_draw::ground_cover::cover_noise;
 use sandtable_draw::ground_grain::ground_grain;
 use sandtable_draw::ground_imagery::{DrapedColor, GroundImagery};
 use sandtable_draw::ground_levels::{GroundLevel, PostCount, add_weighted, coarser_levels};
@@ -19,6 +19,8 @@ use sandtable_draw::water::ShorePixel;
 #[derive(Debug)]
 pub struct GroundShader<'a> {
     map: &'a GroundMap,
+    /// The place of the map's world space in that of the noise, which goes on from map to map.
+    noise_origin: Vec2,
     posts_per_meter: Vec2,
     coarser: Vec<GroundLevel>,
     draped: Option<(&'a GroundImagery, Texture<'a>)>,
@@ -35,21 +37,35 @@ pub struct GroundPoint {
     water_gradient: Vec2,
     /// The picture over the map.
     pub draped: DrapedColor,
+    /// The noise of the place, where the map has a cover.
+    noise: CoverNoise,
 }
 
 impl<'a> GroundShader<'a> {
     pub fn new(map: &'a GroundMap, to_sun: Vec3) -> Self {
         let coarser = coarser_levels(map).collect();
         let draped = map.imagery.as_deref().map(|imagery| (imagery, Texture::new(&imagery.pixels)));
-        let relief = ReliefShading { shade_gain: map.shade_gain, ..ReliefShading::new(to_sun) };
-        Self { map, posts_per_meter: map.cell.recip(), coarser, draped, relief }
+        let fill = f32::from(u8::from(map.cover.is_some()));
+        let relief = ReliefShading { shade_gain: map.shade_gain, fill, ..ReliefShading::new(to_sun) };
+        Self { map, noise_origin: Vec2::ZERO, posts_per_meter: map.cell.recip(), coarser, draped, relief }
+    }
+
+    /// The same for a finer map whose world space lies at `origin` in that of the outermost.
+    pub fn within(self, origin: Vec2) -> Self {
+        Self { noise_origin: origin, ..self }
     }
 
     /// The light that the ground returns at a point that receives `received` past solids, before haze; see [`ReliefShading`].
     /// `form` is the [generalized ground](Self::form) there.
     pub fn lit(&self, albedo: Vec3, point: &GroundPoint, form: &GroundPost, received: ReceivedLight) -> Vec3 {
+        let small = self.map.cover.map_or(Vec2::ZERO, |cover| cover.form(&point.post, &point.noise));
+        let shaded = GroundPost {
+            slope_east: point.post.slope_east + small.x,
+            slope_north: point.post.slope_north + small.y,
+            ..point.post
+        };
         let point = ReliefPoint {
-            normal: self.map.shaded_normal(&point.post),
+            normal: self.map.shaded_normal(&shaded),
             form: self.map.shaded_normal(form),
             sun_visibility: point.post.sun_visibility * received.sun,
             sky_visibility: point.post.sky_visibility * received.sky,
@@ -87,6 +103,11 @@ impl<'a> GroundShader<'a> {
         if let Some((imagery, texture)) = &self.draped {
             point.draped = draped(imagery, texture, hit, most_taps);
         }
+        if self.map.cover.is_some() {
+            let cell_m = self.map.cell.max_element();
+            let at = hit.world.truncate() + self.noise_origin;
+            point.noise = CoverNoise::new(at, hit.pixel_m(), cell_m);
+        }
         point
     }
 
@@ -103,9 +124,7 @@ impl<'a> GroundShader<'a> {
     pub fn albedo(&self, point: &GroundPoint, hit: &FacePoint) -> Vec3 {
         let change =
             PixelChange { height_m: change(point.gradient, hit), water: change(point.water_gradient, hit) };
-        let uneven =
-            if self.map.cover.is_some() { cover_noise(hit.world.truncate(), hit.pixel_m()) } else { 0.0 };
-        let detail = GroundDetail { grain: self.grain(point, hit), uneven, draped: point.draped };
+        let detail = GroundDetail { grain: self.grain(point, hit), cover: point.noise, draped: point.draped };
         self.map.albedo(&point.post, change, &detail)
     }
 

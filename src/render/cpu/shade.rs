@@ -249,7 +249,7 @@ impl<'a> Shader<'a> {
 
 impl<'a> InsetShader<'a> {
     fn new(inset: &'a GroundInset, to_sun: Vec3) -> Self {
-        let ground = GroundShader::new(&inset.map, to_sun);
+        let ground = GroundShader::new(&inset.map, to_sun).within(inset.origin);
         Self { ground, origin: inset.origin, corners: inset.corners() }
     }
 }

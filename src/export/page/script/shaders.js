@@ -74,7 +74,7 @@ vec3 srgb_from_linear(vec3 c) {
   return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, c * 12.92, lessThanEqual(c, vec3(0.0031308)));
 }
 
-float hash(uvec2 at) {
+uvec2 mixed_bits(uvec2 at) {
   uint x = at.x * 1664525u + 1013904223u;
   uint y = at.y * 1664525u + 1013904223u;
   x += y * 1664525u;
@@ -82,8 +82,14 @@ float hash(uvec2 at) {
   x ^= x >> 16;
   y ^= y >> 16;
   x += y * 1664525u;
+  y += x * 1664525u;
   x ^= x >> 16;
-  return float(x >> 8) / 8388608.0 - 1.0;
+  y ^= y >> 16;
+  return uvec2(x, y);
+}
+
+float hash(uvec2 at) {
+  return float(mixed_bits(at).x >> 8) / 8388608.0 - 1.0;
 }
 
 float noise(vec2 at) {
@@ -198,6 +204,8 @@ uniform vec4 ramp_range;    // lowest height, 1 / range, 1 where contours are dr
 uniform vec4 bathymetry[9]; // height, rgb
 uniform vec4 undergrowth, shallow, open_water;
 uniform vec4 cover;         // tree line, snow line, true rise over drawn (0: no cover), 1 where the north is shady
+uniform vec3 cover_more;    // moisture, cell of the ground in meters, 1 where it has forms too small for that
+uniform vec4 cover_colors[5]; // rgb of luminance 1, factor on the tint's luminance: woods, meadow, scree, rock, snow
 uniform vec4 contour;       // rgb, strength
 uniform vec4 contour_shape; // interval, width, every how many is heavy, z factor
 uniform vec4 imagery;       // corner, 1 / size
@@ -232,25 +240,97 @@ vec3 water_at(float height) {
   return mix(low.yzw, high.yzw, clamp((height - low.x) / (high.x - low.x), 0.0, 1.0));
 }
 
-vec3 covered_by(vec3 color, vec3 own, vec3 hue, float light, float share) {
-  vec3 luminance = vec3(0.2126, 0.7152, 0.0722);
-  return mix(color, hue * (dot(own, luminance) * light / dot(hue, luminance)), COVER_MOST * share);
+struct Noise { float uneven; float patches; float fine; vec2 form; float ridge; };
+
+vec2 noise_values(uvec2 at) {
+  return vec2(mixed_bits(at) >> 8) / 8388608.0 - 1.0;
 }
 
-vec3 with_cover(vec3 own, float height_m, vec2 slope, float uneven) {
+Noise cover_noise(vec2 at, float pixel_m) {
+  Noise sum = Noise(0.0, 0.0, 0.0, vec2(0.0), 0.0);
+  float wave_m = NOISE_FIRST_M;
+  vec2 turn = vec2(1.0, 0.0);
+  float widest = NOISE_FORM_CELLS * cover_more.y;
+  for (float octave = 0.0; octave < NOISE_OCTAVES; octave += 1.0) {
+    float shown = clamp(2.0 * wave_m / (GRAIN_WAVE_PX * pixel_m) - 1.0, 0.0, 1.0);
+    if (shown > 0.0) {
+      vec2 place = vec2(turn.x * at.x - turn.y * at.y, turn.y * at.x + turn.x * at.y) / wave_m;
+      vec2 cell = floor(place);
+      vec2 part = place - cell;
+      vec2 smoothed = part * part * (3.0 - 2.0 * part);
+      vec2 steep = 6.0 * part * (1.0 - part);
+      uvec2 corner = uvec2(ivec2(cell));
+      vec2 sw = noise_values(corner);
+      vec2 se = noise_values(corner + uvec2(1u, 0u));
+      vec2 nw = noise_values(corner + uvec2(0u, 1u));
+      vec2 ne = noise_values(corner + uvec2(1u, 1u));
+      vec2 south = mix(sw, se, smoothed.x);
+      vec2 north = mix(nw, ne, smoothed.x);
+      vec2 value = mix(south, north, smoothed.y);
+      vec2 rise = vec2(mix(se.x - sw.x, ne.x - nw.x, smoothed.y), north.x - south.x) * steep;
+      float share = NOISE_SHARE * shown;
+      sum.uneven += share * value.x;
+      if (octave < NOISE_FIRST_FINE) sum.patches += share * value.y; else sum.fine += share * value.y;
+      float within = clamp((widest - wave_m) / (0.75 * widest), 0.0, 1.0);
+      float away = sqrt(value.x * value.x + NOISE_CREST * NOISE_CREST);
+      float crest = -value.x / away;
+      vec2 back = vec2(turn.x * rise.x + turn.y * rise.y, turn.x * rise.y - turn.y * rise.x);
+      sum.form += back * (share * within * crest);
+      sum.ridge += share * within * 2.0 * (NOISE_MEAN_AWAY - away);
+    }
+    wave_m *= NOISE_FINER;
+    turn = vec2(NOISE_TURN.x * turn.x - NOISE_TURN.y * turn.y, NOISE_TURN.y * turn.x + NOISE_TURN.x * turn.y);
+  }
+  return sum;
+}
+
+vec3 covered_by(vec3 color, float own, vec4 cover, float share) {
+  return mix(color, cover.rgb * (own * cover.w), COVER_MOST * share);
+}
+
+float strata_wave(float height, float change, float uneven, float wave_m) {
+  float shown = clamp(2.0 * wave_m / (GRAIN_WAVE_PX * max(change, 1e-6)) - 1.0, 0.0, 1.0);
+  return shown * noise(vec2(height / wave_m + 2.0 * uneven, 0.5));
+}
+
+vec3 with_cover(vec3 tint, float height_m, float change, vec2 slope, float sky_share, Noise here) {
   slope *= cover.z;
   float shade = clamp(-slope.y * cover.w, -1.0, 1.0);
-  float height = height_m + COVER_UNEVEN_M * uneven + COVER_ASPECT_M * shade;
-  float rise = length(slope) + COVER_UNEVEN_RISE * uneven;
+  float height = height_m + COVER_UNEVEN_M * here.uneven + COVER_ASPECT_M * shade;
+  float rise = length(slope) + COVER_UNEVEN_RISE * here.uneven;
+  float hollow = clamp(1.0 - sky_share, 0.0, 1.0);
+  float moist = cover_more.x + dot(COVER_MOISTER, vec4(height_m, shade, hollow, here.uneven));
   float above_trees = smoothstep(cover.x - COVER_MEADOW_M.x, cover.x, height);
-  float meadow = above_trees * (1.0 - smoothstep(cover.y - COVER_MEADOW_M.y, cover.y, height));
-  float scree = above_trees * smoothstep(COVER_SCREE_RISE.x, COVER_SCREE_RISE.y, rise);
-  float rock = smoothstep(COVER_ROCK_RISE.x, COVER_ROCK_RISE.y, rise);
+  float below_snow = 1.0 - smoothstep(cover.y - COVER_MEADOW_M.y, cover.y, height);
+  float green = smoothstep(COVER_WOODS_MOISTURE.x, COVER_WOODS_MOISTURE.y, moist);
+  float copses = smoothstep(COVER_COPSES.x, COVER_COPSES.y, here.patches + here.fine);
+  float woods = (1.0 - above_trees) * green * mix(copses, 1.0, smoothstep(COVER_WOODS_RISE.x, COVER_WOODS_RISE.y, rise));
+  float fields = COVER_FIELD_MEADOW * green * clamp(0.5 + here.patches, 0.0, 1.0);
+  float meadow = mix(fields, below_snow, above_trees);
+  float bare = mix(COVER_DRY_RISE, 1.0, smoothstep(0.0, COVER_WOODS_MOISTURE.y, moist));
+  float scree = max(above_trees, 1.0 - green) * smoothstep(COVER_SCREE_RISE.x * bare, COVER_SCREE_RISE.y * bare, rise);
+  float rock = smoothstep(COVER_ROCK_RISE.x * bare, COVER_ROCK_RISE.y * bare, rise);
   float snow = smoothstep(cover.y - COVER_MEADOW_M.z, cover.y + COVER_MEADOW_M.z, height) * (1.0 - rock);
-  vec3 color = covered_by(own, own, MEADOW_HUE, MEADOW_LIGHT, meadow);
-  color = covered_by(color, own, SCREE_HUE, SCREE_LIGHT, scree);
-  color = covered_by(color, own, ROCK_HUE, ROCK_LIGHT, rock);
-  return covered_by(color, own, SNOW_HUE, SNOW_LIGHT, snow);
+  float own = dot(tint, vec3(0.2126, 0.7152, 0.0722));
+  vec3 color = covered_by(tint, own, cover_colors[1], meadow);
+  color = covered_by(color, own, cover_colors[0], woods);
+  color = covered_by(color, own, cover_colors[2], scree);
+  color = covered_by(color, own, cover_colors[3], rock);
+  color = covered_by(color, own, cover_colors[4], snow);
+  float open = max(1.0 - snow, 0.0);
+  float wooded = woods * (1.0 - rock) * open;
+  float strata = strata_wave(height_m, change, here.uneven, COVER_STRATA_M.x)
+    + strata_wave(height_m, change, here.uneven, COVER_STRATA_M.y);
+  float layered = max(rock, scree * (1.0 - green)) * open;
+  float ridges = COVER_RIDGES * here.ridge * min(length(slope), 1.0) * cover_more.z;
+  float texture_share = COVER_PATCHES * here.patches * open + COVER_CROWNS * here.fine * wooded + ridges;
+  return color * max(1.0 + texture_share + COVER_STRATA * layered * strata, 0.3);
+}
+
+vec2 small_form(vec4 post, Noise here) {
+  float rise = min(length(post.xy), 1.0);
+  float dry = max(1.0 - 4.0 * max(post.w, 0.0), 0.0);
+  return here.form * ((COVER_FORM_LEVEL / cover.z + COVER_FORM_RISE * rise) * dry * cover_more.z);
 }
 
 float contour_fade(float spacing, float per_pixel) {
@@ -294,7 +374,9 @@ vec3 relief_lit(vec3 albedo, float height, vec4 post, float sky_share, vec2 plac
   float shadow = contrast * lost;
   float brightness = soft_brightness(1.0 + (relief < 0.0 ? shade_gain : RELIEF_GAIN) * relief - RELIEF_GAIN * shadow);
   vec3 hue = mix(RELIEF_COOL, RELIEF_WARM, clamp(0.5 + 1.2 * (relief - shadow), 0.0, 1.0)) / mix(RELIEF_COOL, RELIEF_WARM, 0.5);
-  return albedo * hue * (brightness * mix(RELIEF_CLOSED, 1.0, sky_share));
+  vec3 pale = mix(albedo, vec3(dot(albedo, vec3(0.2126, 0.7152, 0.0722))), RELIEF_FILL_GRAY);
+  vec3 fill = cover.z > 0.0 ? pale * RELIEF_FILL * clamp(1.0 - brightness, 0.0, 1.0) : vec3(0.0);
+  return (albedo * hue * brightness + fill) * mix(RELIEF_CLOSED, 1.0, sky_share);
 }
 
 void main() {
@@ -327,6 +409,12 @@ void main() {
   }
   float water_share = is_water;
   float unlit = 0.0;
+  Noise here = Noise(0.0, 0.0, 0.0, vec2(0.0), 0.0);
+  vec4 shaded = post;
+  if (cover.z > 0.0) {
+    here = cover_noise(world.xy, pixel_m);
+    shaded.xy += small_form(post, here);
+  }
   if (is_map > 0.5) {
     float per_pixel = length(vec2(dot(reading.gradient, right_m), dot(reading.gradient, down_m)));
     float lines = contour_cover(reading.height, per_pixel) * contour.a;
@@ -338,10 +426,7 @@ void main() {
     vec3 blue = mix(mix(shallow.rgb, deep, clamp(off_shore / shallow.w, 0.0, 1.0)), min(deep, open_water.rgb),
       clamp((off_shore - shallow.w) / (1.0 - shallow.w), 0.0, 1.0));
     vec3 land = texture(ramp, vec2((reading.height - ramp_range.x) * ramp_range.y, 0.5)).rgb;
-    if (cover.z > 0.0) {
-      float uneven = waves(world.xy, pixel_m, COVER_WAVES_M, COVER_SHARES);
-      land = with_cover(land, reading.height, post.xy, uneven);
-    }
+    if (cover.z > 0.0) land = with_cover(land, reading.height, per_pixel, post.xy, sky_share, here);
     land = mix(land, undergrowth.rgb, clamp(-post.w, 0.0, 1.0) * undergrowth.w) * grain;
     vec3 bare = mix(land, blue, water) * shore;
     vec2 part_of = (world.xy - imagery.xy) * imagery.zw;
@@ -356,7 +441,7 @@ void main() {
     color.rgb *= is_natural > 0.5 ? grain : 1.0;
     if (alpha_mode == 1 && color.a < cutoff) discard;
   }
-  vec3 light = mix(relief_lit(color.rgb, reading.height, post, sky_share, place, sun_share(vec3(0.0, 0.0, 1.0))), color.rgb, unlit);
+  vec3 light = mix(relief_lit(color.rgb, reading.height, shaded, sky_share, place, sun_share(vec3(0.0, 0.0, 1.0))), color.rgb, unlit);
   if (is_hatching > 0.5) light = color.rgb;
   light = mirror_sky(light, water_share, pixel_m);
   shown = seen(light, (alpha_mode == 2 ? color.a : 1.0) * covered);

@@ -1,0 +1,137 @@
+//! The noise that natural cover and the ground's finest forms are made of: octaves of value noise in the world.
+//!
+//! Each octave is a fifth as wide as the one before and turned against it, so that no lattice shows; one hash of a lattice
+//! point gives two values, of which the first also has its rise. An octave fades before its waves are a few pixels wide:
+//! from afar borders and patches of kilometers show, near by those of meters.
+
+use glam::{UVec2, Vec2};
+
+use crate::ground_grain::{WIDE_PX, mixed};
+
+/// The wavelength of the first octave, meters, and the factor from one to the next.
+pub(crate) const FIRST_M: f32 = 7680.0;
+pub(crate) const FINER: f32 = 0.2;
+/// The number of octaves; the last is about as wide as a crown of a tree.
+pub(crate) const OCTAVES: u32 = 5;
+/// The first octave of [`CoverNoise::fine`].
+pub(crate) const FIRST_FINE: u32 = 3;
+/// The share of each octave in a sum of all: three that are seen well together span about -1 to 1.
+pub(crate) const SHARE: f32 = 0.46;
+/// Cosine and sine of the turn from one octave to the next.
+pub(crate) const TURN: Vec2 = Vec2::new(0.8, 0.6);
+/// Forms are made of octaves up to this many cells of the map wide: what is wider the map shows itself.
+pub(crate) const FORM_CELLS: f32 = 8.0;
+/// How sharp the crests of forms are: the noise below which they are round.
+pub(crate) const CREST: f32 = 0.12;
+
+/// The mean distance of the noise from its ridges, with [`CREST`].
+pub(crate) const MEAN_AWAY: f32 = 0.34;
+
+/// The noise at a place; sums are about -1 to 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CoverNoise {
+    /// Moves borders between covers.
+    pub uneven: f32,
+    /// Patches within a cover, a hectometer wide and more.
+    pub patch: f32,
+    /// The same, narrower: clumps and crowns of trees, stones.
+    pub fine: f32,
+    /// Rise eastward and northward of ridged forms too small for the map's cells, of unit strength.
+    pub form: Vec2,
+    /// How high these forms stand: positive on their ridges, negative between.
+    pub ridge: f32,
+}
+
+impl CoverNoise {
+    /// The noise at world X and Y, over a pixel `pixel_m` meters wide, on a map of cells `cell_m` meters wide.
+    pub fn new(at: Vec2, pixel_m: f32, cell_m: f32) -> Self {
+        let mut sum = Self::default();
+        let (mut wave_m, mut turn) = (FIRST_M, Vec2::X);
+        for octave in 0..OCTAVES {
+            let shown = (2.0 * wave_m / (WIDE_PX * pixel_m) - 1.0).clamp(0.0, 1.0);
+            if shown > 0.0 {
+                let place = Vec2::new(turn.x * at.x - turn.y * at.y, turn.y * at.x + turn.x * at.y) / wave_m;
+                let (value, rise) = pair(place);
+                sum.uneven += SHARE * shown * value.x;
+                if octave < FIRST_FINE {
+                    sum.patch += SHARE * shown * value.y;
+                } else {
+                    sum.fine += SHARE * shown * value.y;
+                }
+                let within = ((FORM_CELLS * cell_m - wave_m) / (0.75 * FORM_CELLS * cell_m)).clamp(0.0, 1.0);
+                let away = (value.x * value.x + CREST * CREST).sqrt();
+                let crest = -value.x / away;
+                let back = Vec2::new(turn.x * rise.x + turn.y * rise.y, turn.x * rise.y - turn.y * rise.x);
+                sum.form += back * (SHARE * shown * within * crest);
+                sum.ridge += SHARE * shown * within * 2.0 * (MEAN_AWAY - away);
+            }
+            wave_m *= FINER;
+            turn = Vec2::new(TURN.x * turn.x - TURN.y * turn.y, TURN.y * turn.x + TURN.x * turn.y);
+        }
+        sum
+    }
+}
+
+/// Two value noises, -1..=1, and the rise of the first.
+fn pair(at: Vec2) -> (Vec2, Vec2) {
+    let cell = at.floor();
+    let part = at - cell;
+    let smooth = part * part * (Vec2::splat(3.0) - 2.0 * part);
+    let steep = 6.0 * part * (Vec2::ONE - part);
+    let corner = cell.as_ivec2().as_uvec2();
+    let value =
+        |east: u32, north: u32| values(UVec2::new(corner.x.wrapping_add(east), corner.y.wrapping_add(north)));
+    let [sw, se, nw, ne] = [value(0, 0), value(1, 0), value(0, 1), value(1, 1)];
+    let (south, north) = (sw + (se - sw) * smooth.x, nw + (ne - nw) * smooth.x);
+    let east = (se.x - sw.x) + ((ne.x - nw.x) - (se.x - sw.x)) * smooth.y;
+    (south + (north - south) * smooth.y, Vec2::new(east * steep.x, (north.x - south.x) * steep.y))
+}
+
+/// Two numbers from -1 to 1 for a lattice point.
+fn values(at: UVec2) -> Vec2 {
+    let [x, y] = mixed(at);
+    // 24 bits are exact in an f32.
+    Vec2::new((x >> 8) as f32, (y >> 8) as f32) / 8_388_608.0 - 1.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn places() -> impl Iterator<Item = Vec2> {
+        (0..4000).map(|index| Vec2::new((index % 80) as f32 * 91.3 - 4000.0, (index / 80) as f32 * 77.9))
+    }
+
+    #[test]
+    fn the_rise_is_the_change_of_the_first_value() {
+        let step = 1e-3;
+        for at in places().map(|at| at / 211.0) {
+            let (value, rise) = pair(at);
+            for (axis, part) in [(Vec2::X, rise.x), (Vec2::Y, rise.y)] {
+                let change = (pair(at + axis * step).0.x - value.x) / step;
+                assert!((change - part).abs() < 0.02, "{at}: {change} {part}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_two_values_have_no_mean_and_nothing_in_common() {
+        let all: Vec<Vec2> = places().map(|at| pair(at / 3.3).0).collect();
+        let mean = all.iter().sum::<Vec2>() / all.len() as f32;
+        let common = all.iter().map(|value| value.x * value.y).sum::<f32>() / all.len() as f32;
+        assert!(mean.abs().max_element() < 0.03 && common.abs() < 0.03, "{mean} {common}");
+    }
+
+    #[test]
+    fn pixels_see_waves_wider_than_themselves_alone_and_forms_below_the_cells() {
+        for at in places() {
+            let far = CoverNoise::new(at, 2000.0, 30.0);
+            assert_eq!(far, CoverNoise::default());
+            let overview = CoverNoise::new(at, 60.0, 30.0);
+            assert_eq!((overview.form, overview.ridge, overview.fine), (Vec2::ZERO, 0.0, 0.0));
+        }
+        let sum =
+            |pixel_m: f32| places().map(|at| CoverNoise::new(at, pixel_m, 30.0).form.length()).sum::<f32>();
+        assert!(sum(1.0) > 1.2 * sum(10.0) && sum(10.0) > 0.0);
+    }
+}
