@@ -364,7 +364,7 @@ mod tests {
     fn a_coast_in_pieces_is_one_line_in_any_order() {
         let coast = island();
         let mut whole = level_ground(3.0);
-        follow(&mut whole, &[coast.clone()], SEA).expect("sound");
+        follow(&mut whole, std::slice::from_ref(&coast), SEA).expect("sound");
         let pieces = [&coast[60..], &coast[..21], &coast[20..41], &coast[40..61]].map(<[DVec2]>::to_vec);
         let mut parted = level_ground(3.0);
         follow(&mut parted, &pieces, SEA).expect("sound");

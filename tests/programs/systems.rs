@@ -13,6 +13,7 @@ const PLACES: &[(&str, &[&str])] = &[
         "std::os::",
         &[
             "cli/address_space.rs",
+            "cli/invocation.rs",
             "cli/supervisor.rs",
             "files/output_files.rs",
             "files/scratch_file.rs",

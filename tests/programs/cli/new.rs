@@ -255,7 +255,8 @@ fn a_coastline_through_ground_with_the_depths_of_the_sea_states_its_level() {
         run_in(&scratch.at("project"), &[&arguments[..], &more].concat()).ok();
         assert_eq!(text_of(&scratch).contains("\nsea_level = 0\n"), is_sea, "{kind} {north}");
         let check = run_in(&scratch.at("project"), &["check", "scene/scene.toml"]);
-        assert!(check.code == 0, "{check:?}");
+        // A coast far off the model is an error there, as everything far off it.
+        assert_eq!(check.code == 0, north < 4_100_000.0, "{check:?}");
         std::fs::remove_dir_all(scratch.at("project/scene")).expect("removed");
     }
 }
