@@ -166,7 +166,7 @@ impl ReliefShading {
     /// The light of the sky in the deepest shade of natural ground, which the sun does not outshine there.
     pub const FILL: Vec3 = Vec3::new(0.12, 0.165, 0.26);
     /// The share of gray in the color that this light shows: colors are paler in shade.
-    pub const FILL_GRAY: f32 = 0.4;
+    pub const FILL_GRAY: f32 = 0.6;
     /// Brightness where no sky is seen.
     pub const CLOSED: f32 = 0.5;
     /// The contrast of the lowest ground; that of the highest quarter is 1.
@@ -297,7 +297,10 @@ mod tests {
         let [dark, filled] = [plain, natural].map(|shading| shading.shade(albedo, &shadow));
         let chroma = |color: Vec3| (color.max_element() - color.min_element()) / color.max_element();
         assert!(luminance(filled) > 1.3 * luminance(dark), "{filled} {dark}");
-        assert!(filled.z / filled.x > 1.1 * dark.z / dark.x && chroma(filled) < chroma(dark));
+        assert!(
+            filled.z / filled.x > 1.1 * dark.z / dark.x && chroma(filled) < chroma(dark),
+            "{filled} {dark}"
+        );
     }
 
     #[test]
