@@ -82,7 +82,7 @@ const TRUE_OF_GALLERY: &[(&str, &[&str])] = &[
     // A hill that a road goes through to show the cutting.
     ("deep-earthwork", &["earthworks"]),
     // A reservoir, with the valley below its dam in its outline.
-    ("lake-shore-gap", &["jacksboro", "operation"]),
+    ("lake-shore-gap", &["jacksboro", "operation", "panorama"]),
     // Models tens of times as large as they are, to be seen on the block; and one of each anchor on a slope.
     ("model-floats", &["jacksboro", "models", "phases", "placement"]),
     ("models-overlap", &["jacksboro"]),

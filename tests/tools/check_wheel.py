@@ -3,7 +3,8 @@
 
 usage: python tests/tools/check_wheel.py WHEEL [PROGRAM]
 
-Prints size, time of import and time to the first picture, and refuses what is too large or too slow. A wheel for manylinux 2014 must
+Prints size, time of import and time to the first picture, and refuses what is too large; times are those of the machine and of the
+network, for a person to judge. A wheel for manylinux 2014 must
 use no newer symbol than that allows, which auditwheel (by pip) says. With a program, the wheel's must draw the same demonstration.
 
 A wheel for manylinux 2014 is built by
@@ -23,9 +24,6 @@ from pathlib import Path
 
 # What PyPI's users download without a thought; the debug information of a development build is beside the point.
 MOST_BYTES = 25_000_000
-# From an empty environment, NumPy's download included.
-MOST_SECONDS_TO_PICTURE = 20.0
-MOST_MS_TO_IMPORT = 150.0
 # The first import reads the disk, and a busy machine delays some.
 IMPORTS = 7
 
@@ -70,10 +68,6 @@ def checked_in(folder: Path, wheel: Path, program: list[Path]) -> list[str]:
     import_time = statistics.median(imports)
     print(f"import sandtable: {import_time:.0f} ms, the first {imports[0]:.0f} ms")
     findings = []
-    if drawn - began > MOST_SECONDS_TO_PICTURE:
-        findings.append(f"the first picture took {drawn - began:.1f} s, which is more than {MOST_SECONDS_TO_PICTURE:.0f} s")
-    if import_time > MOST_MS_TO_IMPORT:
-        findings.append(f"importing took {import_time:.0f} ms, which is more than {MOST_MS_TO_IMPORT:.0f} ms")
     for other in program:
         run([other, "demo", folder / "other"])
         if (folder / "demo/picture.png").read_bytes() != (folder / "other/picture.png").read_bytes():
