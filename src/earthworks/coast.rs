@@ -15,9 +15,9 @@ use std::collections::{BTreeMap, VecDeque};
 use glam::DVec2;
 
 use sandtable_geom::polyline::{VertexKey, vertex_key};
-use sandtable_geom::rect::Rect;
 use sandtable_geom::segment;
 use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::neighbors;
 use sandtable_terrain::volumes::Volumes;
 
 /// How far above the sea land lies at least, in meters: what heights of whole meters tell from it, and no more.
@@ -106,10 +106,7 @@ pub fn follow(
 fn sides_beside(lattice: &Lattice, lines: &[Vec<DVec2>]) -> Result<Option<Vec<CoastSide>>, CoastError> {
     let ends = LineEnds::of(lines);
     let cell = lattice.cell();
-    let near = Rect {
-        min: lattice.extent().min - cell * BAND_CELLS as f64,
-        max: lattice.extent().max + cell * BAND_CELLS as f64,
-    };
+    let near = lattice.extent().grown(cell.max_element() * BAND_CELLS as f64);
     let mut nearest: Vec<f32> = Vec::new();
     let mut sides: Vec<CoastSide> = Vec::new();
     let mut steps = 0;
@@ -254,14 +251,7 @@ fn spread(lattice: &Lattice, sides: &mut [CoastSide]) {
         (0..sides.len()).filter(|&index| sides[index] != CoastSide::Untold).collect();
     let columns = lattice.columns() as usize;
     while let Some(index) = queue.pop_front() {
-        let column = index % columns;
-        let beside = [
-            (column > 0).then(|| index - 1),
-            (column + 1 < columns).then_some(index + 1),
-            index.checked_sub(columns),
-            Some(index + columns).filter(|&north| north < sides.len()),
-        ];
-        for other in beside.into_iter().flatten() {
+        for other in neighbors::sides(index, columns, sides.len()).into_iter().flatten() {
             if sides[other] == CoastSide::Untold {
                 sides[other] = sides[index];
                 queue.push_back(other);
@@ -286,7 +276,8 @@ fn shape(lattice: &mut Lattice, sides: &[CoastSide], sea: SeaGround<'_>) -> Coas
                 if sea.holds_depths && height_m < sea.level_m { height_m } else { sea.level_m }
             }
             CoastSide::Land if height_m < least_m => {
-                let is_at_sea = sea.is_water.get(index) == Some(&true) || is_beside_sea(lattice, sides, post);
+                let is_at_sea =
+                    sea.is_water.get(index) == Some(&true) || is_beside_sea(lattice, sides, index);
                 changes.raised_posts += usize::from(is_at_sea);
                 if is_at_sea { least_m } else { height_m }
             }
@@ -301,12 +292,9 @@ fn shape(lattice: &mut Lattice, sides: &[CoastSide], sea: SeaGround<'_>) -> Coas
 }
 
 /// Whether one of the eight posts around a post lies in the sea.
-fn is_beside_sea(lattice: &Lattice, sides: &[CoastSide], post: Post) -> bool {
-    let range = |at: u32, posts: u32| at.saturating_sub(1)..(at + 2).min(posts);
-    range(post.row, lattice.rows()).any(|row| {
-        range(post.column, lattice.columns())
-            .any(|column| sides[lattice.index(Post { column, row })] == CoastSide::Sea)
-    })
+fn is_beside_sea(lattice: &Lattice, sides: &[CoastSide], index: usize) -> bool {
+    let around = neighbors::neighbors(index, lattice.columns() as usize, lattice.rows() as usize);
+    around.map(|(_, other)| sides[other]).any(|side| side == CoastSide::Sea)
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::labels::{cover, is_bare};
 use crate::line_labels::is_seen;
 use crate::look::apply_look;
-use crate::peaks_in_sight::peaks;
+use crate::peaks_in_sight::{Peak, peaks};
 use crate::picture::{DrawnView, PictureError, PictureSize};
 use sandtable_annotate::annotation::{Annotations, PanoramaMarks, PictureLabel, SkylineName};
 use sandtable_description::words::LabelKind;
@@ -121,7 +121,7 @@ pub fn panorama_annotations(scene: &SceneModel, panorama: &Panorama, picture: &R
 fn skyline_names(scene: &SceneModel, panorama: &Panorama, drop: &HorizonDrop) -> Vec<SkylineName> {
     let most = (panorama.span_rad.to_degrees() / DEGREES_PER_HEIGHT).ceil() as usize;
     let mut unnamed = 0;
-    let name = |peak: crate::peaks_in_sight::Peak| {
+    let name = |peak: Peak| {
         let seen = panorama.project(drop.lowered(peak.world))?;
         let is_wanted = peak.name.is_some();
         unnamed += usize::from(!is_wanted);

@@ -1,4 +1,4 @@
-//! The eight neighbors of a post, or of a cell of another grid that is stored row by row.
+//! The neighbors of a post, or of a cell of another grid that is stored row by row: all eight, or the four at its sides.
 
 /// The steps to the eight neighbors, columns and rows, from the east counter-clockwise.
 pub const STEPS: [(i64, i64); 8] = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
@@ -11,6 +11,17 @@ pub fn neighbors(index: usize, columns: usize, rows: usize) -> impl Iterator<Ite
         let is_there = (0..columns as i64).contains(&column) && (0..rows as i64).contains(&row);
         is_there.then(|| (step, row as usize * columns + column as usize))
     })
+}
+
+/// The neighbors west, east, south and north, on a grid of so many columns and `cells` in all; `None` beyond its border.
+pub fn sides(index: usize, columns: usize, cells: usize) -> [Option<usize>; 4] {
+    let column = index % columns;
+    [
+        (column > 0).then(|| index - 1),
+        (column + 1 < columns).then_some(index + 1),
+        index.checked_sub(columns),
+        Some(index + columns).filter(|&north| north < cells),
+    ]
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@
 use glam::DVec2;
 
 use crate::lattice::Lattice;
+use crate::neighbors::sides;
 use crate::water_cover::WaterCover;
 use sandtable_geom::distance_field::{RegionGrid, distances_m};
 
@@ -112,13 +113,7 @@ fn open(is_water: &[bool], columns: usize, cell: DVec2) -> Vec<f32> {
         let mut next = 0;
         while let Some(&at) = body.get(next) {
             next += 1;
-            let column = at % columns;
-            let beside = [
-                (column > 0).then(|| at - 1),
-                (column + 1 < columns).then_some(at + 1),
-                at.checked_sub(columns),
-                Some(at + columns).filter(|&north| north < is_water.len()),
-            ];
+            let beside = sides(at, columns, is_water.len());
             for beside in beside.into_iter().flatten().filter(|&beside| is_water[beside]) {
                 if !std::mem::replace(&mut is_found[beside], true) {
                     body.push(beside);

@@ -1,27 +1,18 @@
 //! Coasts: the sea ends where their lines run.
 
 use glam::DVec2;
-use sandtable_description::parse::parse_bytes;
-use sandtable_scene::assets::Assets;
-use sandtable_scene::build::build;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::query::{Interpolation, ground_height};
 
 use crate::common::data::data;
 use crate::common::scratch::Scratch;
+use crate::water::over_grid;
 
 /// A scene over 31 × 31 posts 90 m apart that rise northward from a sea of zeros, from `text` after its `dem` and `crs`.
 fn shore(text: &str) -> Result<SceneModel, String> {
-    let folder = Scratch::new();
     let height = |index: u32| ((20 - (index / 31) as i32).max(0) * 6).to_string();
     let heights: Vec<String> = (0..31 * 31).map(height).collect();
-    let grid = "ncols 31\nnrows 31\nxllcorner -45\nyllcorner -45\ncellsize 90\n";
-    folder.write("shore.asc", format!("{grid}{}", heights.join(" ")));
-    let text = format!("[terrain]\ndem = \"shore.asc\"\ncrs = \"EPSG:32633\"\n{text}");
-    let path = folder.write("scene.toml", &text);
-    let document = parse_bytes("scene.toml", text.as_bytes()).map_err(|error| error.to_string())?;
-    let assets = Assets::new(&path, &[]).map_err(|error| error.to_string())?;
-    build(&document, &assets, &|_| ()).map_err(|error| error.to_string())
+    over_grid("xllcorner -45\nyllcorner -45\ncellsize 90", &heights, text)
 }
 
 /// A coast from east to west, land in the north, with a mole 30 m wide that reaches 400 m out to sea.

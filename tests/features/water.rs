@@ -307,11 +307,15 @@ fn water_that_follows_the_ground_is_not_cut() {
 
 /// A scene over ground that rises 1 m a post eastward, from `text` after its `[terrain]`.
 fn ramp(text: &str) -> Result<SceneModel, String> {
-    let folder = Scratch::new();
     let heights: Vec<String> = (0..31 * 31).map(|index| (100 + index % 31).to_string()).collect();
-    let grid = "ncols 31\nnrows 31\nxllcorner -5\nyllcorner -5\ncellsize 10\n";
-    folder.write("ramp.asc", format!("{grid}{}", heights.join(" ")));
-    let text = format!("[terrain]\ndem = \"ramp.asc\"\ncrs = \"EPSG:32633\"\n{text}");
+    over_grid("xllcorner -5\nyllcorner -5\ncellsize 10", &heights, text)
+}
+
+/// A scene over 31 × 31 posts whose place is that of `grid`, from `text` after its `dem` and `crs`.
+pub(crate) fn over_grid(grid: &str, heights: &[String], text: &str) -> Result<SceneModel, String> {
+    let folder = Scratch::new();
+    folder.write("grid.asc", format!("ncols 31\nnrows 31\n{grid}\n{}", heights.join(" ")));
+    let text = format!("[terrain]\ndem = \"grid.asc\"\ncrs = \"EPSG:32633\"\n{text}");
     let path = folder.write("scene.toml", &text);
     let document = parse_bytes("scene.toml", text.as_bytes()).map_err(|error| error.to_string())?;
     let assets = Assets::new(&path, &[]).map_err(|error| error.to_string())?;
@@ -320,18 +324,12 @@ fn ramp(text: &str) -> Result<SceneModel, String> {
 
 /// A scene of lakes on a hillside of 90 m posts that rises 7 m in 10 m eastward and rolls northward.
 fn coarse_hillside(lakes: &str) -> SceneModel {
-    let folder = Scratch::new();
     let height = |index: u32| {
         let (column, row) = (f64::from(index % 31), f64::from(index / 31));
         (300.0 + 63.0 * column + 40.0 * libm::sin(row * 0.7)).to_string()
     };
     let heights: Vec<String> = (0..31 * 31).map(height).collect();
-    let grid = "ncols 31\nnrows 31\nxllcorner -45\nyllcorner -45\ncellsize 90\n";
-    folder.write("hillside.asc", format!("{grid}{}", heights.join(" ")));
-    let text = format!("[terrain]\ndem = \"hillside.asc\"\ncrs = \"EPSG:32633\"\n{lakes}");
-    let path = folder.write("scene.toml", &text);
-    let document = parse_bytes("scene.toml", text.as_bytes()).expect("sound");
-    build(&document, &Assets::new(&path, &[]).expect("there"), &|_| ()).expect("sound")
+    over_grid("xllcorner -45\nyllcorner -45\ncellsize 90", &heights, lakes).expect("sound")
 }
 
 #[test]

@@ -8,8 +8,8 @@ use pyo3::exceptions::{PyTypeError, PyUserWarning};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyAnyMethods, PyDict, PyTuple};
 use sandtable::{
-    Crs, Dem, DemOptions, Elevation, HeightSlices, HillshadeOptions, Interpolation, Samples, Sampling,
-    Sector, SightQuery, Status, StopFlag, Surface, ViewshedOptions,
+    Crs, Curvature, Dem, DemOptions, Elevation, HeightSlices, HillshadeOptions, Interpolation, Samples,
+    Sampling, Sector, SightQuery, Status, StopFlag, Surface, ViewshedOptions,
 };
 
 use crate::analysis::analyzed;
@@ -83,6 +83,19 @@ pub fn open_dem(
 }
 
 impl PyDem {
+    /// The line of sight from an observer to a target at heights above the ground, in meters.
+    fn sight_query(
+        &self,
+        [observer, target]: [&Bound<'_, PyAny>; 2],
+        [observer_m, target_m]: [f64; 2],
+        curvature: Curvature,
+        crs: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<SightQuery> {
+        let crs = crs_or(crs, || self.elevation.crs())?;
+        let ends = [end("observer", observer, observer_m, &crs)?, end("target", target, target_m, &crs)?];
+        Ok(SightQuery { ends, crs, curvature })
+    }
+
     /// The samples of an array; `None` of a file.
     pub fn samples(&self) -> Option<&Dem> {
         self.samples.as_ref()
@@ -292,10 +305,8 @@ impl PyDem {
         flat: bool,
         crs: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyLineOfSight> {
-        let crs = crs_or(crs, || self.elevation.crs())?;
-        let ends =
-            [end("observer", observer, observer_height, &crs)?, end("target", target, target_height, &crs)?];
-        let query = SightQuery { ends, crs, curvature: curvature(refraction, flat)? };
+        let above_m = [observer_height, target_height];
+        let query = self.sight_query([observer, target], above_m, curvature(refraction, flat)?, crs)?;
         let report = py.detach(|| self.elevation.line_of_sight(query)).map_err(failed)?;
         Ok(PyLineOfSight::new(&report))
     }
@@ -315,10 +326,8 @@ impl PyDem {
         flat: bool,
         crs: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let crs = crs_or(crs, || self.elevation.crs())?;
-        let ends =
-            [end("observer", observer, observer_height, &crs)?, end("target", target, target_height, &crs)?];
-        let query = SightQuery { ends, crs, curvature: curvature(refraction, flat)? };
+        let above_m = [observer_height, target_height];
+        let query = self.sight_query([observer, target], above_m, curvature(refraction, flat)?, crs)?;
         let chart = py.detach(|| self.elevation.sight_chart(query, String::new())).map_err(failed)?;
         sight_chart(py, &chart)
     }
