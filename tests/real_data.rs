@@ -31,15 +31,18 @@ use glam::DVec2;
 use sandtable_annotate::paint::annotate;
 use sandtable_description::parse::parse_bytes;
 use sandtable_draw::list::{DepthLayer, FeatureId};
+use sandtable_new::{self as new_scene, NewSceneOptions};
 use sandtable_picture::{ViewDraw, build_draw_list, camera};
 use sandtable_render::cpu;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
 use sandtable_scene::feature::FeatureKind;
+use sandtable_scene::scene_file::open_scene;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_sheet::labels::{AnnotatedGround, annotations};
 use sandtable_terrain::triangle_surface::TriangleSurface;
 
+use common::data::data;
 use common::scratch::Scratch;
 
 /// The scene that `text` describes, written to `folder` and reading what lies there and under `allowed`.
@@ -49,6 +52,20 @@ fn scene(folder: &Scratch, text: &str, allowed: &[PathBuf]) -> Result<SceneModel
         parse_bytes(&path.to_string_lossy(), text.as_bytes()).map_err(|report| report.to_string())?;
     let assets = Assets::new(&path, allowed).map_err(|error| error.to_string())?;
     build(&document, &assets, &|_| ()).map_err(|diagnostic| diagnostic.to_string())
+}
+
+/// What `new` writes to `folder` for elevation and vectors among the data of scenes, and the scene of it; `None` without
+/// the data.
+fn first_scene(folder: &Scratch, dem: &str, vectors: &[&str]) -> Option<(String, SceneModel)> {
+    let dem = data(&format!("scenes/{dem}"))?;
+    let vectors: Vec<PathBuf> = vectors.iter().filter_map(|file| data(&format!("scenes/{file}"))).collect();
+    let allowed = vec![dem.parent().expect("in a folder").to_path_buf()];
+    let options =
+        NewSceneOptions { folder: folder.at("scene"), dem: vec![dem], vectors, ..NewSceneOptions::default() };
+    let written = new_scene::write(&options, &|_| ()).unwrap_or_else(|error| panic!("{error}"));
+    let text = std::fs::read_to_string(&written.path).expect("it was written");
+    let scene = open_scene(&written.path, &allowed, &|_| ()).unwrap_or_else(|error| panic!("{error}"));
+    Some((text, scene))
 }
 
 /// What one picture came of.

@@ -9,6 +9,7 @@
 //! relative to the scene file, so that a folder can be moved together with its data. Nothing is copied: the scene reads
 //! data under the parent of DIR as it is; for other data the user must allow the folders of [`WrittenScene::allowed`].
 
+mod buildings;
 mod cameras;
 mod crop;
 pub mod demo;
@@ -175,12 +176,15 @@ fn complete(
     draft.title = title::of_scene(dem, surveyed, &scene);
     for layer in surveyed.iter_mut().flat_map(|vector| &mut vector.layers) {
         layer.is_on_ground = is_on_ground(layer, &scene);
+        let buildings = layer.buildings.as_ref();
+        layer.building_height_m = buildings.and_then(|found| found.likely_height_m(&layer.crs, &scene.crs));
     }
     let (lattice, (low, high)) = (&scene.lattice, scene.height_range_m);
     let size_m = lattice.extent().size().max_element();
     draft.relief_m = f64::from(high - low);
     draft.crs_name = scene.stated_crs.name().to_owned();
     draft.exaggeration = exaggeration(draft.relief_m / size_m);
+    draft.post_m = lattice.measured_cell().max_element();
     draft.contours_m = NiceNumber::at_most(draft.relief_m / CONTOURS).map(|nice| nice.value());
     draft.cameras = cameras(&scene, vectors, draft.exaggeration);
     for camera in &mut draft.cameras {

@@ -86,6 +86,9 @@ pub(super) const LEAST_TITLE_RANK: f64 = 3.0;
 /// What boundaries of districts are called.
 pub(super) const BOUNDARIES: &str = "Boundaries";
 
+/// What the buildings of CityJSON are called, which stand at heights of their own.
+pub(super) const CITY_JSON: &str = "Buildings (CityJSON)";
+
 /// What summits are called.
 pub(super) const PEAKS: &str = "Peaks";
 
@@ -330,7 +333,7 @@ pub(super) static RULES: &[TableRule] = &[
     .named(&["bgt_pand"]),
     rule(
         "building",
-        "Buildings (CityJSON)",
+        CITY_JSON,
         "polygons",
         "type in ('Building', 'BuildingPart', 'BuildingInstallation', 'BuildingConstructiveElement', 'Bridge', \
          'BridgePart', 'BridgeInstallation', 'OtherConstruction') and not has(identificatieBAGPND ?? \

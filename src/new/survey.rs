@@ -13,6 +13,7 @@ use std::sync::Arc;
 use glam::DVec2;
 use serde_json::Value;
 
+use crate::buildings::SurveyedBuildings;
 use crate::rules::{BOUNDARIES, LabelRule, NAMES, PEAKS, RULES, TableRule};
 use sandtable_base::limits::ASSET_BYTES;
 use sandtable_description::expression::Expression;
@@ -51,6 +52,10 @@ pub(super) struct SurveyedLayer {
     pub segments: Vec<[DVec2; 2]>,
     /// Whether any of these segments meets the ground, once that is known.
     pub is_on_ground: bool,
+    /// Its buildings; `None` where it has none.
+    pub buildings: Option<SurveyedBuildings>,
+    /// The likely height of buildings that tell none, meters, once the scene's system is known.
+    pub building_height_m: Option<f64>,
     /// Peaks with names.
     pub peaks: Vec<NamedPlace>,
     /// Parks with names.
@@ -207,6 +212,7 @@ fn survey(layer: Arc<VectorLayer>, name: Option<String>, title: &str) -> Surveye
     let mut taken = vec![false; layer.features.len()];
     // What the scene is about: not what no table takes, nor boundaries and coasts, which lead far away, nor distant names.
     let mut around = vec![false; layer.features.len()];
+    let mut built = vec![false; layer.features.len()];
     let mut peaks = Vec::new();
     let mut matches = Vec::new();
     let mut places = Vec::new();
@@ -224,6 +230,9 @@ fn survey(layer: Arc<VectorLayer>, name: Option<String>, title: &str) -> Surveye
         if let Some(label) = rule.label.as_ref().filter(|_| rule.what == PEAKS) {
             peaks.extend(indices.iter().filter_map(|&index| named_place(&layer, index, label)));
         }
+        if rule.table == "building" {
+            indices.iter().for_each(|&index| built[index] = true);
+        }
         let leads_away = rule.what == BOUNDARIES || rule.table == "coast";
         if !leads_away && rule.label.is_none() {
             indices.iter().for_each(|&index| around[index] = true);
@@ -235,6 +244,9 @@ fn survey(layer: Arc<VectorLayer>, name: Option<String>, title: &str) -> Surveye
     }
     if let (true, Some(found)) = (matches.is_empty(), match_by_name(&layer, title)) {
         taken = layer.features.iter().map(|feature| fits(found.rule, &feature.geometry)).collect();
+        if found.rule.table == "building" {
+            built.clone_from(&taken);
+        }
         matches.push(found);
     }
     let left = layer.features.iter().zip(&taken).filter(|(_, taken)| !**taken).map(|(feature, _)| feature);
@@ -246,6 +258,8 @@ fn survey(layer: Arc<VectorLayer>, name: Option<String>, title: &str) -> Surveye
     let segments = segments(&shown.map(|(_, feature)| &feature.geometry).collect::<Vec<_>>());
     let (parks, names) = (parks(&layer), names(&layer));
     let only_area = only_area(&layer).filter(|_| matches.is_empty());
+    let built = || layer.features.iter().zip(&built).filter(|(_, built)| **built).map(|(feature, _)| feature);
+    let buildings = built().next().map(|_| SurveyedBuildings::new(built()));
     let districts = districts(&layer);
     let coast = coast(&layer);
     let has_fclass = layer.features.iter().any(|feature| feature.properties.contains_key("fclass"));
@@ -261,6 +275,8 @@ fn survey(layer: Arc<VectorLayer>, name: Option<String>, title: &str) -> Surveye
         crs,
         segments,
         is_on_ground: false,
+        buildings,
+        building_height_m: None,
         peaks,
         parks,
         only_area,

@@ -5,6 +5,7 @@ use std::ptr;
 
 use serde_json::Value;
 
+use crate::buildings;
 use crate::cameras::CameraDraft;
 use crate::crop::ExtentDraft;
 use crate::overlays::{self, OverlayDraft};
@@ -31,6 +32,8 @@ pub(super) struct SceneDraft {
     pub relief_m: f64,
     /// 0 where none is stated.
     pub exaggeration: f64,
+    /// Between measured posts.
+    pub post_m: f64,
     pub contours_m: Option<f64>,
     pub cameras: Vec<CameraDraft>,
     /// Whether a coast runs through ground that holds the depths of the sea.
@@ -65,7 +68,7 @@ pub(super) fn scene(draft: &SceneDraft, vectors: &[VectorDraft], overlays: &[Ove
     for rule in RULES {
         for &source in &sources {
             for found in source.layer.matches.iter().filter(|found| ptr::eq(found.rule, rule)) {
-                table(&mut out, source, found);
+                table(&mut out, source, found, draft.post_m);
             }
         }
     }
@@ -154,7 +157,7 @@ fn style(draft: &SceneDraft) -> String {
     out
 }
 
-fn table(out: &mut String, source: LayerSource<'_>, found: &TableMatch) {
+fn table(out: &mut String, source: LayerSource<'_>, found: &TableMatch, post_m: f64) {
     let (rule, count) = (found.rule, found.count);
     let stated = |expression: &str| rules::of_layer(expression, source.layer.has_fclass);
     let _ = writeln!(out, "\n# {} ({count}).\n[[{}]]\nfile = {}", rule.what, rule.table, quoted(source.file));
@@ -170,6 +173,9 @@ fn table(out: &mut String, source: LayerSource<'_>, found: &TableMatch) {
     }
     for key in rule.keys {
         let _ = writeln!(out, "{}", stated(key));
+    }
+    if rule.table == "building" {
+        out.push_str(&buildings::keys(rule, post_m, source.layer.building_height_m));
     }
 }
 

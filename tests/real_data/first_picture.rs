@@ -1,17 +1,13 @@
 //! The first picture of real places: what `new` writes and `render` draws with nothing changed by hand.
 
-use std::path::PathBuf;
-
 use sandtable_draw::color::{Srgba, luminance};
 use sandtable_draw::pixels::Pixels;
-use sandtable_new::{self as new_scene, NewSceneOptions};
 use sandtable_render::RenderBackend;
-use sandtable_scene::scene_file::open_scene;
 use sandtable_sheet::picture::{PictureSize, annotate_view, draw_view};
 use sandtable_sheet::picture_statistics::PictureStatistics;
 
-use crate::common::data::data;
 use crate::common::scratch::Scratch;
+use crate::first_scene;
 
 /// A place.
 struct Place {
@@ -51,19 +47,8 @@ const CONTRAST: f32 = 4.5;
 #[ignore = "slow: first pictures of all real places"]
 fn the_first_picture_of_a_place_is_filled_and_its_relief_is_clear() {
     for place in &PLACES {
-        let Some(dem) = data(&format!("scenes/{}", place.dem)) else { return };
-        let vectors: Vec<PathBuf> =
-            place.vectors.iter().filter_map(|file| data(&format!("scenes/{file}"))).collect();
         let folder = Scratch::new();
-        let allowed = vec![dem.parent().expect("in a folder").to_path_buf()];
-        let options = NewSceneOptions {
-            folder: folder.at("scene"),
-            dem: vec![dem],
-            vectors,
-            ..NewSceneOptions::default()
-        };
-        let written = new_scene::write(&options, &|_| ()).unwrap_or_else(|error| panic!("{error}"));
-        let scene = open_scene(&written.path, &allowed, &|_| ()).unwrap_or_else(|error| panic!("{error}"));
+        let Some((_, scene)) = first_scene(&folder, place.dem, place.vectors) else { return };
         let view = scene.view(Some("overview")).expect("the first camera");
         let size = PictureSize { width: 960, height: 540 };
         let drawn = draw_view(&scene, view, size, RenderBackend::Cpu, &|_| ()).expect("sound");

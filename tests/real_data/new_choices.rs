@@ -1,7 +1,5 @@
 //! What `new` chooses for real places: the title, the direction and the frame of the first picture, and what is drawn.
 
-use std::path::PathBuf;
-
 use glam::DVec2;
 use sandtable_new::{self as new_scene, NewSceneOptions};
 use sandtable_picture::camera;
@@ -15,6 +13,7 @@ use sandtable_vector::read;
 
 use crate::common::data::data;
 use crate::common::scratch::Scratch;
+use crate::first_scene;
 
 /// A place and what is wanted of its first picture.
 struct Choices {
@@ -33,7 +32,7 @@ const PLACES: [Choices; 5] = [
         vectors: &["monaco/monaco.osm.gz"],
         title: "Monaco",
         filled: 0.6,
-        holds: &["[[coast]]", "[[building]]", "# The boldest relief among the features"],
+        holds: &["[[coast]]", "base = \"mean\"", "height = 15", "# The boldest relief among the features"],
     },
     // The model is a strip aslant in its box: seen whole it fills no more from any direction near north.
     Choices {
@@ -76,23 +75,11 @@ const LEAST_NORTH: f32 = 0.7;
 #[test]
 fn a_new_scene_looks_north_fills_its_picture_and_is_named_after_its_place() {
     for place in &PLACES {
-        let Some(dem) = data(&format!("scenes/{}", place.dem)) else { return };
-        let vectors: Vec<PathBuf> =
-            place.vectors.iter().filter_map(|file| data(&format!("scenes/{file}"))).collect();
         let folder = Scratch::new();
-        let allowed = vec![dem.parent().expect("in a folder").to_path_buf()];
-        let options = NewSceneOptions {
-            folder: folder.at("scene"),
-            dem: vec![dem],
-            vectors,
-            ..NewSceneOptions::default()
-        };
-        let written = new_scene::write(&options, &|_| ()).unwrap_or_else(|error| panic!("{error}"));
-        let text = std::fs::read_to_string(&written.path).expect("it was written");
+        let Some((text, scene)) = first_scene(&folder, place.dem, place.vectors) else { return };
         for line in place.holds {
             assert!(text.contains(line), "{}: {line} in\n{text}", place.dem);
         }
-        let scene = open_scene(&written.path, &allowed, &|_| ()).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(scene.title.as_deref(), Some(place.title), "{}", place.dem);
         let view = scene.view(Some("overview")).expect("the first camera");
         let north = camera(&scene, view, (320, 200)).expect("sound").forward().truncate();
