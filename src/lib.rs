@@ -86,6 +86,7 @@ pub use sandtable_raster::answer::{Answer, Status};
 pub use sandtable_raster::raster::Samples;
 pub use sandtable_remote::access::RemoteAccess;
 pub use sandtable_remote::address::AllowedHost;
+pub use sandtable_sheet::step_watch::StepWatch;
 pub use sandtable_terrain::hillshade::HillshadeOptions;
 pub use sandtable_terrain::profile::{ProfileStation, ProfileSummary, Sampling};
 pub use sandtable_terrain::query::batch::HeightSlices;

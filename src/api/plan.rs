@@ -8,6 +8,7 @@ use sandtable_shards::gather::{PlanProgress, gather};
 use sandtable_shards::plan::ShardPlan;
 use sandtable_shards::record::ShardState;
 use sandtable_shards::work::{ShardWorker, is_done};
+use sandtable_terrain::stop_flag::StopFlag;
 
 /// A plan that the command `plan` wrote, in the format of `src/shards/SHARDS.md`. Its shards may be done from many threads,
 /// programs and machines, in any order.
@@ -84,8 +85,9 @@ impl WorkPlan {
     /// # Errors
     /// [`Error::Plan`].
     pub fn gather(&self, out: Option<&Path>) -> Result<GatheredPlan, Error> {
-        let progress = PlanProgress::read(&self.plan);
-        let output = gather(&self.plan, &progress, out)?.files;
+        let watch = StopFlag::default();
+        let progress = PlanProgress::read(&self.plan, &watch);
+        let output = gather(&self.plan, &progress, out, &watch)?.files;
         let (missing, stale) = (progress.with(ShardState::Missing), progress.with(ShardState::Stale));
         Ok(GatheredPlan { done: progress.with(ShardState::Done).len(), missing, stale, output })
     }

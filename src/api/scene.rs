@@ -14,7 +14,8 @@ use sandtable_render::RenderBackend;
 use sandtable_scene as scene;
 use sandtable_scene::scene_file::build_scene;
 use sandtable_scene::scene_origin::SceneOrigin;
-use sandtable_sheet::picture::{PictureSize, render_view};
+use sandtable_sheet::picture::{PictureSize, annotate_view, draw_view_counted};
+use sandtable_sheet::step_watch::StepWatch;
 use sandtable_terrain::query::service::HeightService;
 
 /// A digital terrain model: the ground, the features on it and the views of it that its file describes.
@@ -171,8 +172,27 @@ impl Scene {
     /// # Errors
     /// [`Error::Picture`].
     pub fn render(&self, view: &View) -> Result<Picture, Error> {
-        let rendered = render_view(&self.model, &view.view, view.size, RenderBackend::Cpu, &|_| ())?;
-        Ok(Picture { pixels: rendered.pixels })
+        self.render_watched(view, &StepWatch::default())
+    }
+
+    /// [`Self::render`], which says how far it is.
+    ///
+    /// # Errors
+    /// [`Error::Picture`].
+    ///
+    /// ```
+    /// use sandtable::{Scene, StepWatch};
+    /// let (scene, watch) = (Scene::open("scenes/road.toml")?, StepWatch::default());
+    /// // Another thread reads `watch.step()` and `watch.share()` meanwhile.
+    /// scene.render_watched(&scene.view("front")?.with_size(64, 36), &watch)?;
+    /// assert_eq!(watch.step(), "annotating");
+    /// # Ok::<(), sandtable::Error>(())
+    /// ```
+    pub fn render_watched(&self, view: &View, watch: &StepWatch) -> Result<Picture, Error> {
+        let (model, progress) = (&self.model, |step| watch.begin(step));
+        let drawn =
+            draw_view_counted(model, &view.view, view.size, RenderBackend::Cpu, &progress, watch.drawn())?;
+        Ok(Picture { pixels: annotate_view(model, drawn, &progress).pixels })
     }
 }
 

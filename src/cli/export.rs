@@ -118,7 +118,7 @@ fn run_scene(arguments: &ExportArguments, format: ExportFormat) -> Result<(), Cl
     let progress = |step| steps.begin(step);
     let scene = open_scene_true_to_scale(&scene.scene, &scene.access.allow, &progress)?;
     let max_error_m = arguments.max_error.unwrap_or(DEFAULT_MAX_ERROR_M);
-    let exported = export(&scene, out, format, max_error_m, &progress)?;
+    let exported = export(&scene, out, format, max_error_m, &progress, steps.step_watch().counted())?;
     steps.finish();
     let facts = [
         row(10, "objects", exported.list.items.len()),
@@ -147,8 +147,8 @@ fn run_page(arguments: &ExportArguments) -> Result<(), CliError> {
     let (scene, out) = (&arguments.scene, &arguments.output);
     let steps = StepTimer::default();
     let progress = |step| steps.begin(step);
-    let mut scene = open_scene(&scene.scene, &scene.access.allow, &progress)?;
-    let page = export_page(&mut scene, out, arguments.max_error, &progress)?;
+    let scene = open_scene(&scene.scene, &scene.access.allow, &progress)?;
+    let page = export_page(&scene, out, arguments.max_error, &progress, steps.step_watch().counted())?;
     steps.finish();
     let facts = [
         row(10, "size", format!("{:.1} MB", page.bytes as f64 / 1e6)),

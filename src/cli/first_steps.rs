@@ -82,12 +82,25 @@ fn commands(found: &FoundFiles) -> Vec<(String, &'static str)> {
     commands
 }
 
-/// Refuses an elevation file or a vector file where a scene file is wanted, with the command that makes one of it.
+/// Refuses an elevation file or a vector file where a scene file is wanted, with the command that makes one of it, and a folder
+/// with the scene in it.
 ///
 /// # Errors
 /// By its name the file is no scene.
 pub fn check_scene(command: &Command) -> Result<(), CliError> {
-    let Some(path) = command.scene().filter(|path| path.is_file()) else { return Ok(()) };
+    let Some(path) = command.scene() else { return Ok(()) };
+    if path.is_dir() {
+        return Err(CliError::Input {
+            error: format!("{}: this is a folder, not a scene file", path.display()).into(),
+            hint: Some(match found_in(path).scenes.first() {
+                Some(scene) => format!("it has a scene:\n  {}", shell(scene)),
+                None => format!("there is no scene in it:\n  sandtable new {} --dem DEM.tif", shell(path)),
+            }),
+        });
+    }
+    if !path.is_file() {
+        return Ok(());
+    }
     let (what, option) = match kind_of_name(path) {
         None => return Ok(()),
         Some(FoundKind::Elevation) => ("an elevation file", format!("--dem {}", shell(path))),

@@ -37,9 +37,9 @@ pub fn run(arguments: &GatherArguments) -> Result<(), CliError> {
     let plan = ShardPlan::open(&arguments.plan)?;
     let steps = StepTimer::default();
     steps.begin("checking the shards");
-    let progress = PlanProgress::read(&plan);
+    let progress = PlanProgress::read(&plan, steps.step_watch().counted());
     steps.begin("joining the shards");
-    let gathered = gather(&plan, &progress, arguments.output.as_deref())?;
+    let gathered = gather(&plan, &progress, arguments.output.as_deref(), steps.step_watch().counted())?;
     steps.finish();
     if let Some(GatheredOutcome { outcome, .. }) = &gathered.outcome {
         outcome.notes.iter().for_each(|note| warn(&format!("note: {note}")));

@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! ⠹ analyzing 37 %, 24 s left [14s]
+//! ⠹ drawing 40 %, 9 s left [8s]                       rows of a picture
 //! ⠹ drawing, all 40 %, 3 min left [6s]                a step, and what is left of all pictures
 //! ███████░░░░░░░ shard 37 of 100, 24 s left [14s]
 //! ```
@@ -17,13 +18,14 @@
 
 use std::env;
 use std::fmt::Write;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use crate::output::{is_quiet, warn};
+use sandtable_sheet::step_watch::StepWatch;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// What is left is estimated after this time, and this share: before, it is a guess.
@@ -46,6 +48,7 @@ const LOOK_AGAIN: Duration = Duration::from_millis(200);
 pub struct StepTimer {
     bar: ProgressBar,
     starts: Mutex<Vec<(&'static str, Instant)>>,
+    watch: Arc<StepWatch>,
     /// The work that the steps are part of, where that has others.
     series: Option<Series>,
     /// Whether steps and shares are lines of standard error.
@@ -69,9 +72,9 @@ pub struct Series {
 impl Series {
     /// A series that begins now; `what` names it in lines of progress.
     pub fn begin(what: &'static str) -> Self {
-        let flag = Arc::default();
+        let flag = Arc::<StopFlag>::default();
         if is_lines() {
-            write_shares(what, &flag);
+            write_shares(Arc::downgrade(&flag), move |flag| Some((what, flag.share()?)));
         }
         Self { since: Instant::now(), flag }
     }
@@ -147,16 +150,23 @@ fn shown(bar: ProgressBar) -> ProgressBar {
     bar
 }
 
-/// The step, how far the series is, and the time of all steps.
-fn step_style(series: Option<&Series>) -> ProgressStyle {
-    let style = ProgressStyle::with_template("{spinner} {msg}{series} [{elapsed}]");
+/// The step, how far it is, how far the series is, and the time of all steps.
+fn step_style(series: Option<&Series>, watch: &Arc<StepWatch>) -> ProgressStyle {
+    let style = ProgressStyle::with_template("{spinner} {msg}{step}{series} [{elapsed}]");
     let series = series.cloned();
+    let (watch, since, is_one) = (Arc::clone(watch), Instant::now(), series.is_none());
+    let of_step = move |_: &ProgressState, out: &mut dyn Write| {
+        // Of several pictures it is the time of all that is of interest.
+        let share = watch.share().filter(|_| is_one);
+        let _ = out.write_str(&share.map(|share| share_text(since.elapsed(), share)).unwrap_or_default());
+    };
     let share = move |_: &ProgressState, out: &mut dyn Write| {
         let share = series.as_ref().and_then(|series| Some((series.since.elapsed(), series.flag.share()?)));
         let text = share.map(|(elapsed, share)| format!(", all{}", share_text(elapsed, share)));
         let _ = out.write_str(&text.unwrap_or_default());
     };
-    style.unwrap_or_else(|_| ProgressStyle::default_spinner()).with_key("series", share)
+    let style = style.unwrap_or_else(|_| ProgressStyle::default_spinner());
+    style.with_key("series", share).with_key("step", of_step)
 }
 
 impl StepTimer {
@@ -168,8 +178,17 @@ impl StepTimer {
     fn new(series: Option<Series>) -> Self {
         let bar = shown(ProgressBar::new_spinner());
         bar.enable_steady_tick(Duration::from_millis(100));
-        let bar = bar.with_style(step_style(series.as_ref()));
-        Self { bar, starts: Mutex::default(), series, is_lines: is_lines() }
+        let watch = Arc::new(StepWatch::default());
+        let bar = bar.with_style(step_style(series.as_ref(), &watch));
+        if is_lines() && series.is_none() {
+            write_shares(Arc::downgrade(&watch), |watch: &StepWatch| Some((watch.step(), watch.share()?)));
+        }
+        Self { bar, starts: Mutex::default(), watch, series, is_lines: is_lines() }
+    }
+
+    /// Where steps say how far they are.
+    pub fn step_watch(&self) -> &StepWatch {
+        &self.watch
     }
 
     /// The series that the steps are part of.
@@ -180,8 +199,8 @@ impl StepTimer {
     /// Shows beside the current step the share that `flag` states, and the time that is left.
     pub fn watch(&self, flag: Arc<StopFlag>) {
         if self.is_lines {
-            let step = self.starts.lock().unwrap_or_else(PoisonError::into_inner).last().map(|start| start.0);
-            write_shares(step.unwrap_or_default(), &flag);
+            let step = self.watch.step();
+            write_shares(Arc::downgrade(&flag), move |flag| Some((step, flag.share()?)));
         }
         let since = Instant::now();
         let share = move |_: &ProgressState, out: &mut dyn Write| {
@@ -198,7 +217,8 @@ impl StepTimer {
         if self.is_lines {
             warn(&format!("progress: {step}"));
         }
-        self.bar.set_style(step_style(self.series.as_ref()));
+        self.watch.begin(step);
+        self.bar.set_style(step_style(self.series.as_ref(), &self.watch));
         self.bar.set_message(step);
         self.starts.lock().unwrap_or_else(PoisonError::into_inner).push((step, Instant::now()));
     }
@@ -221,18 +241,20 @@ impl StepTimer {
     }
 }
 
-/// Writes each percent of a step as a line, on a thread that ends when nobody else holds the flag.
-fn write_shares(step: &'static str, flag: &Arc<StopFlag>) {
-    let flag = Arc::downgrade(flag);
+/// Writes each percent of a step as a line, on a thread that ends when nobody else holds what counts the share.
+fn write_shares<T: Send + Sync + 'static>(
+    counted: Weak<T>,
+    of_step: impl Fn(&T) -> Option<(&'static str, f64)> + Send + 'static,
+) {
     thread::spawn(move || {
         let mut last = None;
-        while let Some(flag) = flag.upgrade() {
-            let percent = flag.share().map(|share| (share * 100.0).floor() as u8);
-            if let Some(percent) = percent.filter(|_| percent != last) {
+        while let Some(counted) = counted.upgrade() {
+            let now = of_step(&counted).map(|(step, share)| (step, (share * 100.0).floor() as u8));
+            if let Some((step, percent)) = now.filter(|_| now != last) {
                 warn(&format!("progress: {step} {percent} %"));
-                last = Some(percent);
+                last = now;
             }
-            drop(flag);
+            drop(counted);
             thread::sleep(LOOK_AGAIN);
         }
     });

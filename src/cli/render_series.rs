@@ -23,7 +23,9 @@ use sandtable_scene::planned_pictures::{ElevationNeed, NearGround, PlannedCamera
 use sandtable_scene::scene_file::{open_scene_for, phases};
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::scene_view::{SceneView, ViewAim};
-use sandtable_sheet::picture::{ComposedView, DrawnView, PictureError, PictureSize, compose_view, draw_view};
+use sandtable_sheet::picture::{
+    ComposedView, DrawnView, PictureError, PictureSize, compose_view, draw_view_counted,
+};
 use sandtable_sheet::picture_buffers::PictureBuffers;
 use sandtable_sheet::picture_statistics::PictureStatistics;
 use sandtable_sheet::sheet_file::{picture_description, write_sheet};
@@ -224,7 +226,14 @@ impl RenderSeries<'_> {
                 self.leave_out("camera", &view.name, PictureError::PanoramaPixels.into(), views.len())?;
                 continue;
             }
-            match draw_view(&scene, view, size, self.backend, &|step| steps.begin(step)) {
+            match draw_view_counted(
+                &scene,
+                view,
+                size,
+                self.backend,
+                &|step| steps.begin(step),
+                steps.step_watch().drawn(),
+            ) {
                 Ok(drawn) => {
                     let target = PictureTarget { path, small, fingerprint: fingerprint.as_deref() };
                     pictures.push(self.picture(&scene, view, drawn, target)?);

@@ -8,18 +8,25 @@ use crate::inlay::cut_out;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh};
 use sandtable_draw::material::{Albedo, AlphaMode, NormalSource};
+use sandtable_terrain::stop_flag::StopFlag;
 
 /// The height above the ground, in meters, of translucent drapes: they cannot replace the ground, and in its plane they
 /// would flicker. Arbitrary, but too small to see.
 const LIFT_M: f32 = 0.05;
 
 /// The draw list of the same picture with a texture in place of the ground map, a ground that is cut out under opaque
-/// drapes, and normals at every vertex. Items without triangles are dropped.
-pub fn prepare(mut list: DrawList) -> DrawList {
+/// drapes, and normals at every vertex. Items without triangles are dropped. `watch` says how many items are ready.
+pub fn prepare(mut list: DrawList, watch: &StopFlag) -> DrawList {
     let baked = list.ground.as_deref().map(bake);
     let meshes: Vec<Option<DrawMesh>> = {
         let drapes = opaque_drapes(&list);
-        list.items.par_iter().map(|item| prepared_mesh(&list, item, baked.as_ref(), &drapes)).collect()
+        watch.stretch(0.0..1.0, list.items.len());
+        let prepared = |item: &DrawItem| {
+            let mesh = prepared_mesh(&list, item, baked.as_ref(), &drapes);
+            watch.did(1);
+            mesh
+        };
+        list.items.par_iter().map(prepared).collect()
     };
     if let Some(baked) = baked {
         let texture = Some(list.add_texture(baked.pixels));
@@ -159,7 +166,7 @@ mod tests {
 
     #[test]
     fn the_ground_is_cut_out_under_a_road_and_keeps_its_map_and_its_slope() {
-        let ready = prepare(list(AlphaMode::Opaque));
+        let ready = prepare(list(AlphaMode::Opaque), &StopFlag::default());
         assert!((area(&ready, 0) - 384.0).abs() < 1e-2, "{}", area(&ready, 0));
         assert_eq!(ready.materials[0].albedo, Albedo::Surface);
         assert!(ready.materials[0].texture.is_some() && ready.check().is_ok());
@@ -173,7 +180,7 @@ mod tests {
 
     #[test]
     fn translucent_drapes_lie_a_little_above_the_ground() {
-        let ready = prepare(list(AlphaMode::Blend));
+        let ready = prepare(list(AlphaMode::Blend), &StopFlag::default());
         assert!((area(&ready, 0) - 400.0).abs() < 1e-2);
         let road = &ready.meshes[ready.items[1].mesh.0 as usize];
         assert!((road.vertices[0].position[2] - (2.5 + LIFT_M)).abs() < 1e-5);

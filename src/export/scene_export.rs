@@ -9,6 +9,7 @@ use sandtable_files::output_files::OutputFiles;
 use sandtable_mesh::write::remarks::Remarks;
 use sandtable_picture as picture;
 use sandtable_scene::scene_model::SceneModel;
+use sandtable_terrain::stop_flag::StopFlag;
 
 /// The largest error of exported ground in meters, where none is stated.
 pub const DEFAULT_MAX_ERROR_M: f64 = 1.0;
@@ -46,7 +47,7 @@ pub struct ExportedScene {
 }
 
 /// Exports a scene that was opened true to scale to `path`. The ground is off by at most `max_error_m` at every post.
-/// `progress` is called with the name of each step as it begins.
+/// `progress` is called with the name of each step as it begins, and `watch` says how far the longest is.
 ///
 /// # Errors
 /// A file cannot be written, or would replace one that the scene is made of.
@@ -56,13 +57,14 @@ pub fn export(
     format: ExportFormat,
     max_error_m: f64,
     progress: &dyn Fn(&'static str),
+    watch: &StopFlag,
 ) -> Result<ExportedScene, WriteFileError> {
     disk::check_output(path, &scene.files)?;
     progress("refining terrain");
     let displayed = scene.ground().displayed_within(max_error_m as f32);
     let (list, _) = picture::draw_list(scene, &displayed, progress);
     progress("removing covered ground");
-    let list = prepare::prepare(list);
+    let list = prepare::prepare(list, watch);
     progress("writing");
     let remarks = remarks(scene, max_error_m);
     let name_of = |feature| scene.feature_name(feature);

@@ -16,11 +16,11 @@ use sandtable_picture::all_round::{AllRoundScene, all_round};
 use sandtable_picture::camera;
 use sandtable_picture::placed_text::PlacedText;
 use sandtable_roam::displayed::DisplayedTerrain;
-use sandtable_scene::flights::SceneFlight;
 use sandtable_scene::plinth::base_z;
 use sandtable_scene::scene_label::SceneLabel;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::scene_view::SceneView;
+use sandtable_terrain::stop_flag::StopFlag;
 use sandtable_view::camera::{CameraError, ViewProjection};
 
 /// The error of the drawn ground where none is stated: the first of these, in meters, that needs no more triangles than
@@ -63,20 +63,22 @@ pub enum ExportPageError {
 }
 
 /// Exports a scene as a page to `path`. The ground is off by at most `max_error_m` at every post; without it by as little
-/// as a page of a usual size allows. `progress` is called with the name of each step as it begins.
+/// as a page of a usual size allows. `progress` is called with the name of each step as it begins, and `watch` says how much of
+/// the page is packed.
 ///
 /// The light is that of the first view.
 ///
 /// # Errors
 /// See [`ExportPageError`].
 pub fn export_page(
-    scene: &mut SceneModel,
+    scene: &SceneModel,
     path: &Path,
     max_error_m: Option<f64>,
     progress: &dyn Fn(&'static str),
+    watch: &StopFlag,
 ) -> Result<ExportedPage, ExportPageError> {
     disk::check_output(path, &scene.files)?;
-    let (bytes, exported) = page_bytes(scene, max_error_m, progress)?;
+    let (bytes, exported) = page_bytes(scene, max_error_m, progress, watch)?;
     disk::write(path, &bytes)?;
     Ok(exported)
 }
@@ -86,18 +88,19 @@ pub fn export_page(
 /// # Errors
 /// See [`ExportPageError`].
 pub fn page_bytes(
-    scene: &mut SceneModel,
+    scene: &SceneModel,
     max_error_m: Option<f64>,
     progress: &dyn Fn(&'static str),
+    watch: &StopFlag,
 ) -> Result<(Vec<u8>, ExportedPage), ExportPageError> {
     let first = camera(scene, &scene.cameras[0], VIEW_SIZE)?;
-    SceneFlight::hold_light(scene, &first);
+    let to_sun = scene.sunlight.to_sun(Some(&first));
     progress("refining terrain");
     let (displayed, max_error_m) = displayed(scene, max_error_m);
-    let all = all_round(scene, &displayed, progress)?;
+    let all = all_round(scene, &displayed, to_sun, progress)?;
     progress("writing");
     let facts = facts(scene, &all, max_error_m)?;
-    let bytes = page(&PageScene { drawn: &all, lattice: &scene.lattice, facts: &facts })?;
+    let bytes = page(&PageScene { drawn: &all, lattice: &scene.lattice, facts: &facts }, watch)?;
     let ground_triangles = all.list.items.first().map_or(0, |ground| ground.triangles.len());
     let exported = ExportedPage { bytes: bytes.len(), ground_triangles, max_error_m };
     Ok((bytes, exported))

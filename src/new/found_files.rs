@@ -1,7 +1,7 @@
 //! The files of a folder that a first scene can use, by their names.
 //!
 //! The look is bounded: at most [`MOST_NAMES`] names of the folder itself are read, no file but the start of those that
-//! may be scenes is opened, and subfolders are left out.
+//! may be scenes is opened, and of subfolders only `scene.toml` is looked for, which `new` and `demo` write there.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,6 +14,9 @@ pub const MOST_NAMES: usize = 2000;
 
 /// The most files that are opened to see whether they are scenes.
 const MOST_OPENED: usize = 50;
+
+/// The name of a scene file in a folder of its own.
+pub const SCENE_NAME: &str = "scene.toml";
 
 /// A scene names its terrain near its start; a comment before it is shorter than this.
 const HEAD_BYTES: u64 = 64 << 10;
@@ -34,7 +37,7 @@ pub enum FoundKind {
 /// The files of a folder that are of use, sorted by name.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FoundFiles {
-    /// Scene files.
+    /// Scene files, also those of subfolders.
     pub scenes: Vec<PathBuf>,
     /// Files of elevation.
     pub elevation: Vec<PathBuf>,
@@ -78,6 +81,13 @@ pub fn found_in(folder: &Path) -> FoundFiles {
                     found.scenes.push(path);
                 }
             }
+            None if !is_toml && opened < MOST_OPENED && path.is_dir() => {
+                opened += 1;
+                let own = path.join(SCENE_NAME);
+                if own.is_file() && has_terrain(&own) {
+                    found.scenes.push(own);
+                }
+            }
             None => {}
         }
     }
@@ -104,6 +114,9 @@ mod tests {
         assert!(data.elevation.contains(&root.join("assets/jacksboro/dem.tif")), "{data:?}");
         assert!(data.vectors.contains(&root.join("assets/jacksboro/roads.geojson")), "{data:?}");
         assert!(data.scenes.is_empty(), "{data:?}");
+        // Those that have a folder of their own.
+        let books = found_in(&root.join("src/book"));
+        assert_eq!(books.scenes, Vec::<PathBuf>::new(), "{books:?}");
         // Manifests are TOML as well.
         assert_eq!(found_in(root).scenes, Vec::<PathBuf>::new());
         assert_eq!(found_in(&root.join("nowhere")), FoundFiles::default());

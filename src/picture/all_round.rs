@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 use std::f32::consts::FRAC_PI_2;
 
-use glam::Mat4;
+use glam::{Mat4, Vec3};
 use rayon::prelude::*;
 
 use crate::detail::{ListedForm, Viewer};
@@ -79,18 +79,18 @@ pub enum ItemShown {
     Form(u32),
 }
 
-/// The draw list of a scene for all points of view, its terrain shown as `displayed`, with all models in all their
-/// forms. `progress` is called with the name of each step as it begins.
+/// The draw list of a scene for all points of view, its terrain shown as `displayed` and lit from `to_sun`, a unit vector, with
+/// all models in all their forms. `progress` is called with the name of each step as it begins.
 ///
 /// # Errors
 /// The scene cannot be seen from above.
 pub fn all_round(
     scene: &SceneModel,
     displayed: &DisplayedTerrain,
+    to_sun: Vec3,
     progress: &dyn Fn(&'static str),
 ) -> Result<AllRoundScene, CameraError> {
     let overview = overview(scene, 1)?;
-    let to_sun = scene.sunlight.to_sun(Some(&overview));
     let map = scene.map(GroundMapKey { level: 0, to_sun }, || progress("lighting terrain"));
     let lighting = Lighting { to_sun, ..Lighting::default() };
     let mut list = DrawList { ground: Some(map), lighting, ..DrawList::default() };

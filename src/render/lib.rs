@@ -5,6 +5,7 @@
 //! shadows from the same maps.
 
 pub mod cpu;
+pub mod drawn_rows;
 pub mod mip_levels;
 pub mod picture;
 pub mod shadow;
@@ -12,6 +13,7 @@ pub mod shadow;
 use std::error::Error;
 
 use crate::cpu::{CpuRenderError, RenderQuality};
+use crate::drawn_rows::DrawnRows;
 use crate::picture::Rendering;
 use sandtable_draw::list::DrawList;
 use sandtable_view::camera::Camera;
@@ -53,8 +55,22 @@ pub fn render(
     backend: RenderBackend,
     progress: &dyn Fn(&'static str),
 ) -> Result<Rendering, RenderError> {
+    render_counted(list, camera, backend, progress, &DrawnRows::default())
+}
+
+/// [`render`]; the processor counts in `drawn` the rows that it has drawn.
+///
+/// # Errors
+/// See [`RenderError`].
+pub fn render_counted(
+    list: &DrawList,
+    camera: &Camera,
+    backend: RenderBackend,
+    progress: &dyn Fn(&'static str),
+    drawn: &DrawnRows,
+) -> Result<Rendering, RenderError> {
     match backend {
-        RenderBackend::Cpu => Ok(cpu::render(list, camera, &RenderQuality::default())?),
+        RenderBackend::Cpu => Ok(cpu::render_counted(list, camera, &RenderQuality::default(), drawn)?),
         RenderBackend::Gpu(render) => render(list, camera, progress).map_err(RenderError::Gpu),
     }
 }

@@ -12,6 +12,7 @@ use std::cell::RefCell;
 use glam::DVec2;
 
 use crate::assets::{AssetError, Assets};
+use crate::given_tile::given_tile;
 use crate::overridden_crs::OverriddenCrs;
 use crate::planned_pictures::ElevationNeed;
 use crate::reduced_elevation::{ReducedElevation, reduced_as_needed};
@@ -384,7 +385,7 @@ impl TileList {
             let options = file.options(&own);
             let hints = DemHints { options, overridden: &note, companions: &|name| companions.get(name) };
             let tile = match assets.given().raster(name) {
-                Some(raster) => Ok(given_tile(raster, &hints)),
+                Some(raster) => Ok(given_tile(name, raster, &hints, document)?),
                 None => {
                     let bytes = assets.read(name).map_err(|error| document.error(dem, error))?;
                     read::read(name, &bytes, &hints)
@@ -469,16 +470,6 @@ fn open_windows(
         (_, windows) => windows,
     };
     Ok(windows.map(|windows| raised(windows, *offset_m)))
-}
-
-/// Elevation in memory, in the system that the document states, where it states one.
-fn given_tile(raster: &Raster, hints: &DemHints<'_>) -> Raster {
-    let mut tile = raster.clone();
-    if let Some(stated) = &hints.options.crs {
-        tile.crs.iter().for_each(|own| (hints.overridden)(own));
-        tile.crs = Some(stated.clone());
-    }
-    tile
 }
 
 /// Windows with `meters` added to their heights.

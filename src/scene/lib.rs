@@ -42,6 +42,7 @@ mod font;
 pub mod footprint;
 pub mod framing;
 pub mod given_data;
+mod given_tile;
 pub mod graphics;
 pub mod ground;
 pub mod ground_map;

@@ -301,6 +301,7 @@ impl<'a> Sources<'a> {
             return Ok(Arc::clone(layer));
         }
         if let Some(given) = self.assets.given().layer(file) {
+            self.check_given(file, source)?;
             let layer = self.given_layer(given, &key, stated);
             self.note_reading(file, &layer);
             self.layers.borrow_mut().insert(key, Arc::clone(&layer));
@@ -324,6 +325,15 @@ impl<'a> Sources<'a> {
         self.note_reading(file, &layer);
         self.layers.borrow_mut().insert(key, Arc::clone(&layer));
         Ok(layer)
+    }
+
+    /// Refuses keys that say where features are in a file, of features in memory.
+    fn check_given(&self, file: &Stated<String>, source: &FeatureSource) -> Result<(), Diagnostic> {
+        let key = source.layer.as_ref().map(|_| "layer").or(source.columns.as_ref().map(|_| "columns"));
+        let Some(key) = key else { return Ok(()) };
+        let message = format!("`{key}` has no effect on '{}', which is features in memory", quoted(file));
+        let error = self.frame.document.error(file, message).with_code(FindingCode::NoEffect);
+        Err(error.with_help("leave it out: it says what is read of a file"))
     }
 
     /// Features in memory, in the system that the scene file states for them, where it states one.

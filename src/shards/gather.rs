@@ -15,15 +15,22 @@ use sandtable_dem::formats::WRITTEN_EXTENSIONS;
 use sandtable_export::features::FeatureFormat;
 use sandtable_files::disk;
 use sandtable_query::analysis::WrittenArgument;
+use sandtable_terrain::stop_flag::StopFlag;
 
 /// The states of the shards of a plan, by their numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlanProgress(Vec<ShardState>);
 
 impl PlanProgress {
-    /// Reads the records and results of all shards of a plan; one whose results are not those of its record is stale.
-    pub fn read(plan: &ShardPlan) -> Self {
-        let state = |id: usize| record::verified_state(plan, id);
+    /// Reads the records and results of all shards of a plan; one whose results are not those of its record is stale. `watch` says
+    /// how many are read.
+    pub fn read(plan: &ShardPlan, watch: &StopFlag) -> Self {
+        watch.stretch(0.0..1.0, plan.count());
+        let state = |id: usize| {
+            let state = record::verified_state(plan, id);
+            watch.did(1);
+            state
+        };
         Self((0..plan.count()).into_par_iter().map(state).collect())
     }
 
@@ -64,7 +71,7 @@ impl From<Vec<PathBuf>> for GatheredProduct {
 }
 
 /// Writes the product of a plan, to `out` or into the plan's folder, and returns its files: where all shards are done, or an
-/// index of those that are.
+/// index of those that are. `watch` says which share of heights, viewsheds and rasters is joined.
 ///
 /// # Errors
 /// An input has changed, a file cannot be read or written, or `out` has no extension of the product.
@@ -72,6 +79,7 @@ pub fn gather(
     plan: &ShardPlan,
     progress: &PlanProgress,
     out: Option<&Path>,
+    watch: &StopFlag,
 ) -> Result<GatheredProduct, ShardError> {
     let own = |name: &str| out.map_or_else(|| plan.folder.join(name), Path::to_owned);
     match &plan.product {
@@ -86,7 +94,7 @@ pub fn gather(
         PlannedProduct::Heights(arguments) => {
             let out = checked(plan, own("heights.csv"))?;
             plan.verify_inputs()?;
-            heights::gather::gather(plan, arguments, &out)?;
+            heights::gather::gather(plan, arguments, &out, watch)?;
             Ok(vec![out].into())
         }
         PlannedProduct::Tiles(arguments) => Ok(vec![tiles::gather::gather(plan, arguments, out)?].into()),
@@ -94,7 +102,7 @@ pub fn gather(
             let out = checked(plan, own("viewsheds.tif"))?;
             let format = raster_format(&out)?;
             plan.verify_inputs()?;
-            viewsheds::gather::gather(plan, arguments, &out, format)?;
+            viewsheds::gather::gather(plan, arguments, (&out, format), watch)?;
             Ok(vec![out].into())
         }
         PlannedProduct::Analysis(arguments) => {
@@ -102,9 +110,11 @@ pub fn gather(
             let format = analysis_format(&out)?;
             plan.verify_inputs()?;
             let outcome = match format {
-                GatheredFormat::Raster(format) => analysis::gather::gather(plan, arguments, &out, format)?,
+                GatheredFormat::Raster(format) => {
+                    analysis::gather::gather(plan, arguments, (&out, format), watch)?
+                }
                 GatheredFormat::Features(format) => {
-                    analysis::gather::gather_features(plan, arguments, &out, format)?
+                    analysis::gather::gather_features(plan, arguments, (&out, format), watch)?
                 }
             };
             let (kind, arguments) = (arguments.kind(&plan.folder)?, arguments.written());

@@ -30,4 +30,5 @@ pub mod relief;
 pub mod rim;
 pub mod sheet_file;
 pub mod sidecar;
+pub mod step_watch;
 pub mod viewshed_map;

@@ -12,8 +12,9 @@ use sandtable_draw::pixels::Pixels;
 use sandtable_picture::nested::build_nested_draw_list;
 use sandtable_picture::nested_ground::{NestedGround, NestedHeights, nested_grounds};
 use sandtable_picture::{ViewDraw, build_draw_list, camera};
+use sandtable_render::drawn_rows::DrawnRows;
 use sandtable_render::picture::Rendering;
-use sandtable_render::{RenderBackend, RenderError, render};
+use sandtable_render::{RenderBackend, RenderError, render_counted};
 use sandtable_scene::framing::shaped_page::page_size;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::scene_view::{SceneView, ViewAim};
@@ -111,6 +112,21 @@ pub fn draw_view(
     backend: RenderBackend,
     progress: &dyn Fn(&'static str),
 ) -> Result<DrawnView, PictureError> {
+    draw_view_counted(scene, view, size, backend, progress, &DrawnRows::default())
+}
+
+/// [`draw_view`], which counts in `drawn` the rows that the processor has drawn of the step that draws.
+///
+/// # Errors
+/// See [`PictureError`].
+pub fn draw_view_counted(
+    scene: &SceneModel,
+    view: &SceneView,
+    size: PictureSize,
+    backend: RenderBackend,
+    progress: &dyn Fn(&'static str),
+    drawn: &DrawnRows,
+) -> Result<DrawnView, PictureError> {
     if let ViewAim::Panorama(panorama) = &view.aim {
         return draw_panorama(scene, panorama, size, backend, progress);
     }
@@ -119,7 +135,7 @@ pub fn draw_view(
         RenderBackend::Cpu => nested_grounds(scene, &camera, progress)?,
         RenderBackend::Gpu(_) => Vec::new(),
     };
-    let drawn = if nested.is_empty() {
+    let draw = if nested.is_empty() {
         build_draw_list(scene, &camera, progress)
     } else {
         camera = nested_camera(scene, &nested, view, size)?;
@@ -127,9 +143,9 @@ pub fn draw_view(
     };
     drop(nested);
     progress("drawing");
-    let mut picture = render(&drawn.list, &camera, backend, progress)?;
-    apply_look(scene, Some((&drawn.list, &camera)), &mut picture);
-    Ok(DrawnView { camera, picture, drawn, frame, panorama: None })
+    let mut picture = render_counted(&draw.list, &camera, backend, progress, drawn)?;
+    apply_look(scene, Some((&draw.list, &camera)), &mut picture);
+    Ok(DrawnView { camera, picture, drawn: draw, frame, panorama: None })
 }
 
 /// The frame of a page of `size`; `None` where the picture is the page.

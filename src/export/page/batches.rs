@@ -219,6 +219,7 @@ mod tests {
     use crate::page::container::tests::words;
     use sandtable_draw::color::Srgba;
     use sandtable_mesh::sink::MeshSink;
+    use sandtable_terrain::stop_flag::StopFlag;
 
     #[test]
     fn a_material_says_how_its_texture_goes_on_beyond_its_borders() {
@@ -255,6 +256,7 @@ mod tests {
         list.items.push(DrawItem { feature: FeatureId(9), ..tree });
         let mut sections = PageSections::default();
         let batches = batches(&mut sections, &list, &vec![ItemShown::Always; list.items.len()]);
+        let sections = sections.finish(&StopFlag::default());
         let counts: Vec<_> = batches.iter().map(|batch| (&batch["vertices"], &batch["count"])).collect();
         let null = Value::Null;
         assert_eq!(counts, [(&json!(6), &null), (&json!(3), &null), (&json!(3), &json!(2))]);

@@ -20,7 +20,7 @@ use base64::engine::general_purpose::STANDARD;
 use glam::{DVec2, Vec2, Vec3};
 use serde_json::{Value, json};
 
-use crate::page::container::PageSections;
+use crate::page::container::{PackedSections, PageSections};
 use sandtable_draw::backdrop::Backdrop;
 use sandtable_draw::bathymetry::bathymetry;
 use sandtable_draw::color::Srgba;
@@ -34,6 +34,7 @@ use sandtable_geom::chebyshev::ChebyshevTable;
 use sandtable_picture::all_round::AllRoundScene;
 use sandtable_picture::detail::ListedForm;
 use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::stop_flag::StopFlag;
 
 /// The largest page that is written: browsers take more, but mail and phones do not.
 pub const MOST_BYTES: usize = 64_000_000;
@@ -149,24 +150,26 @@ pub struct PageCamera {
 )]
 pub struct PageTooLarge(pub usize);
 
-/// The bytes of the page.
+/// The bytes of the page. `watch` says how much of what waits is packed.
 ///
 /// # Errors
 /// [`PageTooLarge`].
-pub fn page(scene: &PageScene<'_>) -> Result<Vec<u8>, PageTooLarge> {
+pub fn page(scene: &PageScene<'_>, watch: &StopFlag) -> Result<Vec<u8>, PageTooLarge> {
     let least =
         LEAST_VERTEX_BYTES * scene.drawn.list.meshes.iter().map(|mesh| mesh.vertices.len()).sum::<usize>();
     if least > MOST_BYTES {
         return Err(PageTooLarge(least));
     }
     let mut sections = PageSections::default();
-    let description = description(scene, &mut sections);
+    let mut description = description(scene, &mut sections);
+    let PackedSections { bytes, places, .. } = sections.finish(watch);
+    description["sections"] = json!(places);
     let text = as_script_data(&description.to_string());
-    let size = text.len() + sections.bytes().len().div_ceil(3) * 4;
+    let size = text.len() + bytes.len().div_ceil(3) * 4;
     if size > MOST_BYTES {
         return Err(PageTooLarge(size));
     }
-    Ok(assemble(&scene.facts.title, &text, &STANDARD.encode(sections.bytes())).into_bytes())
+    Ok(assemble(&scene.facts.title, &text, &STANDARD.encode(&bytes)).into_bytes())
 }
 
 /// The parts of a page, in the order of their marks in `page.html`.
@@ -349,7 +352,7 @@ mod tests {
             graphic_texts: Vec::new(),
         };
         let scene = PageScene { drawn: &drawn, lattice: &lattice, facts };
-        String::from_utf8(page(&scene).expect("small")).expect("text")
+        String::from_utf8(page(&scene, &StopFlag::default()).expect("small")).expect("text")
     }
 
     /// What a script element holds.
@@ -412,8 +415,9 @@ mod tests {
         let page = page_of(&PageFacts::default());
         let description: Value = serde_json::from_str(element(&page, "description")).expect("sound JSON");
         let bytes = STANDARD.decode(element(&page, "numbers")).expect("sound base64");
-        let mut sections = PageSections::default();
-        sections.add_packed(&bytes);
+        let places = serde_json::from_value(description["sections"].clone()).expect("pairs of numbers");
+        let mut sections = PackedSections::default();
+        (sections.bytes, sections.places) = (bytes, places);
         let heights = container::tests::words(&sections, &description["ground"]["heights"]);
         assert_eq!(heights, (0..12u8).map(|height| f32::from(height).to_bits()).collect::<Vec<_>>());
         assert_eq!(description["ground"]["origin"], json!([500.0, 900.0]));

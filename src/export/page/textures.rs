@@ -32,8 +32,8 @@ pub fn picture(sections: &mut PageSections, pixels: &Pixels) -> Value {
     } else {
         ("image/png", encode_png(&with_seen_colors(pixels)))
     };
-    let at = sections.add_packed(&bytes);
-    json!({"at": at["at"], "length": at["length"], "type": kind, "width": width, "height": height, "opaque": is_opaque})
+    let section = sections.add_packed(&bytes);
+    json!({"section": section, "type": kind, "width": width, "height": height, "opaque": is_opaque})
 }
 
 fn jpeg(pixels: &Pixels) -> Vec<u8> {

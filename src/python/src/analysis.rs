@@ -1,10 +1,5 @@
 //! Terrain analyses: arguments of Python become texts, outcomes arrays of xarray, features and tables.
 
-use std::panic::resume_unwind;
-use std::sync::mpsc::{self, RecvTimeoutError};
-use std::thread;
-use std::time::Duration;
-
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::{PyAnyMethods, PyDict};
@@ -12,6 +7,7 @@ use sandtable::{Analysis, Crs, Error, Samples, StopFlag};
 
 use crate::arguments::{crs_name, transform};
 use crate::error::failed;
+use crate::progress::{SaidWork, said_meanwhile};
 use crate::rasters::shaped;
 
 /// The module of Python that reads arguments and makes what users see.
@@ -23,8 +19,8 @@ pub fn analysis_kinds() -> String {
     sandtable::analysis_kinds()
 }
 
-/// How often progress is said: often enough to move, and so rarely that it costs nothing.
-const SAID_EVERY: Duration = Duration::from_millis(100);
+/// The one step of an analysis.
+const ANALYZING: &str = "analyzing";
 
 /// Calls `analyze` with the arguments of Python as texts, and makes its outcome a value of Python. `progress` is what the user
 /// gave for it.
@@ -39,13 +35,10 @@ pub fn analyzed<'py>(
     let written: Vec<(String, String)> = half.call_method1("written", (given,))?.extract()?;
     let texts: Vec<(&str, &str)> =
         written.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect();
-    let say = half.call_method1("progress_call", (progress,))?;
     let stop = StopFlag::default();
-    let made = if say.is_none() {
-        py.detach(|| analyze(&texts, &crs, &stop))
-    } else {
-        said_meanwhile(py, &say, &stop, || analyze(&texts, &crs, &stop))?
-    };
+    let how_far = || stop.share().map(|share| (ANALYZING, Some(share)));
+    let work = SaidWork { how_far: &how_far, stop: &|| stop.stop() };
+    let made = said_meanwhile(py, progress, &work, || analyze(&texts, &crs, &stop))?;
     let analysis = made.map_err(failed)?;
     let said = PyDict::new(py);
     said.set_item("json", analysis.json())?;
@@ -53,39 +46,6 @@ pub fn analyzed<'py>(
     said.set_item("crs", crs_name(analysis.crs()))?;
     said.set_item("raster", raster(py, &analysis)?)?;
     half.call_method1("made", (said,))
-}
-
-/// Computes on another thread and calls `say` with the share that is done until it ends. An exception, also of a signal, stops
-/// it.
-fn said_meanwhile<T: Send>(
-    py: Python<'_>,
-    say: &Bound<'_, PyAny>,
-    stop: &StopFlag,
-    compute: impl FnOnce() -> T + Send,
-) -> PyResult<T> {
-    let say = say.as_unbound();
-    py.detach(|| {
-        thread::scope(|threads| {
-            let (working, ended) = mpsc::channel::<()>();
-            let computing = threads.spawn(move || {
-                let computed = compute();
-                drop(working);
-                computed
-            });
-            while let Err(RecvTimeoutError::Timeout) = ended.recv_timeout(SAID_EVERY) {
-                let said = Python::attach(|py| {
-                    py.check_signals()?;
-                    stop.share().map_or(Ok(()), |share| say.call1(py, (share,)).map(drop))
-                });
-                if let Err(error) = said {
-                    stop.stop();
-                    return Err(error);
-                }
-            }
-            let computed = computing.join().unwrap_or_else(|panic| resume_unwind(panic));
-            Python::attach(|py| say.call1(py, (1.0,))).map(|_| computed)
-        })
-    })
 }
 
 /// The array of values with what it says of itself; None where there is none.

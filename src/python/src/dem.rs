@@ -378,7 +378,8 @@ impl PyDem {
     /// woods and buildings are not known, and a note says so. Raises SandtableError.
     ///
     /// `progress` is called with the share that is done, 0 to 1, some times a second; an exception of it ends the analysis. With
-    /// `progress=True` the share is printed on standard error.
+    /// `progress=True` the share is printed on standard error. By default a notebook shows it under the cell while work takes longer
+    /// than a second; `progress=False` shows nothing.
     #[pyo3(signature = (kind, *, crs = None, progress = None, **arguments))]
     fn analyze<'py>(
         &self,

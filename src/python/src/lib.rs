@@ -17,6 +17,7 @@ mod error;
 mod findings;
 mod plan;
 mod program;
+mod progress;
 mod rasters;
 mod remote;
 mod results;

@@ -6,12 +6,13 @@ use std::sync::OnceLock;
 use numpy::{PyArray1, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
-use sandtable::{Crs, Finding, Scene, SceneOptions, StopFlag, View};
+use sandtable::{Crs, Finding, Scene, SceneOptions, StepWatch, StopFlag, View};
 
 use crate::analysis::analyzed;
 use crate::arguments::crs_or;
 use crate::error::{failed, wrong_value};
 use crate::findings::PyFinding;
+use crate::progress::watched;
 use crate::scene_data::scene_data;
 
 /// Pixels on a side of a picture, least and most.
@@ -35,28 +36,43 @@ impl PyScene {
     /// process from then on. Raises SandtableError with file, line and column where the scene is wrong; `findings` of the
     /// exception are all errors.
     #[staticmethod]
-    #[pyo3(signature = (path, *, allow = Vec::new(), allow_remote = Vec::new()), text_signature = "(path, *, allow=(), allow_remote=())")]
-    fn open(py: Python<'_>, path: PathBuf, allow: Vec<PathBuf>, allow_remote: Vec<String>) -> PyResult<Self> {
+    #[pyo3(signature = (path, *, allow = Vec::new(), allow_remote = Vec::new(), progress = None), text_signature = "(path, *, allow=(), allow_remote=(), progress=None)")]
+    fn open(
+        py: Python<'_>,
+        path: PathBuf,
+        allow: Vec<PathBuf>,
+        allow_remote: Vec<String>,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
         crate::remote::allow(&allow_remote)?;
-        let scene = py.detach(|| Scene::open_with(&path, &options(&allow))).map_err(failed)?;
+        let open = |watch: &StepWatch| {
+            let progress = |step| watch.begin(step);
+            Scene::open_with(&path, &SceneOptions { allowed: &allow, progress: &progress })
+        };
+        let scene = watched(py, progress, open)?.map_err(failed)?;
         Ok(Self { scene, findings: OnceLock::new() })
     }
 
     /// Builds the scene of a text that is in no file: names are relative to the current folder. `given` are pairs of a name in the
     /// text and features, a Dem of an array or bytes; all else is as in `open`.
     #[staticmethod]
-    #[pyo3(signature = (text, given, *, allow = Vec::new(), allow_remote = Vec::new()), text_signature = "(text, given, *, allow=(), allow_remote=())")]
+    #[pyo3(signature = (text, given, *, allow = Vec::new(), allow_remote = Vec::new(), progress = None), text_signature = "(text, given, *, allow=(), allow_remote=(), progress=None)")]
     fn build(
         py: Python<'_>,
         text: &str,
         given: Vec<(String, Bound<'_, PyAny>)>,
         allow: Vec<PathBuf>,
         allow_remote: Vec<String>,
+        progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         crate::remote::allow(&allow_remote)?;
         let data = scene_data(&given)?;
-        let build = || Scene::from_text(TEXT_NAME, text, &data, &options(&allow));
-        let scene = py.detach(build).map_err(failed)?;
+        let build = |watch: &StepWatch| {
+            let progress = |step| watch.begin(step);
+            let options = SceneOptions { allowed: &allow, progress: &progress };
+            Scene::from_text(TEXT_NAME, text, &data, &options)
+        };
+        let scene = watched(py, progress, build)?.map_err(failed)?;
         Ok(Self { scene, findings: OnceLock::new() })
     }
 
@@ -95,57 +111,67 @@ impl PyScene {
     ///
     /// `camera` is one of `cameras`, the first by default; `size` is (width, height), 16 to 16384 pixels each, by default that
     /// of the camera's paper or (1920, 1080), or as many in the shape of what a map shows. The pixels are those of `sandtable render`.
-    #[pyo3(signature = (camera = None, size = None))]
+    /// `progress` is that of `analyze`.
+    #[pyo3(signature = (camera = None, size = None, *, progress = None))]
     fn render<'py>(
         &self,
         py: Python<'py>,
         camera: Option<&str>,
         size: Option<(u32, u32)>,
+        progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray3<u8>>> {
         let view = self.view(camera, size)?;
-        let rendered = py.detach(|| {
-            let picture = self.scene.render(&view)?;
+        let rendered = watched(py, progress, |watch| {
+            let picture = self.scene.render_watched(&view, watch)?;
             let rgb: Vec<u8> =
                 picture.rgba().as_chunks::<4>().0.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect();
             Ok((rgb, picture.size()))
         });
-        let (rgb, (width, height)) = rendered.map_err(failed)?;
+        let (rgb, (width, height)) = rendered?.map_err(failed)?;
         PyArray1::from_vec(py, rgb).reshape([height as usize, width as usize, 3])
     }
 
     /// The picture of `render` as the bytes of a PNG file.
     ///
     /// `longest` is the most pixels of a side; a larger picture is drawn as much smaller.
-    #[pyo3(signature = (camera = None, size = None, *, longest = None))]
+    #[pyo3(signature = (camera = None, size = None, *, longest = None, progress = None))]
     fn png<'py>(
         &self,
         py: Python<'py>,
         camera: Option<&str>,
         size: Option<(u32, u32)>,
         longest: Option<u32>,
+        progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyBytes>> {
         let view = within(self.view(camera, size)?, longest);
-        let png = py.detach(|| Ok(self.scene.render(&view)?.png())).map_err(failed)?;
+        let draw = |watch: &StepWatch| Ok(self.scene.render_watched(&view, watch)?.png());
+        let png = watched(py, progress, draw)?.map_err(failed)?;
         Ok(PyBytes::new(py, &png))
     }
 
     /// Writes a file in the format of its extension: a picture as `.png`, `.pdf` or `.svg`, a model as `.glb` or `.obj`, a page as
     /// `.html`. `camera` and `size` are those of a picture, as in `render`.
-    #[pyo3(signature = (path, camera = None, size = None))]
+    #[pyo3(signature = (path, camera = None, size = None, *, progress = None))]
     fn save(
         &self,
         py: Python<'_>,
         path: PathBuf,
         camera: Option<&str>,
         size: Option<(u32, u32)>,
+        progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
         let view = self.view(camera, size)?;
-        py.detach(|| self.scene.save(&view, &path)).map_err(failed)
+        watched(py, progress, |watch| self.scene.save_watched(&view, &path, watch))?.map_err(failed)
     }
 
     /// The page for browsers, as the bytes of an HTML file that needs no network.
-    fn page<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let page = py.detach(|| self.scene.page()).map_err(failed)?;
+    #[pyo3(signature = (*, progress = None))]
+    fn page<'py>(
+        &self,
+        py: Python<'py>,
+        progress: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let page = watched(py, progress, |watch| self.scene.page_watched(watch))?.map_err(failed)?;
         Ok(PyBytes::new(py, &page))
     }
 
@@ -157,7 +183,7 @@ impl PyScene {
     /// earthworks, and roads, water, woods and buildings are known. Raises SandtableError.
     ///
     /// `progress` is called with the share that is done, 0 to 1, some times a second; an exception of it ends the analysis. With
-    /// `progress=True` the share is printed on standard error.
+    /// `progress=True` the share is printed on standard error, with `False` nothing is, and by default a notebook shows it.
     #[pyo3(signature = (kind, *, crs = None, progress = None, **arguments))]
     fn analyze<'py>(
         &self,
@@ -203,8 +229,4 @@ fn within(view: View, longest: Option<u32>) -> View {
         }
         _ => view,
     }
-}
-
-fn options(allowed: &[PathBuf]) -> SceneOptions<'_> {
-    SceneOptions { allowed, ..SceneOptions::default() }
 }

@@ -166,6 +166,71 @@ def test_data_without_a_system_ask_for_it(frames):
     assert len(st.Scene(JACKSBORO).roads(bare, crs=4326)._given["memory:road"]) == len(bare)
 
 
+@pytest.fixture
+def square():
+    """A hill of 40 by 40 samples as an array with its place."""
+    rows, columns = np.mgrid[0:40, 0:40]
+    hill = (300 + 3 * columns + 2 * rows).astype("float32")
+    return {"array": hill, "transform": (10, 0, 500_000, 0, -10, 4_502_000), "crs": "EPSG:32633"}
+
+
+def of_square(square, **changed):
+    given = {**square, **changed}
+    return st.Scene(given.pop("array"), **given)
+
+
+def test_nodata_of_a_table_makes_voids_of_an_array(square):
+    array = square["array"].copy()
+    array[10:30, 10:30] = 7.0
+    stated = of_square(square, array=array).terrain(nodata=7)
+    np.testing.assert_array_equal(stated.render(size=SIZE), of_square(square, array=array, nodata=7).render(size=SIZE))
+    assert (stated.render(size=SIZE) != of_square(square, array=array).render(size=SIZE)).any()
+
+
+def test_crs_of_a_table_takes_the_place_of_an_array_s(square):
+    here = (500_200.0, 4_501_800.0)
+    moved = of_square(square).terrain(crs="EPSG:32634").labels(at=here, text="Here")
+    with pytest.warns(st.SandtableWarning, match="crs-overridden"):
+        picture = moved.render(size=SIZE)
+    np.testing.assert_array_equal(picture, of_square(square, crs="EPSG:32634").labels(at=here, text="Here").render(size=SIZE))
+
+
+def test_vertical_unit_of_a_table_says_what_an_array_counts_in(square):
+    feet = of_square(square, array=square["array"] / np.float32(0.3048)).terrain(vertical_unit="ft")
+    meters = of_square(square).render(size=SIZE).astype(float)
+    assert abs(feet.render(size=SIZE) - meters).mean() < 0.5
+    assert abs(of_square(square, array=square["array"] / np.float32(0.3048)).render(size=SIZE) - meters).mean() > 0.5
+
+
+def test_vertical_datum_of_a_table_is_that_of_an_array(square):
+    said = of_square(square).terrain(vertical_datum="NAVD88")
+    assert 'vertical_datum = "NAVD88"' in said.toml() and said.cameras
+
+
+@pytest.mark.parametrize(
+    "key",
+    [
+        {"cell": 5},
+        {"height_encoding": "terrarium"},
+        {"height_offset": 3},
+        {"height_scale": 0.5},
+        {"raw": "40x40:f32le"},
+        {"surface": "ground"},
+    ],
+    ids=lambda key: next(iter(key)),
+)
+def test_keys_of_elevation_files_are_refused_on_an_array(square, key):
+    with pytest.raises(st.SandtableError, match=f"(?s)`{next(iter(key))}` has no effect on 'memory:terrain'.*leave it out"):
+        of_square(square).terrain(**key).render(size=SIZE)
+
+
+@pytest.mark.parametrize("key", [{"layer": "roads"}, {"columns": {"width": "w"}}], ids=lambda key: next(iter(key)))
+def test_keys_of_feature_files_are_refused_on_a_data_frame(square, key):
+    frame = geopandas.GeoDataFrame({"w": [4]}, geometry=[shapely.LineString([(500_100, 4_501_700), (500_300, 4_501_900)])], crs=32633)
+    with pytest.raises(st.SandtableError, match=f"(?s)`{next(iter(key))}` has no effect on 'memory:road'.*leave it out"):
+        of_square(square).roads(frame, **key).render(size=SIZE)
+
+
 def test_findings_are_warnings_with_their_places():
     river = [(750_000.0, 4_018_000.0), (751_000.0, 4_018_000.0)]
     scene = st.Scene(JACKSBORO).style(ramp="atlas").rivers(river, name="Ay", mouth_width="wide")

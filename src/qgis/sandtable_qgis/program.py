@@ -132,10 +132,11 @@ def _read_progress(stream, said, on_progress):
             continue
         text = line[len(PROGRESS_PREFIX) :]
         step, _, share = text.removesuffix(" %").rpartition(" ") if text.endswith(" %") else (text, "", "")
-        if share.isdigit():
+        if step in STEPS:
+            part = float(share) / 100.0 if share.isdigit() else 0.0
+            on_progress(step, 100.0 * (STEPS.index(step) + part) / len(STEPS))
+        elif share.isdigit():
             on_progress(step, float(share))
-        elif step in STEPS:
-            on_progress(step, 100.0 * STEPS.index(step) / len(STEPS))
 
 
 def _close(process, readers):

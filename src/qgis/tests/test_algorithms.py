@@ -4,6 +4,7 @@ import json
 import os
 import shutil
 import subprocess
+import sys
 import zipfile
 from pathlib import Path
 from unittest import mock
@@ -263,17 +264,18 @@ class PluginTest(QgisTest):
 
     def test_the_installed_zip_is_listed_by_qgis_process_and_runs(self):
         archive = self.folder / "plugin.zip"
-        subprocess.run(["python3", str(ROOT / "src" / "qgis" / "package.py"), str(archive)], check=True, capture_output=True)
+        subprocess.run([sys.executable, str(ROOT / "src" / "qgis" / "package.py"), str(archive)], check=True, capture_output=True)
         again = self.folder / "again.zip"
-        subprocess.run(["python3", str(ROOT / "src" / "qgis" / "package.py"), str(again)], check=True, capture_output=True)
+        subprocess.run([sys.executable, str(ROOT / "src" / "qgis" / "package.py"), str(again)], check=True, capture_output=True)
         self.assertEqual(archive.read_bytes(), again.read_bytes())
         plugins = self.folder / "plugins"
         with zipfile.ZipFile(archive) as file:
             self.assertIn("sandtable_qgis/metadata.txt", file.namelist())
             file.extractall(plugins)
-        folder = os.path.dirname(PROGRAM)
+        # QGIS takes the first Python on the path for its own: it must not be one of an environment that is active.
+        path = os.pathsep.join([os.path.dirname(PROGRAM), os.path.dirname(sys.executable), os.environ["PATH"]])
         config = str(self.folder / "config")
-        environment = dict(os.environ, QGIS_PLUGINPATH=str(plugins), QGIS_CUSTOM_CONFIG_PATH=config, PATH=f"{folder}:{os.environ['PATH']}")
+        environment = dict(os.environ, QGIS_PLUGINPATH=str(plugins), QGIS_CUSTOM_CONFIG_PATH=config, PATH=path)
 
         def process(*arguments):
             ran = subprocess.run([QGIS_PROCESS, *arguments], env=environment, capture_output=True, text=True)

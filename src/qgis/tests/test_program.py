@@ -10,7 +10,7 @@ from unittest import mock
 from common import PROGRAM
 from qgis.core import QgsSettings
 
-from sandtable_qgis.program import SETTING, ProgramError, find_program
+from sandtable_qgis.program import SETTING, STEPS, ProgramError, find_program, run
 
 
 class TestProgram(unittest.TestCase):
@@ -48,6 +48,22 @@ class TestProgram(unittest.TestCase):
         self.install("path")
         QgsSettings().setValue(SETTING, "/opt/sandtable")
         self.assertEqual(find_program(), "/opt/sandtable")
+
+    def test_progress_rises_over_steps_that_count_and_steps_that_do_not(self):
+        script = self.base / "sandtable"
+        lines = ["reading elevation", "drawing", "drawing 50 %", "analyzing 37 %", "annotating"]
+        said = "".join(f"print('progress: {line}', file=sys.stderr)\n" for line in lines)
+        script.write_text(f"#!{sys.executable}\nimport sys\n{said}")
+        script.chmod(0o755)
+        QgsSettings().setValue(SETTING, str(script))
+        heard = []
+        run([], lambda step, percent: heard.append((step, percent)))
+        steps = {step: 100 * STEPS.index(step) / len(STEPS) for step in ["reading elevation", "drawing", "annotating"]}
+        half = (steps["drawing"] + steps["annotating"]) / 2
+        expected = [*steps.items()][:2] + [("drawing", half), ("analyzing", 37), ("annotating", steps["annotating"])]
+        self.assertEqual([step for step, _ in heard], [step for step, _ in expected])
+        for (_, percent), (_, wanted) in zip(heard, expected):
+            self.assertAlmostEqual(percent, wanted)
 
 
 if __name__ == "__main__":

@@ -59,6 +59,7 @@ use crate::cpu::shade::Shader;
 use crate::cpu::strips::RowStrips;
 use crate::cpu::tile::TileContext;
 use crate::cpu::visibility::TILE;
+use crate::drawn_rows::DrawnRows;
 use crate::picture::Rendering;
 use crate::shadow::Shadows;
 use sandtable_base::limits::memory::{MemoryRefused, check_memory};
@@ -119,6 +120,19 @@ pub fn render(
     camera: &Camera,
     quality: &RenderQuality,
 ) -> Result<Rendering, CpuRenderError> {
+    render_counted(list, camera, quality, &DrawnRows::default())
+}
+
+/// [`render`], which says how many rows it has drawn.
+///
+/// # Errors
+/// See [`CpuRenderError`].
+pub fn render_counted(
+    list: &DrawList,
+    camera: &Camera,
+    quality: &RenderQuality,
+    drawn: &DrawnRows,
+) -> Result<Rendering, CpuRenderError> {
     list.check()?;
     check_memory(bytes_of(list, camera), "the picture", "draw a smaller one")?;
     let screen = Screen::new(camera);
@@ -128,9 +142,9 @@ pub fn render(
     let shader = Shader::new(list, &screen, &shadows, quality.anisotropy.clamp(1, 16));
     let strips = RowStrips::new(&source);
     Ok(match quality.samples {
-        SampleCount::One => draw(&source, &strips, &shader, &ONE, true),
-        SampleCount::Four => draw(&source, &strips, &shader, &FOUR, true),
-        SampleCount::Eight => draw(&source, &strips, &shader, &EIGHT, true),
+        SampleCount::One => draw(&source, &strips, &shader, &ONE, DrawnAs::Colors(drawn)),
+        SampleCount::Four => draw(&source, &strips, &shader, &FOUR, DrawnAs::Colors(drawn)),
+        SampleCount::Eight => draw(&source, &strips, &shader, &EIGHT, DrawnAs::Colors(drawn)),
     })
 }
 
@@ -156,11 +170,20 @@ pub fn render_buffers(list: &DrawList, camera: &Camera) -> Result<Rendering, Cpu
     let source = source(list, &screen)?;
     let shadows = Shadows::default();
     let shader = Shader::new(list, &screen, &shadows, RenderQuality::default().anisotropy);
-    Ok(draw(&source, &RowStrips::new(&source), &shader, &EIGHT, false))
+    Ok(draw(&source, &RowStrips::new(&source), &shader, &EIGHT, DrawnAs::Shapes))
 }
 
 fn source<'a>(list: &'a DrawList, screen: &'a Screen) -> Result<GeometrySource<'a>, CpuRenderError> {
     GeometrySource::new(list, screen).ok_or_else(|| CpuRenderError::TooManyTriangles(list.triangle_count()))
+}
+
+/// What is drawn.
+#[derive(Clone, Copy)]
+enum DrawnAs<'a> {
+    /// Colors, depths and features; their rows are counted.
+    Colors(&'a DrawnRows),
+    /// Depths and features.
+    Shapes,
 }
 
 fn draw<const N: usize>(
@@ -168,10 +191,13 @@ fn draw<const N: usize>(
     strips: &RowStrips,
     shader: &Shader,
     pattern: &SamplePattern<N>,
-    is_colored: bool,
+    drawn_as: DrawnAs<'_>,
 ) -> Rendering {
     let screen = source.screen();
     let [width, height] = screen.size;
+    let (is_colored, uncounted) = (matches!(drawn_as, DrawnAs::Colors(_)), DrawnRows::default());
+    let drawn = if let DrawnAs::Colors(drawn) = drawn_as { drawn } else { &uncounted };
+    drawn.begin(height);
     let (count, band) = (width as usize * height as usize, (width * TILE) as usize);
     let mut pixels = Pixels::filled(width, height, Srgba::WHITE);
     let mut depth_m = vec![f32::INFINITY; count];
@@ -191,11 +217,14 @@ fn draw<const N: usize>(
             .enumerate();
         let draw = || {
             bands.for_each(|(number, ((colors, depths_m), features))| {
+                let rows = colors.len() as u32 / width;
                 draw_band(&frame, first + number as u32, BandRows { colors, depths_m, features });
+                drawn.add(rows);
             });
         };
         ((), made) = rayon::join(draw, || strips.rows.get(number + 1).map(faces));
     }
+    drawn.end();
     Rendering { pixels, depth_m, features }
 }
 

@@ -30,7 +30,9 @@ use sandtable_terrain::stop_flag::StopFlag;
 const BAND_ROWS: u32 = 256;
 
 /// The results of shards as one raster, of which the tiles under the last window are held.
-struct TileWindows {
+struct TileWindows<'a> {
+    /// Says how many samples are joined.
+    watch: &'a StopFlag,
     /// The raster without samples.
     header: Raster,
     tiles: Vec<ResultTile>,
@@ -78,7 +80,7 @@ impl DoneShards {
     }
 
     /// The raster of all shards.
-    fn windows(&self, plan: &ShardPlan) -> Result<TileWindows, ShardError> {
+    fn windows<'a>(&self, plan: &ShardPlan, watch: &'a StopFlag) -> Result<TileWindows<'a>, ShardError> {
         let (opened, all) = (&self.opened, self.all);
         let frame = opened.parts.frame();
         // The first tile to be written says of what type all are.
@@ -93,12 +95,13 @@ impl DoneShards {
         let tiles: Vec<ResultTile> = self.tiles.iter().enumerate().map(place).collect();
         let samples =
             tiles[id].samples(first).map_err(FileError::at(&path)).map_err(WriteRasterError::from)?;
-        Ok(TileWindows { header, tiles, held: vec![HeldTile { id, samples }] })
+        watch.stretch(0.0..1.0, header.width as usize * header.height as usize);
+        Ok(TileWindows { watch, header, tiles, held: vec![HeldTile { id, samples }] })
     }
 
     /// The samples of all shards, in rows from the north.
     fn samples(
-        source: &mut TileWindows,
+        source: &mut TileWindows<'_>,
         (plan, out): (&ShardPlan, &Path),
         remedy: &'static str,
     ) -> Result<Samples, ShardError> {
@@ -111,17 +114,18 @@ impl DoneShards {
 }
 
 /// Writes the values of a plan whose shards are all done: the raster that `analyze` writes. Returns the rest of what it gives.
+/// `watch` says which share of the raster is joined.
 ///
 /// # Errors
 /// A file cannot be read or written, or is not the one of the plan.
 pub fn gather(
     plan: &ShardPlan,
     arguments: &AnalysisPlan,
-    out: &Path,
-    format: &DemFormat,
+    (out, format): (&Path, &DemFormat),
+    watch: &StopFlag,
 ) -> Result<Outcome, ShardError> {
     let done = DoneShards::open(plan, arguments)?;
-    let mut source = done.windows(plan)?;
+    let mut source = done.windows(plan, watch)?;
     if raster_file::write_windows(&mut source, format, out, &plan.folder)?.is_some() {
         return Ok(done.outcome);
     }
@@ -139,14 +143,14 @@ pub fn gather(
 pub fn gather_features(
     plan: &ShardPlan,
     arguments: &AnalysisPlan,
-    out: &Path,
-    format: FeatureFormat,
+    (out, format): (&Path, FeatureFormat),
+    watch: &StopFlag,
 ) -> Result<Outcome, ShardError> {
     let mut done = DoneShards::open(plan, arguments)?;
     let OpenedAnalysis { queried, parts, kind } = &done.opened;
     let ground = parts.ground(&queried.dataset)?;
     if done.outcome.features.is_empty() {
-        let mut source = done.windows(plan)?;
+        let mut source = done.windows(plan, watch)?;
         let samples = DoneShards::samples(&mut source, (plan, out), "gather its raster as a .tif")?;
         let empty = parts.empty_raster(&queried.dataset, &StopFlag::default())?;
         let values = post_values(&empty.values, &samples, ground.columns() as usize);
@@ -194,7 +198,7 @@ fn window_in(tile: PostRect, all: PostRect) -> RasterWindow {
     }
 }
 
-impl Windows for TileWindows {
+impl Windows for TileWindows<'_> {
     fn metadata(&self) -> &Raster {
         &self.header
     }
@@ -220,6 +224,7 @@ impl Windows for TileWindows {
                 samples[to].copy_from_slice(&self.held[at].samples[from]);
             }
         }
+        self.watch.did(samples.len());
         Ok(Samples::F32(samples))
     }
 

@@ -20,19 +20,28 @@ use sandtable_files::output_files::OutputFiles;
 use sandtable_geom::crs::Crs;
 use sandtable_query::positions::WrittenPosition;
 use sandtable_raster::answer::Answer;
+use sandtable_terrain::stop_flag::StopFlag;
 
 /// Rows that one thread writes.
 const PIECE: usize = 4096;
 /// Bytes of answers that are read and not yet written, of all shards together.
 const HELD: usize = 64 << 20;
 
-/// Writes the heights of a plan whose shards are all done.
+/// Writes the heights of a plan whose shards are all done; `watch` says how many.
 ///
 /// # Errors
 /// A file cannot be read or written, or is not the one of the plan.
-pub fn gather(plan: &ShardPlan, arguments: &HeightsArguments, path: &Path) -> Result<(), ShardError> {
+pub fn gather(
+    plan: &ShardPlan,
+    arguments: &HeightsArguments,
+    path: &Path,
+    watch: &StopFlag,
+) -> Result<(), ShardError> {
     let order_path = plan.folder.join("order.bin");
-    let mut order = BufReader::with_capacity(1 << 20, disk::open(&order_path)?);
+    let order = disk::open(&order_path)?;
+    let order_bytes = order.metadata().map_or(0, |metadata| metadata.len());
+    watch.stretch(0.0..1.0, usize::try_from(order_bytes / 4).unwrap_or(usize::MAX));
+    let mut order = BufReader::with_capacity(1 << 20, order);
     let most = (HELD / ANSWER_BYTES / plan.count()).clamp(64, PIECE);
     let shard =
         |id| AnswerStream { path: result_path(plan, id, EXTENSION), next: 0, piece: Vec::new(), at: 0, most };
@@ -58,6 +67,7 @@ pub fn gather(plan: &ShardPlan, arguments: &HeightsArguments, path: &Path) -> Re
             for piece in rows(positions, &answers) {
                 out.write_all(&piece).map_err(|error| WriteFileError::new(path, SystemError::from(error)))?;
             }
+            watch.did(positions.len());
             Ok(())
         });
         rows.map_err(|error| {

@@ -17,16 +17,18 @@ use sandtable_dem::hints::DemOptions;
 use sandtable_files::raster_file;
 use sandtable_query::dem;
 use sandtable_terrain::post_rect::PostRect;
+use sandtable_terrain::stop_flag::StopFlag;
 
-/// Writes the counts of a plan whose shards are all done, over the posts that any observer may look at.
+/// Writes the counts of a plan whose shards are all done, over the posts that any observer may look at; `watch` says how many
+/// shards are added.
 ///
 /// # Errors
 /// A file cannot be read or written, or is not the one of the plan.
 pub fn gather(
     plan: &ShardPlan,
     arguments: &ViewshedsArguments,
-    out: &Path,
-    format: &DemFormat,
+    (out, format): (&Path, &DemFormat),
+    watch: &StopFlag,
 ) -> Result<(), ShardError> {
     let windows: Vec<PostRect> =
         (0..plan.count()).map(|id| posts(plan, &plan.shard(id)?)).collect::<Result<_, ShardError>>()?;
@@ -36,6 +38,7 @@ pub fn gather(
         return Err(PlanError::new(&plan.folder, PlanFault::Region { columns, rows }).into());
     }
     let mut counts = SightCounts::new(all);
+    watch.stretch(0.0..1.0, windows.len());
     for (id, &window) in windows.iter().enumerate() {
         let path = result_path(plan, id, EXTENSION);
         let raster = dem::open(&path, &DemOptions::default())?.raster;
@@ -43,6 +46,7 @@ pub fn gather(
             return Err(PlanError::new(&path, PlanFault::Result).into());
         }
         counts.add_raster(window, &raster);
+        watch.did(1);
     }
     let queried = PlannedDataset::open(&arguments.dataset, &plan.folder)?;
     let ground = frame(&queried, observers(plan, &plan.shard(0)?)?[0])?;

@@ -20,6 +20,8 @@ fn without_arguments_the_program_says_what_to_try() {
     assert!(found.lines().count() <= 24 && found.lines().all(|line| line.chars().count() <= 90), "{found}");
     // What it suggests runs.
     run_in(scratch.folder(), &["new", "my-scene", "--dem", "valley.asc", "--crs", "EPSG:32616"]).ok();
+    let above = run_in::<&str>(scratch.folder(), &[]).ok();
+    assert!(above.contains("sandtable render my-scene/scene.toml "), "{above}");
     let scene = run_in::<&str>(&scratch.at("my-scene"), &[]).ok();
     assert!(scene.contains("sandtable render scene.toml "), "{scene}");
 }
@@ -54,6 +56,22 @@ fn an_error_about_the_wrong_file_names_the_next_command() {
             assert!(complaint.lines().count() <= 3, "{command:?}: {complaint}");
         }
     }
+}
+
+#[test]
+fn an_error_about_a_folder_names_the_scene_in_it() {
+    let scratch = Scratch::new();
+    std::fs::create_dir(scratch.at("hill")).expect("a folder");
+    for command in ["render", "check", "report"] {
+        let complaint = run_in(scratch.folder(), &[command, "hill"]).failed(1);
+        assert!(complaint.ends_with("sandtable new hill --dem DEM.tif\n"), "{complaint}");
+    }
+    scratch.write("hill/scene.toml", "[terrain]\ndem = \"a.tif\"\n");
+    let complaint = run_in(scratch.folder(), &["render", "hill"]).failed(1);
+    assert!(
+        complaint.ends_with("this is a folder, not a scene file\nit has a scene:\n  hill/scene.toml\n"),
+        "{complaint}"
+    );
 }
 
 #[test]

@@ -4,7 +4,7 @@
 
 use std::process::{Command, Stdio};
 
-use crate::cli::project;
+use crate::cli::{project, run_in};
 use crate::common::scratch::Scratch;
 use crate::common::skip::skipped;
 
@@ -73,4 +73,46 @@ fn pictures_of_several_cameras_show_how_far_all_are() {
     assert!(shown.contains("drawing, all "), "{}", end(&shown));
     let quiet: Vec<&str> = arguments.into_iter().chain(["--quiet"]).collect();
     assert_eq!(in_terminal(&scratch, None, &quiet).as_deref(), Some(""));
+}
+
+#[test]
+fn one_picture_shows_how_much_is_drawn_and_the_time_left_and_ctrl_c_keeps_the_old_one() {
+    let (scratch, scene) = (Scratch::new(), project("scenes/jacksboro.toml"));
+    scratch.write("a.png", "old");
+    let arguments = ["render", &scene, "--size", "6000x6000", "-o", "a.png"];
+    let Some(shown) = in_terminal(&scratch, Some(" left "), &arguments) else { return };
+    assert!(shown.contains("drawing ") && shown.contains(" %, "), "{}", end(&shown));
+    assert!(shown.contains("interrupted: "), "{}", end(&shown));
+    assert_eq!(std::fs::read(scratch.at("a.png")).expect("a file"), b"old");
+}
+
+#[test]
+fn a_page_shows_how_much_of_it_is_packed() {
+    let (scratch, scene) = (Scratch::new(), project("scenes/jacksboro.toml"));
+    let arguments = ["export", &scene, "-o", "a.html"];
+    let Some(shown) = in_terminal(&scratch, None, &arguments) else { return };
+    let said =
+        shown.split("writing ").skip(1).any(|rest| rest.split('[').next().unwrap_or("").contains(" %"));
+    assert!(said, "{}", end(&shown));
+}
+
+#[test]
+fn gathering_shows_how_much_is_joined() {
+    let scratch = Scratch::new();
+    let dem = project("assets/jacksboro/dem.tif");
+    let points: String =
+        (0..300_000).map(|index| format!("{:.6},36.3\n", -84.4 + 1e-6 * f64::from(index))).collect();
+    scratch.write("points.csv", &points);
+    run_in(
+        scratch.folder(),
+        &["plan", "heights", &dem, "--points", "points.csv", "--shards", "4", "-o", "plan"],
+    )
+    .ok();
+    run_in(scratch.folder(), &["work", "plan", "--shards", "0..4"]).ok();
+    let Some(shown) = in_terminal(&scratch, None, &["gather", "plan"]) else { return };
+    let said = shown
+        .split("joining the shards")
+        .skip(1)
+        .any(|rest| rest.split('[').next().unwrap_or("").contains(" %"));
+    assert!(said, "{}", end(&shown));
 }

@@ -41,7 +41,7 @@ class Page {
       return;
     }
     const numbers = document.getElementById("numbers");
-    const sections = new Sections(bytesOfBase64(numbers.textContent));
+    const sections = new Sections(bytesOfBase64(numbers.textContent), description.sections);
     numbers.remove();
     this.data = await SceneData.read(description, sections, (step) => this.message(`Opening the scene: ${step} …`));
     this.ground = new Ground(description, this.data.heights);

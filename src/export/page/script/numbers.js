@@ -9,12 +9,14 @@ function bytesOfBase64(text) {
 }
 
 class Sections {
-  constructor(bytes) {
+  constructor(bytes, places) {
     this.all = bytes;
+    this.places = places;
   }
 
-  raw(section) {
-    return this.all.subarray(section.at, section.at + section.length);
+  raw({ section }) {
+    const [at, length] = this.places[section];
+    return this.all.subarray(at, at + length);
   }
 
   async inflated(section) {
@@ -47,7 +49,8 @@ class Sections {
   // Sections that several things share, such as the places of all parts of a model, are unpacked once.
   shared(kind, section) {
     this.kept ??= new Map();
-    if (!this.kept.has(section.at)) this.kept.set(section.at, this[kind](section));
-    return this.kept.get(section.at);
+    const [at] = this.places[section.section];
+    if (!this.kept.has(at)) this.kept.set(at, this[kind](section));
+    return this.kept.get(at);
   }
 }

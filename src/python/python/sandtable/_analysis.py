@@ -6,8 +6,6 @@ NumPy is imported where it is used: the program, which starts by this package, d
 from __future__ import annotations
 
 import json
-import sys
-from collections.abc import Callable
 from dataclasses import dataclass
 from os import PathLike, fspath
 from typing import Any
@@ -75,22 +73,6 @@ class Analysis:
         parts = {"features": self.features, "tables": self.tables, "figures": self.figures}
         counts = [f"{len(part)} {name}" for name, part in parts.items() if part]
         return f"<Analysis {self.kind}: {', '.join(counts + ['a raster'] * (self._raster is not None))}>"
-
-
-def progress_call(progress: Any) -> Callable[[float], object] | None:
-    """What is called with the share that is done: nothing, a function that prints it, or the user's own."""
-    if progress is None or progress is False:
-        return None
-    if progress is True:
-        return _print_share
-    if callable(progress):
-        return progress
-    raise TypeError(f"progress is a {type(progress).__name__}; give a callable, or True to print it on standard error")
-
-
-def _print_share(share: float) -> None:
-    end = "\n" if share >= 1.0 else ""
-    print(f"\r{share:4.0%}", end=end, file=sys.stderr, flush=True)
 
 
 def written(arguments: dict[str, Any]) -> list[tuple[str, str]]:

@@ -17,8 +17,11 @@ from . import Raster as Raster
 from . import Symbol as Symbol
 from . import licenses as licenses
 from . import set_limit as set_limit
+from ._progress import Said
 
 __VERSION__: str
+
+_Progress = Said | Callable[[float], object] | bool | None
 
 @final
 class _Features:
@@ -35,6 +38,7 @@ class _BuiltScene:
         *,
         allow: Sequence[str | PathLike[str]] = (),
         allow_remote: Sequence[str] = (),
+        progress: _Progress = None,
     ) -> _BuiltScene: ...
     @staticmethod
     def build(
@@ -43,6 +47,7 @@ class _BuiltScene:
         *,
         allow: Sequence[str | PathLike[str]] = (),
         allow_remote: Sequence[str] = (),
+        progress: _Progress = None,
     ) -> _BuiltScene: ...
     @property
     def cameras(self) -> tuple[str, ...]: ...
@@ -53,7 +58,11 @@ class _BuiltScene:
     @property
     def findings(self) -> tuple[Finding, ...]: ...
     def render(
-        self, camera: str | None = None, size: tuple[int, int] | None = None
+        self,
+        camera: str | None = None,
+        size: tuple[int, int] | None = None,
+        *,
+        progress: _Progress = None,
     ) -> NDArray[np.uint8]: ...
     def png(
         self,
@@ -61,20 +70,23 @@ class _BuiltScene:
         size: tuple[int, int] | None = None,
         *,
         longest: int | None = None,
+        progress: _Progress = None,
     ) -> bytes: ...
     def save(
         self,
         path: str | PathLike[str],
         camera: str | None = None,
         size: tuple[int, int] | None = None,
+        *,
+        progress: _Progress = None,
     ) -> None: ...
-    def page(self) -> bytes: ...
+    def page(self, *, progress: _Progress = None) -> bytes: ...
     def analyze(
         self,
         kind: str,
         *,
         crs: Any | None = None,
-        progress: bool | Callable[[float], object] | None = None,
+        progress: _Progress = None,
         **arguments: Any,
     ) -> Any: ...
 

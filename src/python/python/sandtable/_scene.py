@@ -12,7 +12,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from . import _data, _saved, _toml
+from . import _data, _progress, _saved, _toml
 from ._errors import SandtableWarning
 from ._sandtable import _BuiltScene
 from ._tables import SceneTables
@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     from . import Finding
 
 _S = TypeVar("_S", bound="Scene")
+
+#: What hears of the progress of work.
+_Progress = Callable[[float], object] | bool | None
 
 #: The longest side of the picture that a notebook shows, in pixels.
 _NOTEBOOK_PX = 1280
@@ -194,25 +197,27 @@ class Scene(SceneTables):
         parts += [_toml.table(head, named(keys)) for head, keys in self._tables]
         return "\n".join(parts)
 
-    def _build(self) -> _BuiltScene:
+    def _build(self, progress: _progress.Said | bool = False) -> _BuiltScene:
         if self._built is None:
-            self._built = self._build_new()
+            self._built = self._build_new(progress)
             for finding in self._built.built_findings:
                 if finding.severity != "note":
                     warnings.warn(SandtableWarning(finding), stacklevel=_outside())
         return self._built
 
-    def _build_new(self) -> _BuiltScene:
+    def _build_new(self, progress: _progress.Said | bool) -> _BuiltScene:
         remote = list(self._allow_remote)
         if self._file is not None and not self._tables and not self._top:
-            return _BuiltScene.open(self._file, allow=list(self._allow), allow_remote=remote)
+            return _BuiltScene.open(self._file, allow=list(self._allow), allow_remote=remote, progress=progress)
         allow = list(dict.fromkeys(self._allow))
         if self._file is not None:
             folder = self._file.absolute().parent
             # What the included file may read itself.
             allow += [folder.parent if folder.parent.parent != folder.parent else folder]
         text = self.toml()
-        return _BuiltScene.build(text, list(self._given.items()), allow=allow, allow_remote=remote)
+        return _BuiltScene.build(
+            text, list(self._given.items()), allow=allow, allow_remote=remote, progress=progress
+        )
 
     @property
     def cameras(self) -> tuple[str, ...]:
@@ -230,17 +235,29 @@ class Scene(SceneTables):
         first needed."""
         return self._build().findings
 
-    def render(self, camera: str | None = None, size: tuple[int, int] | None = None) -> NDArray[np.uint8]:
+    def render(
+        self, camera: str | None = None, size: tuple[int, int] | None = None, *, progress: _Progress = None
+    ) -> NDArray[np.uint8]:
         """Renders the view of a camera, with its annotations: uint8 of shape (H, W, 3), red, green and blue.
 
         ``camera`` is one of ``cameras``, the first by default; ``size`` is (width, height), 16 to 16384 pixels each, by default
         that of the camera's paper or (1920, 1080), or as many in the shape of what a map shows. The pixels are those of
         ``sandtable render``.
+
+        ``progress`` is called with the share of the picture that is drawn, 0 to 1, some times a second. With ``progress=True``
+        the step and its share are printed on standard error. By default a notebook shows them under the cell while work takes
+        longer than a second; ``progress=False`` shows nothing.
         """
-        return self._build().render(camera, size)
+        with _progress.of_parts(progress) as said:
+            return self._build(said).render(camera, size, progress=said)
 
     def save(
-        self, path: str | PathLike[str], *, camera: str | None = None, size: tuple[int, int] | None = None
+        self,
+        path: str | PathLike[str],
+        *,
+        camera: str | None = None,
+        size: tuple[int, int] | None = None,
+        progress: _Progress = None,
     ) -> None:
         """Writes a file in the format of its extension.
 
@@ -252,22 +269,27 @@ class Scene(SceneTables):
         ``.toml``                 the scene file, with GeoTIFF and GeoJSON of data in memory beside it
         ========================  ===============================================================
 
-        ``camera`` and ``size`` are those of a picture, as in ``render``. Raises SandtableError.
+        ``camera`` and ``size`` are those of a picture, as in ``render``, and so is ``progress``. Raises SandtableError.
         """
         path = Path(path)
         if path.suffix.lower() != ".toml":
-            self._build().save(path, camera, size)
+            with _progress.of_parts(progress) as said:
+                self._build(said).save(path, camera, size, progress=said)
             return
         text = self.toml()
         if self._file is None or self._tables or self._top:
             text = self._text(_saved.relative_names(path, _saved.write_data(self._given, path)))
         path.write_text(text, encoding="utf-8")
 
-    def show(self) -> _saved.ScenePage:
-        """The scene as a page that a notebook shows in a frame: turned, zoomed and asked for heights with the mouse."""
-        return _saved.ScenePage(self._build().page())
+    def show(self, *, progress: _Progress = None) -> _saved.ScenePage:
+        """The scene as a page that a notebook shows in a frame: turned, zoomed and asked for heights with the mouse.
 
-    def analyze(self, kind: str, *, crs: Any = None, progress: Any = None, **arguments: Any) -> Any:
+        ``progress`` is that of ``render``.
+        """
+        with _progress.of_parts(progress) as said:
+            return _saved.ScenePage(self._build(said).page(progress=said))
+
+    def analyze(self, kind: str, *, crs: Any = None, progress: _Progress = None, **arguments: Any) -> Any:
         """Analyzes the ground, as ``sandtable analyze``: ``kind`` and the keywords are those of ``sandtable.kinds()``.
 
         Positions are (x, y) in ``crs``, by default the scene's, texts that state places, lists or arrays of them, or shapes of
@@ -275,13 +297,14 @@ class Scene(SceneTables):
         ``xarray.DataArray``, which needs xarray; every other an ``Analysis``. The ground has its earthworks, and roads, water,
         woods and buildings are known. Raises SandtableError.
 
-        ``progress`` is called with the share that is done, 0 to 1, some times a second; an exception of it ends the analysis.
-        With ``progress=True`` the share is printed on standard error.
+        ``progress`` is that of ``render``; an exception of it ends the analysis.
         """
-        return self._build().analyze(kind, crs=crs, progress=progress, **arguments)
+        with _progress.of_parts(progress) as said:
+            return self._build(said).analyze(kind, crs=crs, progress=said, **arguments)
 
     def _repr_png_(self) -> bytes:
-        return self._build().png(longest=_NOTEBOOK_PX)
+        with _progress.of_parts(None) as said:
+            return self._build(said).png(longest=_NOTEBOOK_PX, progress=said)
 
     def __repr__(self) -> str:
         if self._file is not None and not self._tables and not self._top:
