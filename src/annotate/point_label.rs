@@ -37,7 +37,7 @@ pub struct PreparedLabel<'a> {
 
 impl<'a> PreparedLabel<'a> {
     pub fn new(label: &'a PictureLabel, composer: &mut Composer) -> Result<Self, LabelOutcome> {
-        let style = LabelStyle::new(label.kind, composer);
+        let style = LabelStyle::new(label, composer);
         let block = set_lines(&label.text, &style, composer);
         if block.lines.is_empty() {
             return Err(if block.shortened { LabelOutcome::CrowdedOut } else { LabelOutcome::Empty });
