@@ -10,6 +10,8 @@ mod broken;
 mod first_picture;
 #[path = "real_data/ground_looks.rs"]
 mod ground_looks;
+#[path = "real_data/legible.rs"]
+mod legible;
 #[path = "real_data/line_widths.rs"]
 mod line_widths;
 #[path = "real_data/new_choices.rs"]

@@ -103,6 +103,8 @@ pub struct LineLabel {
     pub ink: Option<Srgba>,
     /// The lower, the more important.
     pub rank: f64,
+    /// The size of its letters, of the usual size of its kind.
+    pub size: f32,
     /// The label drawn instead where the name finds no place along the line.
     pub fallback: Option<PictureLabel>,
 }
@@ -176,6 +178,8 @@ pub struct PictureLabel {
     pub kind: LabelKind,
     /// The lower, the more important.
     pub rank: f64,
+    /// The size of its letters, of the usual size of its kind.
+    pub size: f32,
 }
 
 /// A military symbol at a place on the picture.
@@ -240,6 +244,7 @@ pub(super) mod samples {
             visible: true,
             kind: LabelKind::Place,
             rank: 0.0,
+            size: 1.0,
         }
     }
 }

@@ -112,6 +112,7 @@ fn line_label(contour: &NumberedContour) -> LineLabel {
         kind: LabelKind::Road,
         ink: None,
         rank: 0.0,
+        size: 1.0,
         fallback: None,
     }
 }

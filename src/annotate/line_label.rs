@@ -74,7 +74,7 @@ pub struct LetterTop {
 impl<'a> PreparedLine<'a> {
     /// The name with the places where it may stand; `None` where it has no letters.
     pub fn new(label: &'a LineLabel, composer: &mut Composer) -> Option<Self> {
-        let style = LineStyle::new(label.kind, label.ink, composer);
+        let style = LineStyle::new(label, composer);
         Self::with_style(label, style, composer)
     }
 
@@ -346,6 +346,7 @@ mod tests {
             kind: LabelKind::Water,
             ink: None,
             rank: 0.0,
+            size: 1.0,
             fallback: None,
         }
     }

@@ -37,7 +37,7 @@ pub struct PreparedLabel<'a> {
 
 impl<'a> PreparedLabel<'a> {
     pub fn new(label: &'a PictureLabel, composer: &mut Composer) -> Result<Self, LabelOutcome> {
-        let style = LabelStyle::new(label.kind, composer);
+        let style = LabelStyle::new(label, composer);
         let block = set_lines(&label.text, &style, composer);
         if block.lines.is_empty() {
             return Err(if block.shortened { LabelOutcome::CrowdedOut } else { LabelOutcome::Empty });
@@ -75,9 +75,11 @@ impl<'a> PreparedLabel<'a> {
         }
     }
 
-    /// The halo of everything drawn of it.
+    /// The halo of everything drawn of it, notes in their fainter ink among it.
     fn halo(&self, candidate: &LabelCandidate, ground: &Pixels) -> Halo {
-        Halo::over(ground, &candidate.text, self.style.ink, self.style.halo)
+        let notes = self.block.lines.len() > 1;
+        let faintest = if notes { self.style.note_ink } else { self.style.ink };
+        Halo::over(ground, &candidate.text, faintest, self.style.halo)
     }
 
     /// Writes the text: all halos first, for the name's must not cover the height below it.
@@ -166,6 +168,21 @@ fn uprighted(line: PixelSegment) -> PixelSegment {
 mod tests {
     use super::*;
     use crate::annotation::samples::label;
+    use crate::halo::worst_contrast;
+    use sandtable_draw::color::Srgba;
+
+    #[test]
+    fn notes_stand_out_of_the_halo_too_on_every_ground() {
+        let mut composer = Composer::new(1920, 1080);
+        let noted = PictureLabel { kind: LabelKind::Summit, ..label("Peak\n1234 m", 400.0, 500.0) };
+        let prepared = PreparedLabel::new(&noted, &mut composer).expect("letters");
+        for light in (0..=255).step_by(15) {
+            let ground = Pixels::filled(1920, 1080, Srgba::opaque(light, light, light));
+            let halo = prepared.halo(&prepared.positions[0], &ground).color;
+            let contrast = worst_contrast(halo, prepared.style.note_ink);
+            assert!(contrast >= 4.5, "{light}: {contrast}");
+        }
+    }
 
     #[test]
     fn a_leader_goes_up_whatever_the_top_says() {

@@ -89,7 +89,8 @@ pub fn draw(
         }
     }
     for (name, candidate) in placed() {
-        name.write(candidate, Halo::over(ground, &candidate.text, INK, halo_px), &mut drawing);
+        let faintest = if name.lines.len() > 1 { SOFT_INK } else { INK };
+        name.write(candidate, Halo::over(ground, &candidate.text, faintest, halo_px), &mut drawing);
         taken.push(candidate.text);
         report.boxes.extend(SheetBox::of(&name.name.text, candidate));
     }

@@ -288,11 +288,16 @@ table! {
         /// `shape`, or the name of a property.
         columns: Option<Stated<BTreeMap<String, String>>> = key::named_texts(), otherwise "by the names of the columns";
         /// The lower, the more important: labels that find no free place beside more important ones are left out. Features
-        /// for which an expression gives no number come last.
+        /// for which an expression gives no number come last. With `file` and `kind = "summit"`, expressions may read
+        /// `prominence`: how far the model's summit there stands above the saddle to higher ground, in meters, and 0 where the
+        /// model has no summit; `rank = "-prominence"` puts the most prominent first.
         rank: DefaultedValue<f64> = key::feature_number(Within(-1e9, 1e9), ""), default 0;
         /// With `file`: how many features are labeled at most, the most important first; of those with the same rank the
         /// longer or larger, then the earlier in the file.
         most: u32 = key::integer(1, 4096), default 1000;
+        /// How large the letters are, of the usual size of the `kind`: a city above a village, by an expression over `place` or
+        /// `population`. The nearest size of one scale is taken, whose steps differ by 15 %.
+        size: DefaultedValue<f64> = key::feature_number(Within(0.5, 3.0), ""), default 1;
         /// Height above the ground at which the leader line starts.
         height: f64 = key::number(Within(0.0, 1e7), "m"), default 0;
         /// What the label names.

@@ -102,6 +102,12 @@ const NEVER: &str = "false";
 const OSM_SURFACE: &str =
     "surface = \"if(surface in ('unpaved', 'gravel', 'dirt', 'ground'), 'gravel', 'asphalt')\"";
 
+/// The letters of settlements by their class, of the usual size.
+const PLACE_SIZES: &str = "size = \"match(place ?? fclass, 'national_capital', 1.5, 'city', 1.5, 'town', 1.3, 'village', 1, 0.87)\"";
+
+/// The letters of peaks by how far they stand above the saddle to higher ground.
+const PEAK_SIZES: &str = "size = \"if(prominence >= 500, 1.15, if(prominence >= 100, 1, 0.87))\"";
+
 /// Pavement as an area: a light gray, laid on a texture of fine grain.
 const PAVED: &[&str] = &["cover = \"sand\"", "color = \"#bccdf8\""];
 
@@ -369,6 +375,7 @@ pub(super) static RULES: &[TableRule] = &[
         "has(name) and (place ?? fclass) in ('city', 'national_capital', 'town', 'village', 'suburb', 'hamlet', \
          'isolated_dwelling', 'locality')",
     )
+    .keys(&[PLACE_SIZES])
     .label(LabelRule {
         text: "name",
         name: "name",
@@ -383,6 +390,7 @@ pub(super) static RULES: &[TableRule] = &[
         "points",
         "has(NAME) and PLACE in ('city', 'town', 'village', 'suburb', 'hamlet', 'isolated_dwelling', 'locality')",
     )
+    .keys(&["size = \"match(PLACE, 'city', 1.5, 'town', 1.3, 'village', 1, 0.87)\""])
     .label(LabelRule {
         text: "NAME",
         name: "NAME",
@@ -392,11 +400,12 @@ pub(super) static RULES: &[TableRule] = &[
     }),
     rule("label", PEAKS, "points", "has(name) and (natural ?? fclass) in ('peak', 'volcano')").keys(&[
         "kind = \"summit\"",
+        PEAK_SIZES,
     ])
     .label(LabelRule {
         text: "if(has(ele), '{name}\n{ele} m', name)",
         name: "name",
-        rank: "4 - (ele ?? 0) / 10000",
+        rank: "4 - (prominence ?? ele ?? 0) / 10000",
         most: 10,
         is_title: false,
     }),

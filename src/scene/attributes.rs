@@ -16,10 +16,15 @@ use sandtable_vector::feature::{Geometry, VectorLayer};
 /// Longer texts name nothing; they are cut here.
 const MOST_LETTERS: usize = 1000;
 
+/// The property that names of summits have besides those of their file.
+pub const PROMINENCE: &str = "prominence";
+
 /// The properties of one feature; none for a feature that the scene file itself states.
 #[derive(Clone, Debug, Default)]
 pub struct Attributes {
     feature: Option<(Arc<VectorLayer>, usize)>,
+    /// What `prominence` is where the feature has no such property, in meters.
+    prominence_m: Option<f64>,
 }
 
 /// The number of features for which a key's expression gave no value, by key and default.
@@ -28,13 +33,22 @@ pub type DefaultCounts = BTreeMap<(String, String), usize>;
 impl Attributes {
     /// The properties of the layer's feature at an index.
     pub fn new(layer: Arc<VectorLayer>, feature: usize) -> Self {
-        Self { feature: Some((layer, feature)) }
+        Self { feature: Some((layer, feature)), prominence_m: None }
+    }
+
+    /// The same with the prominence of the summit that the feature names, in meters, as its property `prominence`, unless its
+    /// file states one.
+    pub fn with_prominence(self, prominence_m: Option<f64>) -> Self {
+        Self { prominence_m, ..self }
     }
 
     /// A property's value; `None` where it is absent, null, a list or a table.
     pub fn get(&self, property: &str) -> Option<Scalar> {
         let (layer, feature) = self.feature.as_ref()?;
-        match layer.features[*feature].properties.get(property)? {
+        let Some(value) = layer.features[*feature].properties.get(property) else {
+            return self.prominence_m.filter(|_| property == PROMINENCE).map(Scalar::Number);
+        };
+        match value {
             serde_json::Value::Bool(value) => Some(Scalar::Bool(*value)),
             serde_json::Value::Number(value) => value.as_f64().map(Scalar::Number),
             serde_json::Value::String(value) => Some(Scalar::Text(value.clone())),

@@ -10,6 +10,7 @@ use glam::{DVec2, Vec3};
 use crate::attributes::{Attributes, written};
 use crate::exact_ground::ExactGround;
 use crate::label_course::{LabelCourse, across, along};
+use crate::named_summits::NamedSummits;
 use crate::scene_findings::SceneFindings;
 use crate::scene_label::{SceneLabel, whole_meters};
 use crate::shape_place::{place, world_points};
@@ -19,6 +20,7 @@ use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::LabelTable;
 use sandtable_description::expression::Expression;
 use sandtable_description::finding_code::FindingCode;
+use sandtable_description::words::LabelKind;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::polygon::doubled_area;
 use sandtable_terrain::lattice::Lattice;
@@ -39,8 +41,16 @@ pub(super) fn labels(
     let Some(source) = table.source() else { return Ok(Vec::new()) };
     let text = Expression::parse(&table.text).map_err(|error| frame.document.error(&table.text, error))?;
     let (crs, features) = sources.features(&source)?;
+    let summits = (table.kind == LabelKind::Summit).then(|| NamedSummits::new(lattice));
+    let known = |attributes: Attributes| {
+        let prominence_m = summits.as_ref().and_then(|summits| {
+            let at = place(attributes.geometry()?, &crs, frame, lattice)?;
+            summits.prominence_m(at.truncate().as_vec2())
+        });
+        attributes.with_prominence(prominence_m)
+    };
     let mut features: Vec<RankedFeature> =
-        features.into_iter().map(|attributes| RankedFeature::new(table, attributes)).collect();
+        features.into_iter().map(|attributes| RankedFeature::new(table, known(attributes))).collect();
     // Stable: the file's order decides in the end.
     features.sort_by(|a, b| a.rank.total_cmp(&b.rank).then(b.size.total_cmp(&a.size)));
     let most = table.most as usize;
@@ -93,10 +103,11 @@ pub(super) fn labels(
         if is_line {
             lines.insert(text, named.len());
         }
+        let size = type_size(table, &attributes);
         let ground = ground.as_vec3();
         let anchor = ground + Vec3::Z * table.height as f32;
         let stated = table.text.span().unwrap_or_default();
-        let label = SceneLabel { text: filled, stated, ground, anchor, course, kind: table.kind, rank };
+        let label = SceneLabel { text: filled, stated, ground, anchor, course, kind: table.kind, rank, size };
         named.push(NamedFeature { label, lines: pieces });
     }
     if named.is_empty() && left_out.off > 0 {
@@ -135,6 +146,12 @@ pub fn rank(table: &LabelTable, attributes: &Attributes) -> f64 {
         Some(rank) => attributes.value(Some(rank)).unwrap_or(f64::INFINITY),
         None => *table.rank.default(),
     }
+}
+
+/// The size of the letters of a feature in `table`; the usual one where an expression gives none.
+pub fn type_size(table: &LabelTable, attributes: &Attributes) -> f32 {
+    let stated = table.size.stated().and_then(|size| attributes.value(Some(size)));
+    stated.unwrap_or(*table.size.default()) as f32
 }
 
 /// A feature with what decides its turn.

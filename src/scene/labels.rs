@@ -55,5 +55,6 @@ fn label(
         course: LabelCourse::Place,
         kind: table.kind,
         rank: feature_labels::rank(table, &Attributes::default()),
+        size: feature_labels::type_size(table, &Attributes::default()),
     })
 }

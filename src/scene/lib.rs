@@ -58,6 +58,7 @@ pub mod military;
 pub mod misplacement;
 pub mod model_file;
 pub mod models;
+pub mod named_summits;
 pub mod near;
 mod overlays;
 pub mod overridden_crs;

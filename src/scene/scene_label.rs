@@ -24,6 +24,8 @@ pub struct SceneLabel {
     pub kind: LabelKind,
     /// The lower, the more important; never NaN.
     pub rank: f64,
+    /// The size of its letters, of the usual size of its kind.
+    pub size: f32,
 }
 
 /// A height in whole meters, without a sign before 0.

@@ -90,6 +90,7 @@ pub(super) fn spot_heights(
                 SpotOrigin::Lake { .. } => LabelKind::Water,
             },
             rank: FIRST_RANK + chosen.len() as f64,
+            size: 1.0,
         });
     }
     Ok(chosen)

@@ -70,6 +70,7 @@ fn along(
         kind: LabelKind::Point,
         ink: Some(text.color),
         rank: RANK,
+        size: 1.0,
         fallback: None,
     }
 }

@@ -120,6 +120,7 @@ fn project(label: &SceneLabel, camera: &Camera, picture: &Rendering) -> Option<P
         visible: is_seen(picture, ground.pixel, ground.depth_m) || is_seen(picture, top.pixel, top.depth_m),
         kind: label.kind,
         rank: label.rank,
+        size: label.size,
     })
 }
 

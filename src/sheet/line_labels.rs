@@ -47,6 +47,7 @@ pub fn line_label(
         kind: label.kind,
         ink: None,
         rank: label.rank,
+        size: label.size,
         fallback,
     })
 }

@@ -101,6 +101,7 @@ pub fn panorama_annotations(scene: &SceneModel, panorama: &Panorama, picture: &R
             visible: is_visible,
             kind: label.kind,
             rank: label.rank,
+            size: label.size,
         })
     });
     Annotations {

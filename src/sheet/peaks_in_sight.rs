@@ -10,6 +10,7 @@ use glam::{DVec2, Vec2, Vec3};
 
 use sandtable_description::words::LabelKind;
 use sandtable_scene::label_course::LabelCourse;
+use sandtable_scene::named_summits::summit_reach_m;
 use sandtable_scene::scene_label::whole_meters;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::lattice::{Lattice, Post};
@@ -18,10 +19,6 @@ use sandtable_terrain::query::{Interpolation, ground_height};
 use sandtable_terrain::sight::Curvature;
 use sandtable_terrain::sight::ground::SightGround;
 use sandtable_terrain::sight::line::{Sight, SightEnd};
-
-/// How far from a name the summit that it belongs to is looked for: meters, and cells of coarser ground.
-const SUMMIT_M: f64 = 150.0;
-const SUMMIT_CELLS: f64 = 2.0;
 
 /// How far above its highest post a peak is looked for, meters: about a cairn. Without it, rounding hides the top of a cone.
 pub const ABOVE_M: f64 = 1.0;
@@ -74,7 +71,7 @@ pub fn peaks(scene: &SceneModel, eye: Vec3) -> Vec<Peak> {
     let all = summits(lattice);
     let (low_m, high_m) = lattice.height_range();
     let least_m = (high_m - low_m) * LEAST_SHARE;
-    let reach_m = SUMMIT_M.max(lattice.cell().max_element() * SUMMIT_CELLS);
+    let reach_m = summit_reach_m(lattice);
     let mut labels: Vec<_> = scene
         .labels
         .iter()

@@ -31,6 +31,7 @@ fn label(text: &str, kind: LabelKind, x: f32, y: f32, depth_m: f32) -> PictureLa
         visible: true,
         kind,
         rank: 0.0,
+        size: 1.0,
     }
 }
 
@@ -117,6 +118,7 @@ fn trouble(width: u32, height: u32) -> Annotations {
                 visible: n % 9 != 0,
                 kind: kinds[n as usize % 4],
                 rank: 0.0,
+                size: 1.0,
             }
         })
         .collect();
@@ -272,6 +274,7 @@ proptest! {
             visible: *visible,
             kind: [LabelKind::Summit, LabelKind::Place, LabelKind::Water, LabelKind::Point][text.len() % 4],
             rank: top.0.into(),
+            size: 1.0,
         }).collect();
         let all = Annotations { labels, title: Some(title), ..Annotations::default() };
         let (_, report) = annotated(400, 250, &all);

@@ -1344,6 +1344,7 @@ class SceneTables:
         most: int | None = None,
         phases: str | Sequence[str] | None = None,
         rank: float | Expression | None = None,
+        size: float | Expression | None = None,
         style: str | None = None,
         text: str | None = None,
         where: Mapping[str, Any] | Expression | None = None,
@@ -1377,7 +1378,13 @@ class SceneTables:
             Names of the phases in which it is there. Default: all of them.
         rank : number, from -1e+09 to 1e+09, or expression
             The lower, the more important: labels that find no free place beside more important ones are left out.
-            Features for which an expression gives no number come last. Default: 0.
+            Features for which an expression gives no number come last. With `file` and `kind = "summit"`, expressions
+            may read `prominence`: how far the model's summit there stands above the saddle to higher ground, in
+            meters, and 0 where the model has no summit; `rank = "-prominence"` puts the most prominent first.
+            Default: 0.
+        size : number, from 0.5 to 3, or expression
+            How large the letters are, of the usual size of the `kind`: a city above a village, by an expression over
+            `place` or `population`. The nearest size of one scale is taken, whose steps differ by 15 %. Default: 1.
         style
             Name of a style: the keys of `[styles.NAME]` that this table does not state count as its own. Default:
             none.
@@ -1390,7 +1397,7 @@ class SceneTables:
         return self._with(
             "label", "[[label]]", source,
             {"at": at, "columns": columns, "crs": crs, "height": height, "kind": kind, "layer": layer, "most": most,
-             "phases": phases, "rank": rank, "style": style, "text": text, "where": where},
+             "phases": phases, "rank": rank, "size": size, "style": style, "text": text, "where": where},
         )
 
     def lakes(
