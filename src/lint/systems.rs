@@ -43,7 +43,7 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
         );
         sink.add(context.finding(FindingCode::FarFromZone, dem.clone(), message).with_help(help));
     }
-    let own = scene.heights.snapshot().source().crs.clone();
+    let own = scene.heights.snapshot().source_header().crs.clone();
     let mut told = BTreeSet::new();
     let stated = table_sources(document).into_iter().filter_map(|table| {
         let (crs, _) =

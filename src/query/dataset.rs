@@ -245,7 +245,7 @@ impl Dataset {
         match &self.content {
             DatasetContent::Raster { raster, .. } => Arc::clone(raster),
             DatasetContent::Windows(elevation) => Arc::clone(elevation.header()),
-            DatasetContent::Scene(ground) => Arc::clone(ground.heights.snapshot().source()),
+            DatasetContent::Scene(ground) => Arc::clone(ground.heights.snapshot().source_header()),
         }
     }
 
@@ -256,7 +256,8 @@ impl Dataset {
     pub fn raster(&self) -> Result<Arc<Raster>, QueryError> {
         match &self.content {
             DatasetContent::Windows(elevation) => elevation.read().map(Arc::new).map_err(self.unreadable()),
-            _ => Ok(self.header()),
+            DatasetContent::Scene(ground) => Ok(Arc::clone(ground.heights.snapshot().source())),
+            DatasetContent::Raster { raster, .. } => Ok(Arc::clone(raster)),
         }
     }
 

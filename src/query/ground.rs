@@ -11,6 +11,7 @@ use sandtable_raster::warp::error::WarpError;
 use sandtable_raster::warp::valid_search::WarpWindowsError;
 use sandtable_terrain::lattice::{Lattice, LatticeError};
 use sandtable_terrain::query::service::{HeightService, Snapshot};
+use sandtable_terrain::query::source_raster::SourceRaster;
 use sandtable_terrain::query::windowed::LatticePartError;
 
 /// Ground in meters.
@@ -37,7 +38,7 @@ impl From<&Snapshot> for QueriedGround {
         Self {
             lattice: Arc::clone(snapshot.lattice()),
             crs: snapshot.crs().clone(),
-            vertical_datum: snapshot.source().vertical_datum.clone(),
+            vertical_datum: snapshot.source_header().vertical_datum.clone(),
         }
     }
 }
@@ -133,5 +134,6 @@ impl MetricGround {
 /// See [`GroundError`].
 pub fn height_service(raster: &Arc<Raster>) -> Result<HeightService, GroundError> {
     let ground = MetricGround::from_raster(raster)?;
-    Ok(HeightService::new(Arc::clone(raster), ground.crs, Arc::new(ground.lattice)))
+    let source = Arc::new(SourceRaster::from(Arc::clone(raster)));
+    Ok(HeightService::new(source, ground.crs, Arc::new(ground.lattice)))
 }

@@ -227,6 +227,16 @@ impl Assets {
         Ok(bytes)
     }
 
+    /// The size of the file on disk that the scene calls `name`; `None` for one that is given or has an address, or that is not
+    /// there.
+    pub fn bytes_on_disk(&self, name: &str) -> Option<u64> {
+        if is_address(name) || self.given.file(name).is_some() {
+            return None;
+        }
+        let file = fs::metadata(self.resolve(name).ok()?).ok()?;
+        file.is_file().then_some(file.len())
+    }
+
     /// The elevation file that the scene calls `name`, of any size, to be read in parts, and its first bytes: `head` of one on
     /// disk.
     ///

@@ -45,11 +45,11 @@ use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_geom::crs::Crs;
-use sandtable_raster::raster::Raster;
 use sandtable_roam::layout::{DEFAULT_PATCH, PatchLayout};
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::query::deck::Deck;
 use sandtable_terrain::query::service::HeightService;
+use sandtable_terrain::query::source_raster::SourceRaster;
 use sandtable_terrain::triangle_surface::SurfaceTriangle;
 
 /// The ground of a scene: all that height queries, profiles and lines of sight need.
@@ -271,7 +271,7 @@ pub fn build_with(
 
 fn height_service(
     document: &Document,
-    source: Arc<Raster>,
+    source: Arc<SourceRaster>,
     crs: Crs,
     lattice: Arc<Lattice>,
     decks: &[SurfaceTriangle],

@@ -386,10 +386,13 @@ impl TileList {
             let hints = DemHints { options, overridden: &note, companions: &|name| companions.get(name) };
             let tile = match assets.given().raster(name) {
                 Some(raster) => Ok(given_tile(name, raster, &hints, document)?),
-                None => {
-                    let bytes = assets.read(name).map_err(|error| document.error(dem, error))?;
-                    read::read(name, &bytes, &hints)
-                }
+                None => match decoded(file, assets, &own, &note) {
+                    Some(tile) => Ok(tile),
+                    None => {
+                        let bytes = assets.read(name).map_err(|error| document.error(dem, error))?;
+                        read::read(name, &bytes, &hints)
+                    }
+                },
             };
             companions.check().map_err(|error| document.error(dem, error))?;
             let mut tile = tile.map_err(|error| document.error(dem, error))?;
@@ -470,6 +473,28 @@ fn open_windows(
         (_, windows) => windows,
     };
     Ok(windows.map(|windows| raised(windows, *offset_m)))
+}
+
+/// A large file on disk, decoded from there block by block: its bytes are not held beside its samples. `None` for other files, and
+/// for what cannot be read so, of which reading it whole tells why.
+fn decoded(
+    file: &TileFile,
+    assets: &Assets,
+    stated: &DemOptions,
+    overridden: &dyn Fn(&Crs),
+) -> Option<Raster> {
+    let bytes = assets.bytes_on_disk(&file.name).filter(|_| file.source.is_none())?;
+    let mut windows =
+        open_windows(&TileFile::alone(file.name.clone(), 0.0), assets, stated, overridden).ok()??;
+    let (size, is_wide) = (windows.size(), windows.metadata().samples.is_wide());
+    let window = RasterWindow::all(size);
+    let samples = u64::from(size.0) * u64::from(size.1);
+    let sample_bytes = if is_wide { size_of::<f64>() } else { size_of::<f32>() } as u64;
+    // A small file may claim to hold many samples that were never written.
+    let is_large =
+        samples * sample_bytes > WINDOW_CACHE_BYTES as u64 && samples <= RASTER_SAMPLES.get().min(bytes);
+    let samples = is_large.then(|| windows.samples(window).ok()).flatten()?;
+    Some(Raster { samples, ..windows.metadata().without_samples() })
 }
 
 /// Windows with `meters` added to their heights.

@@ -23,12 +23,13 @@ use sandtable_raster::void_counts::VoidCounts;
 use sandtable_raster::windows::Windows;
 use sandtable_raster::{voids, warp};
 use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::query::source_raster::SourceRaster;
 
 /// The raster as read and the lattice made of it.
 pub struct LoadedGround {
     /// The raster as read; tiles joined, voids filled where the scene file says so. Of large files, only what the extent
     /// needs, or means of squares of samples.
-    pub source: Arc<Raster>,
+    pub source: Arc<SourceRaster>,
     /// The heights in the scene's system, before earthworks.
     pub lattice: Lattice,
     /// The scene's system.
@@ -89,14 +90,21 @@ pub fn load(
         None | Some(false) => {}
     }
     let metric = metric(document, &read, filled.as_ref().unwrap_or(&read.held), &mut findings)?;
-    let lattice = Lattice::from_raster(&metric).map_err(|error| document.error(dem, error))?;
     let crs = metric.crs.clone().or(document.crs.clone()).unwrap_or_else(Crs::local);
     let scale_note = read.off_scale.as_ref().map(ToString::to_string);
     if let Some(note) = &scale_note {
         findings.add(FindingCode::LengthsNotTrue, span, note.as_str());
     }
     let stated_crs = read.off_scale.map_or_else(|| crs.clone(), |off| off.stated);
-    let (source, nests_step, all_samples) = (Arc::new(read.held), read.nests_step, read.all_samples);
+    let is_source = matches!(metric, Cow::Borrowed(_)) && filled.is_none();
+    let other = (!is_source).then(|| Lattice::from_raster(&metric));
+    drop(metric);
+    let made = match other {
+        Some(lattice) => lattice.map(|lattice| (SourceRaster::from(Arc::new(read.held)), lattice)),
+        None => SourceRaster::with_lattice(read.held),
+    };
+    let (source, lattice) = made.map_err(|error| document.error(dem, error))?;
+    let (source, nests_step, all_samples) = (Arc::new(source), read.nests_step, read.all_samples);
     Ok(LoadedGround { source, lattice, crs, stated_crs, scale_note, findings, nests_step, all_samples })
 }
 

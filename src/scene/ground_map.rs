@@ -13,7 +13,6 @@ use sandtable_draw::contour_ground::lift_level_ground;
 use sandtable_draw::ground::{GroundMap, GroundPost};
 use sandtable_draw::ground_levels::{GroundLevel, PostCount, level};
 use sandtable_draw::lighting::ReliefShading;
-use sandtable_raster::raster::Samples;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::light::TerrainLight;
 use sandtable_terrain::terraces::without_terraces;
@@ -39,7 +38,7 @@ pub fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: Gr
         rayon::join(|| TerrainLight::new(scene.ground().lattice(), to_sun, number), beside_light);
     let columns = lattice.columns() as usize;
     let is_water = |index: usize| water.get(index).copied().unwrap_or_default();
-    let is_rounded = holds_whole_meters(&scene.heights.snapshot().source().samples);
+    let is_rounded = scene.heights.snapshot().holds_whole_numbers();
     let smooth = is_rounded.then(|| without_terraces(lattice, 1.0, &is_water));
     let shaded = smooth.as_ref().unwrap_or(lattice);
     let row = |row: usize| {
@@ -112,14 +111,6 @@ pub fn form_level(lattice: &Lattice) -> u32 {
 /// The width of the smallest forms of the generalized ground, meters.
 fn form_m(lattice: &Lattice) -> f64 {
     lattice.extent().size().max_element() * FORM_SHARE
-}
-
-/// Whether all samples that are numbers are whole.
-fn holds_whole_meters(samples: &Samples) -> bool {
-    match samples {
-        Samples::F32(samples) => is_whole_meters(samples),
-        Samples::F64(samples) => samples.iter().all(|sample| sample.is_nan() || sample.fract() == 0.0),
-    }
 }
 
 /// Whether all heights that are numbers are whole.

@@ -28,7 +28,7 @@ use sandtable_vector::error::{VectorError, did_you_mean, list};
 use sandtable_vector::feature::{Geometry, Polygon, VectorLayer};
 use sandtable_vector::filter::{Condition, Filter};
 use sandtable_vector::hints::VectorHints;
-use sandtable_vector::read::{self, VectorFile};
+use sandtable_vector::read::{self, LayeredFile, VectorFile};
 
 /// A file's name, and the layer, the system and the columns stated for it.
 type LayerKey = (String, Option<String>, Option<String>, Vec<(String, String)>);
@@ -40,6 +40,8 @@ pub struct Sources<'a> {
     /// The files that the document may name.
     pub assets: &'a Assets,
     layers: RefCell<BTreeMap<LayerKey, Arc<VectorLayer>>>,
+    /// Files that take longer to read than a layer of them to make, by name.
+    layered: RefCell<BTreeMap<String, LayeredFile>>,
     /// The surfaces of CityJSON files.
     city_models: RefCell<BTreeMap<LayerKey, Arc<CityModel>>>,
     /// The systems that files state and the scene overrides.
@@ -79,6 +81,7 @@ impl<'a> Sources<'a> {
             frame,
             assets,
             layers: RefCell::default(),
+            layered: RefCell::default(),
             city_models: RefCell::default(),
             overridden: RefCell::default(),
             crossings_left,
@@ -307,7 +310,6 @@ impl<'a> Sources<'a> {
             self.layers.borrow_mut().insert(key, Arc::clone(&layer));
             return Ok(layer);
         }
-        let bytes = self.assets.read(file).map_err(|error| self.frame.document.error(file, error))?;
         // A table of attributes may be as large as the file itself.
         let companions = self.assets.companions(ASSET_BYTES.get());
         let overridden = |own: &Crs| drop(self.overridden.borrow_mut().insert(key.clone(), own.clone()));
@@ -315,7 +317,7 @@ impl<'a> Sources<'a> {
         let columns = &key.3;
         let hints =
             VectorHints { crs: stated, overridden: &overridden, layer: name, columns, companions: &found };
-        let read = read::read_file(file, &bytes, &hints);
+        let read = self.read(file, &hints)?;
         companions.check().map_err(|error| self.frame.document.error(file, error))?;
         let VectorFile { layer, model } = read.map_err(|error| self.unread(file, source, error))?;
         if let Some(model) = model {
@@ -334,6 +336,28 @@ impl<'a> Sources<'a> {
         let message = format!("`{key}` has no effect on '{}', which is features in memory", quoted(file));
         let error = self.frame.document.error(file, message).with_code(FindingCode::NoEffect);
         Err(error.with_help("leave it out: it says what is read of a file"))
+    }
+
+    /// Reads a layer of a file, and the file once for all of its layers where they are made of what is kept of it.
+    fn read(
+        &self,
+        file: &Stated<String>,
+        hints: &VectorHints<'_>,
+    ) -> Result<Result<VectorFile, VectorError>, Diagnostic> {
+        let of_layer =
+            |layered: &LayeredFile| layered.layer(hints).map(|layer| VectorFile { layer, model: None });
+        if let Some(layered) = self.layered.borrow().get(file.as_str()) {
+            return Ok(of_layer(layered));
+        }
+        let bytes = self.assets.read(file).map_err(|error| self.frame.document.error(file, error))?;
+        Ok(match LayeredFile::read(file, &bytes, hints) {
+            None => read::read_file(file, &bytes, hints),
+            Some(read) => read.and_then(|layered| {
+                let layer = of_layer(&layered);
+                self.layered.borrow_mut().insert(file.to_string(), layered);
+                layer
+            }),
+        })
     }
 
     /// Features in memory, in the system that the scene file states for them, where it states one.

@@ -137,7 +137,7 @@ fn scale_bar(camera: &Camera, picture: &Rendering) -> Option<ScaleBar> {
 
 fn legend(scene: &SceneModel) -> Legend {
     let (low_m, high_m) = scene.height_range_m;
-    let datum = scene.heights.snapshot().source().vertical_datum.clone();
+    let datum = scene.heights.snapshot().source_header().vertical_datum.clone();
     Legend {
         ramp: scene.shore_m().map_or_else(|| scene.ramp(), |shore_m| with_bathymetry(&scene.ramp(), shore_m)),
         low_m,

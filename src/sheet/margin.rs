@@ -60,7 +60,7 @@ fn facts(scene: &SceneModel, grid: Option<&str>) -> Vec<String> {
         facts.push(format!("Ellipsoid {} m, {flattening}", format_trimmed(major_m, 1)));
     }
     facts.extend(grid.map(str::to_owned));
-    let datum = scene.heights.snapshot().source().vertical_datum.clone();
+    let datum = scene.heights.snapshot().source_header().vertical_datum.clone();
     let datum = datum.map(|datum| format!(" above {datum}")).unwrap_or_default();
     let exaggeration = scene.scale.0;
     let stretched = match exaggeration == 1.0 {

@@ -16,6 +16,8 @@
 //!        0       1       2  column
 //! ```
 
+use std::sync::Arc;
+
 use glam::{DVec2, Vec2, Vec3};
 use rayon::prelude::*;
 
@@ -39,7 +41,8 @@ pub struct Lattice {
     /// The posts whose heights are held: all but in a lattice of [`Lattice::held_part`].
     held: PostRect,
     doublings: u32,
-    heights: Vec<f32>,
+    /// Shared with clones, and with the raster that they were read from, until one is set.
+    heights: Arc<Vec<f32>>,
     pinned: Vec<bool>,
     pin_slack_m: f32,
 }
@@ -227,7 +230,7 @@ impl Lattice {
             first,
             held,
             doublings: 0,
-            heights,
+            heights: Arc::new(heights),
             pinned,
             pin_slack_m: PIN_SLACK_M,
         })
@@ -243,19 +246,19 @@ impl Lattice {
             &self.heights[first..=self.index(Post { column: held.last.column, row })]
         };
         let heights = (held.first.row..=held.last.row).map(row).collect::<Vec<_>>().concat();
-        Self { held, pinned: vec![false; heights.len()], heights, ..*self }
+        Self { held, pinned: vec![false; heights.len()], heights: Arc::new(heights), ..*self }
     }
 
     /// The lattice with every height times `factor`, which is above 0.
     pub fn stretched(&self, factor: f32) -> Self {
-        let heights = self.heights.iter().map(|height| height * factor).collect();
+        let heights = Arc::new(self.heights.iter().map(|height| height * factor).collect());
         Self { heights, pinned: self.pinned.clone(), pin_slack_m: self.pin_slack_m * factor, ..*self }
     }
 
     /// The lattice with other heights, row by row from the south-west, one for each post.
     pub(crate) fn with_heights(&self, heights: Vec<f32>) -> Self {
         assert_eq!(heights.len(), self.heights.len(), "a height for each post");
-        Self { heights, pinned: self.pinned.clone(), ..*self }
+        Self { heights: Arc::new(heights), pinned: self.pinned.clone(), ..*self }
     }
 
     /// The heights of a row, where posts without data take the nearest height of the row, or `otherwise` if it has none.
@@ -330,6 +333,11 @@ impl Lattice {
         &self.heights
     }
 
+    /// The heights as they are now, without a copy of them.
+    pub(crate) fn shared_heights(&self) -> Arc<Vec<f32>> {
+        Arc::clone(&self.heights)
+    }
+
     /// The posts whose heights are held: all but in a lattice of [`Lattice::held_part`].
     pub fn held(&self) -> PostRect {
         self.held
@@ -397,14 +405,14 @@ impl Lattice {
     /// Sets a post's height and pins it: any drawn triangle that covers it must then be exact.
     pub fn pin(&mut self, post: Post, height: f32) {
         let index = self.index(post);
-        self.heights[index] = height;
+        Arc::make_mut(&mut self.heights)[index] = height;
         self.pinned[index] = true;
     }
 
     /// The heights of the posts from `first` to column `last` of its row, to be set. Pins stay.
     pub fn heights_mut(&mut self, first: Post, last: u32) -> &mut [f32] {
         let from = self.index(first);
-        &mut self.heights[from..=from + (last - first.column) as usize]
+        &mut Arc::make_mut(&mut self.heights)[from..=from + (last - first.column) as usize]
     }
 
     /// A post's index in [`Lattice::held_heights`]: where all are held, in [`Lattice::heights`].
@@ -500,6 +508,13 @@ fn turned<T: Copy + Sync>(values: &[T], columns: usize, height: impl Fn(T) -> f3
     let rows = heights.par_chunks_mut(columns).zip(values.par_chunks(columns).rev());
     rows.for_each(|(to, from)| to.iter_mut().zip(from).for_each(|(to, &from)| *to = height(from)));
     heights
+}
+
+/// Puts rows into the reverse order, where they are; on all threads.
+pub(crate) fn turn_rows(values: &mut [f32], columns: usize) {
+    let (first, last) = values.split_at_mut(values.len() / columns / 2 * columns);
+    let rows = first.par_chunks_exact_mut(columns).zip(last.par_rchunks_exact_mut(columns));
+    rows.for_each(|(first, last)| first.swap_with_slice(last));
 }
 
 /// Sets heights that are NaN to the one before.

@@ -28,6 +28,7 @@ use crate::feature::VectorLayer;
 #[cfg(feature = "vector-db")]
 use crate::geopackage;
 use crate::hints::VectorHints;
+use crate::osm::OsmExtract;
 use crate::{
     cityjson, cot, dxf, flatgeobuf, geojson, gpx, kml, landxml, milx, msdl, nvg, orbat, osm, shapefile, table,
 };
@@ -93,6 +94,36 @@ fn of_unpacking(error: ArchiveError) -> VectorError {
     }
 }
 
+/// A file in memory of which any number of layers are made: an OpenStreetMap extract, which takes longer to read than a layer of it
+/// to make.
+pub struct LayeredFile(OsmExtract);
+
+impl LayeredFile {
+    /// Reads such a file; `None` for a file of another format, or packed, of which [`read_file`] makes one layer.
+    ///
+    /// # Errors
+    /// As [`read`].
+    pub fn read(name: &str, bytes: &[u8], hints: &VectorHints) -> Option<Result<Self, VectorError>> {
+        if archive::is_gzip(bytes) || archive::is_zip(bytes) {
+            return None;
+        }
+        let extract = match format_of(name, bytes) {
+            VectorFormat::OsmXml => OsmExtract::of_xml(bytes, hints),
+            VectorFormat::OsmPbf => OsmExtract::of_pbf(bytes, hints),
+            _ => return None,
+        };
+        Some(extract.map(Self))
+    }
+
+    /// The layer that `hints` request, as [`read`] makes it.
+    ///
+    /// # Errors
+    /// As [`read`].
+    pub fn layer(&self, hints: &VectorHints) -> Result<VectorLayer, VectorError> {
+        self.0.layer(hints)
+    }
+}
+
 fn read_unpacked(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorFile, VectorError> {
     let layer = match format_of(name, bytes) {
         VectorFormat::GeoJson => single(name, hints, geojson::read(bytes, hints)),
@@ -131,8 +162,8 @@ fn read_unpacked(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<Vector
         VectorFormat::Kml => kml::read(bytes, hints),
         VectorFormat::LandXml => landxml::read(bytes, hints),
         VectorFormat::Table => single(name, hints, table::read_text(bytes, hints)),
-        VectorFormat::OsmXml => osm::read_xml(bytes, hints),
-        VectorFormat::OsmPbf => osm::read_pbf(bytes, hints),
+        VectorFormat::OsmXml => OsmExtract::of_xml(bytes, hints)?.layer(hints),
+        VectorFormat::OsmPbf => OsmExtract::of_pbf(bytes, hints)?.layer(hints),
         VectorFormat::Workbook97 => table::read_workbook_97(bytes, hints),
         VectorFormat::Other(format) => Err(VectorError::OtherFormat { format, command: conversion(name) }),
         VectorFormat::Unknown => Err(VectorError::UnknownFormat),

@@ -61,6 +61,7 @@ pub mod gradient;
 pub mod pieces;
 pub mod service;
 pub mod source;
+pub mod source_raster;
 pub mod tiles;
 pub mod windowed;
 pub mod zone;

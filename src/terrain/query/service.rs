@@ -12,6 +12,7 @@ use crate::lattice::Lattice;
 use crate::query::batch::{self, HeightSlices};
 use crate::query::deck::Deck;
 use crate::query::source::{source_height, source_task};
+use crate::query::source_raster::SourceRaster;
 use crate::query::tiles::LazyTiles;
 use crate::query::{Interpolation, Surface, ground_height};
 use crate::triangle_surface::TriangleSurface;
@@ -33,7 +34,7 @@ pub struct HeightService {
 #[derive(Clone)]
 pub struct Snapshot {
     number: u64,
-    source: Arc<Raster>,
+    source: Arc<SourceRaster>,
     crs: Crs,
     lattice: Arc<Lattice>,
     /// Always those of `lattice`.
@@ -51,7 +52,7 @@ struct Displayed {
 
 impl HeightService {
     /// A service on a raster as read and the lattice made of it; positions are in coordinates of `crs`.
-    pub fn new(source: Arc<Raster>, crs: Crs, lattice: Arc<Lattice>) -> Self {
+    pub fn new(source: Arc<SourceRaster>, crs: Crs, lattice: Arc<Lattice>) -> Self {
         let tiles = Arc::default();
         Self::from_snapshot(Snapshot { number: 0, source, crs, lattice, tiles, decks: None, displayed: None })
     }
@@ -123,9 +124,19 @@ impl Snapshot {
         self.number
     }
 
-    /// The raster as read.
+    /// The raster as read, with its samples.
     pub fn source(&self) -> &Arc<Raster> {
-        &self.source
+        self.source.raster()
+    }
+
+    /// The raster as read; its samples may be left out.
+    pub fn source_header(&self) -> &Arc<Raster> {
+        self.source.header()
+    }
+
+    /// Whether all samples of the raster as read that are numbers are whole.
+    pub fn holds_whole_numbers(&self) -> bool {
+        self.source.holds_whole_numbers()
     }
 
     /// The system of positions: the ground's.
@@ -148,7 +159,7 @@ impl Snapshot {
     /// [`Surface::Displayed`] answers [`Answer::Outside`] where nothing is displayed.
     pub fn height(&self, surface: Surface, interpolation: Interpolation, at: DVec2) -> Answer {
         match surface {
-            Surface::Source => source_height(&self.source, &self.crs, interpolation, at),
+            Surface::Source => source_height(self.source(), &self.crs, interpolation, at),
             Surface::Ground => ground_height(&self.lattice, interpolation, at),
             Surface::Scene => self.or_deck(at, ground_height(&self.lattice, interpolation, at)),
             Surface::Displayed => self.displayed_height(at),
@@ -188,7 +199,7 @@ impl Snapshot {
     /// One task of a batch, on this thread.
     fn task(&self, surface: Surface, interpolation: Interpolation, at: &[DVec2], mut out: HeightSlices<'_>) {
         if surface == Surface::Source {
-            return source_task(&self.source, &self.crs, interpolation, at, out);
+            return source_task(self.source(), &self.crs, interpolation, at, out);
         }
         let is_ground = surface == Surface::Ground || (surface == Surface::Scene && self.decks.is_none());
         if is_ground && interpolation == Interpolation::Bilinear {
@@ -228,7 +239,7 @@ mod tests {
             Lattice::new(DVec2::new(1000.0, 2000.0), DVec2::new(10.0, 20.0), 6, heights).expect("sound");
         let text = "ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1\n";
         let source = sandtable_dem::read::read("a.asc", text.as_bytes(), &Default::default()).expect("sound");
-        HeightService::new(Arc::new(source), Crs::local(), Arc::new(lattice))
+        HeightService::new(Arc::new(SourceRaster::from(Arc::new(source))), Crs::local(), Arc::new(lattice))
     }
 
     fn bridge(z: f32) -> Arc<Deck> {

@@ -40,17 +40,43 @@ pub(super) fn is_pbf(bytes: &[u8]) -> bool {
     bytes.get(4..).is_some_and(|rest| rest.starts_with(b"\x0a\x09OSMHeader"))
 }
 
-/// Reads the requested layer of an extract as protocol buffers.
-///
-/// # Errors
-/// [`VectorError`], also where no layer is requested.
-pub(super) fn read_pbf(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
-    OsmLayer::requested(hints)?.read(pbf::read(bytes)?, hints)
-}
+/// An extract in memory, of which any number of layers are made: reading it takes longer than making one.
+pub(super) struct OsmExtract(OsmData);
 
-/// Reads the requested layer of an extract as XML.
-pub(super) fn read_xml(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
-    OsmLayer::requested(hints)?.read(xml::read(bytes)?, hints)
+impl OsmExtract {
+    /// Reads an extract as protocol buffers.
+    ///
+    /// # Errors
+    /// [`VectorError`], also where no layer is requested.
+    pub fn of_pbf(bytes: &[u8], hints: &VectorHints) -> Result<Self, VectorError> {
+        OsmLayer::requested(hints)?;
+        Self::of(pbf::read(bytes)?)
+    }
+
+    /// Reads an extract as XML.
+    ///
+    /// # Errors
+    /// As [`OsmExtract::of_pbf`].
+    pub fn of_xml(bytes: &[u8], hints: &VectorHints) -> Result<Self, VectorError> {
+        OsmLayer::requested(hints)?;
+        Self::of(xml::read(bytes)?)
+    }
+
+    /// What is broken is an error where nothing else is there.
+    fn of(mut data: OsmData) -> Result<Self, VectorError> {
+        if data.is_empty() {
+            std::mem::take(&mut data.broken).first_error()?;
+        }
+        Ok(Self(data))
+    }
+
+    /// The requested layer.
+    ///
+    /// # Errors
+    /// [`VectorError`], also where no layer is requested.
+    pub fn layer(&self, hints: &VectorHints) -> Result<VectorLayer, VectorError> {
+        OsmLayer::requested(hints)?.read(&self.0, hints)
+    }
 }
 
 /// The shape of a layer's features.
@@ -120,12 +146,11 @@ impl OsmLayer {
         hints.choose_layer(&LAYERS.map(|layer| layer.name)).map(|index| LAYERS[index])
     }
 
-    fn read(self, data: OsmData, hints: &VectorHints) -> Result<VectorLayer, VectorError> {
+    fn read(self, data: &OsmData, hints: &VectorHints) -> Result<VectorLayer, VectorError> {
         if data.is_empty() {
-            data.broken.first_error()?;
             return LayerBuilder::new(hints.crs_or_wgs84()).finish();
         }
-        self.features(&data, hints)
+        self.features(data, hints)
     }
 
     fn features(self, data: &OsmData, hints: &VectorHints) -> Result<VectorLayer, VectorError> {
@@ -298,7 +323,8 @@ mod tests {
 
     fn layer(content: &str, wanted: &str) -> VectorLayer {
         let hints = VectorHints { layer: Some(wanted), ..VectorHints::default() };
-        read_xml(extract(content).as_bytes(), &hints).expect(wanted)
+        let extract = OsmExtract::of_xml(extract(content).as_bytes(), &hints);
+        extract.and_then(|extract| extract.layer(&hints)).expect(wanted)
     }
 
     const SQUARE: [u32; 5] = [1, 10, 100, 91, 1];
@@ -401,7 +427,7 @@ mod tests {
         assert_eq!(roads.notes, ["left out: 2 objects marked as deleted (node 301, way 7)"]);
         let only = "<osm><node id='1' lat='x' lon='2'/></osm>";
         let hints = VectorHints { layer: Some("points"), ..VectorHints::default() };
-        assert!(read_xml(only.as_bytes(), &hints).is_err(), "nothing is sound");
+        assert!(OsmExtract::of_xml(only.as_bytes(), &hints).is_err(), "nothing is sound");
     }
 
     #[test]
@@ -422,9 +448,23 @@ mod tests {
     }
 
     #[test]
+    fn layers_of_an_extract_read_once_are_those_of_it_read_for_each() {
+        let content = way(1, &SQUARE, &[("building", "yes")])
+            + &way(4, &[1, 2, 777, 3], &[("highway", "track")])
+            + "\n<node id='300' lat='91' lon='1'/>";
+        let of = |name: &'static str| VectorHints { layer: Some(name), ..VectorHints::default() };
+        let read = OsmExtract::of_xml(extract(&content).as_bytes(), &of("points")).expect("sound");
+        for known in LAYERS {
+            let (kept, alone) = (read.layer(&of(known.name)).expect("sound"), layer(&content, known.name));
+            assert_eq!(format!("{kept:?}"), format!("{alone:?}"), "{}", known.name);
+        }
+        assert!(read.layer(&VectorHints::default()).is_err());
+    }
+
+    #[test]
     fn without_a_layer_the_layers_are_listed() {
-        let error =
-            read_xml(extract("").as_bytes(), &VectorHints::default()).expect_err("which?").to_string();
+        let read = OsmExtract::of_xml(extract("").as_bytes(), &VectorHints::default());
+        let error = read.map(drop).expect_err("which?").to_string();
         assert!(
             error.contains("8 layers") && error.contains("points, lines, multipolygons, roads"),
             "{error}"
