@@ -277,7 +277,9 @@ mod tests {
         let (screen, shadows) = (Screen::new(&camera), Shadows::default());
         let source = GeometrySource::new(&list, &screen).expect("few triangles");
         let shader = Shader::new(&list, &screen, &shadows, 8);
-        let drawn = |strips: &RowStrips| draw(&source, strips, &shader, &FOUR, true);
+        let drawn = |strips: &RowStrips| {
+            draw(&source, strips, &shader, &FOUR, DrawnAs::Colors(&DrawnRows::default()))
+        };
         let whole = drawn(&RowStrips::new(&source));
         for (most, count) in [(1, 6), (3000, 2)] {
             let strips = RowStrips::of(&source, most);
