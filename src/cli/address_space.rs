@@ -22,6 +22,7 @@ const MIB: u64 = 1 << 20;
 const PER_THREAD: u64 = 3 * MIB;
 
 /// What the arena of a thread takes while it is made.
+#[cfg(any(test, all(target_os = "linux", target_env = "gnu")))]
 const ARENA: u64 = 128 * MIB;
 
 /// The threads besides those that compute: the first one, and one that waits for signals.
@@ -120,6 +121,7 @@ impl AddressSpace {
     }
 
     /// The most bytes that the process may have.
+    #[cfg(unix)]
     pub fn most(&self) -> u64 {
         self.most
     }

@@ -72,7 +72,13 @@ fn commands(found: &FoundFiles) -> Vec<(String, &'static str)> {
             false => format!(" --vectors {}", vectors.join(" ")),
         };
         commands.push((format!("sandtable dem info {dem}"), "say what the file holds"));
-        commands.push((format!("sandtable new my-scene --dem {dem}{vectors}"), "make a first scene"));
+        // `new` writes over no file.
+        let is_taken = found.scenes.iter().any(|scene| scene.starts_with("my-scene"));
+        let (folder, what) = match is_taken {
+            true => ("other-scene", "make another scene"),
+            false => ("my-scene", "make a first scene"),
+        };
+        commands.push((format!("sandtable new {folder} --dem {dem}{vectors}"), what));
     } else if let Some(vector) = found.vectors.first() {
         commands.push((
             format!("sandtable new my-scene --dem DEM.tif --vectors {}", shell(vector)),
@@ -147,6 +153,8 @@ mod tests {
         ] {
             assert!(text.contains(wanted), "{wanted}\n{text}");
         }
+        let made = FoundFiles { scenes: files(&["my-scene/scene.toml"]), ..found };
+        assert!(first_steps(&made).join("\n").contains("sandtable new other-scene --dem dem.tif "));
         let nothing = first_steps(&FoundFiles::default()).join("\n");
         assert!(nothing.contains("No scene") && nothing.contains("sandtable demo"), "{nothing}");
         assert!(!nothing.contains("render"), "{nothing}");

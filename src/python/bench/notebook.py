@@ -3,6 +3,7 @@
 usage: python src/python/bench/notebook.py [SCENE] [ROUNDS]
 
 Each round is a new process, as a kernel that was just started; its second cell and page are those of a scene that is made again.
+Beside the time stand the seconds of all processors together, which other work on the machine hardly changes.
 """
 
 import statistics
@@ -12,17 +13,18 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
 
-CELLS = """
+CELLS = r"""
 import sys, time
-began = time.perf_counter()
-import sandtable as st
-said = [("import", time.perf_counter() - began)]
+
+said = []
 
 def cell(name, run):
-    began = time.perf_counter()
+    began, busy = time.perf_counter(), time.process_time()
     made = run()
-    said.append((name, time.perf_counter() - began))
+    said.append((name, time.perf_counter() - began, time.process_time() - busy))
     return made
+
+st = cell("import", lambda: __import__("sandtable"))
 
 def fresh():
     made = st.Scene(sys.argv[1])
@@ -33,23 +35,24 @@ page = cell("its page", lambda: scene.show()._repr_html_())
 again, png = cell("the cell again", fresh)
 cell("page of a new scene", lambda: st.Scene(sys.argv[1]).show()._repr_html_())
 print(f"{len(png) / 1e6:.2f} MB of PNG, {len(page) / 1e6:.1f} MB of page", file=sys.stderr)
-for name, seconds in said:
-    print(f"{name}\\t{seconds}")
+for row in said:
+    print(*row, sep="\t")
 """
 
 
 def main() -> None:
     scene = sys.argv[1] if len(sys.argv) > 1 else str(ROOT / "scenes/jacksboro.toml")
     rounds = int(sys.argv[2]) if len(sys.argv) > 2 else 5
-    times: dict[str, list[float]] = {}
+    times: dict[str, list[tuple[float, float]]] = {}
     for _ in range(rounds):
         ran = subprocess.run([sys.executable, "-W", "ignore", "-c", CELLS, scene], capture_output=True, text=True, check=True)
         for line in ran.stdout.splitlines():
-            name, seconds = line.split("\t")
-            times.setdefault(name, []).append(float(seconds))
+            name, seconds, busy = line.split("\t")
+            times.setdefault(name, []).append((float(seconds), float(busy)))
     print(ran.stderr.strip())
-    for name, seconds in times.items():
-        print(f"{name:24}{statistics.median(seconds):7.2f} s, {min(seconds):.2f} to {max(seconds):.2f} s")
+    for name, measured in times.items():
+        seconds, busy = (statistics.median(column) for column in zip(*measured))
+        print(f"{name:24}{seconds:7.2f} s, {busy:.2f} s of processors")
 
 
 if __name__ == "__main__":

@@ -76,7 +76,7 @@ fn pictures_of_several_cameras_show_how_far_all_are() {
 }
 
 #[test]
-fn one_picture_shows_how_much_is_drawn_and_the_time_left_and_ctrl_c_keeps_the_old_one() {
+fn one_picture_shows_how_much_is_drawn_and_ctrl_c_keeps_the_old_one() {
     let (scratch, scene) = (Scratch::new(), project("scenes/jacksboro.toml"));
     scratch.write("a.png", "old");
     let arguments = ["render", &scene, "--size", "6000x6000", "-o", "a.png"];
