@@ -1,8 +1,8 @@
 //! Natural land cover, inferred: woods, meadow, scree, rock and snow by elevation, slope, aspect, hollows and climate, as
 //! tints over the ramp's, with the texture of each.
 //!
-//! Trees grow where it is moist enough: it is moister on high ground, on shady slopes and in hollows. They leave level ground
-//! to fields, and end at the tree line; snow begins at the snow line; both lie higher on slopes toward the equator. Scree
+//! Trees grow where it is moist enough: it is moister on high ground, on shady slopes and in hollows. They leave level low
+//! ground to fields, and end at the tree line; snow begins at the snow line; both lie higher on slopes toward the equator. Scree
 //! lies up to its angle of repose, about 36°; what is steeper is rock, and holds no snow. [`CoverNoise`] moves all borders, so
 //! that they look grown and not drawn.
 //!
@@ -38,6 +38,11 @@ pub(crate) const WOODS_MOISTURE: [f32; 2] = [0.46, 0.72];
 /// From and to which rise woods leave no fields, and the patches of the noise that are copses on level ground.
 pub(crate) const WOODS_RISE: [f32; 2] = [0.04, 0.20];
 pub(crate) const COPSES: [f32; 2] = [0.12, 0.36];
+/// From and to which share of the tree line's elevation ground is left to fields no more: woods stand on level ground too, but
+/// for clearings.
+pub(crate) const WILD: [f32; 2] = [0.3, 0.55];
+/// The share of level ground that woods take there where no copse stands.
+pub(crate) const WILD_WOODS: f32 = 0.8;
 /// The greatest share of meadows among fields.
 pub(crate) const FIELD_MEADOW: f32 = 0.5;
 /// The greatest share of a cover over the tint.
@@ -45,9 +50,14 @@ pub(crate) const MOST: f32 = 0.85;
 /// By how much the light of a cover's patches, of crowns, of strata in rock differs from the mean at the most.
 pub(crate) const PATCHES: f32 = 0.13;
 pub(crate) const CROWNS: f32 = 0.50;
-pub(crate) const STRATA: f32 = 0.20;
+pub(crate) const STRATA: f32 = 0.24;
+/// The same of grass and stones on open ground.
+pub(crate) const TUFTS: f32 = 0.20;
+/// From and to which noise shrubs stand on open ground, and the share of the color of woods that they have.
+pub(crate) const SHRUBS: [f32; 2] = [0.16, 0.46];
+pub(crate) const SHRUB_SHARE: f32 = 0.32;
 /// Wavelengths of strata in meters of elevation.
-pub(crate) const STRATA_M: [f32; 2] = [13.0, 47.0];
+pub(crate) const STRATA_M: [f32; 3] = [13.0, 47.0, 171.0];
 /// The rise of forms too small for the cells: on level ground, and its part of the ground's own rise.
 pub(crate) const FORM_LEVEL: f32 = 0.03;
 pub(crate) const FORM_RISE: f32 = 0.6;
@@ -115,8 +125,10 @@ impl GroundCover {
         let below_snow = 1.0 - step(height, [self.snow_m - below_snow, self.snow_m]);
         let green = step(moist, WOODS_MOISTURE);
         let copses = step(patch + fine, COPSES);
-        let woods = (1.0 - above_trees) * green * copses.lerp(1.0, step(rise, WOODS_RISE));
-        let fields = FIELD_MEADOW * green * (0.5 + patch).clamp(0.0, 1.0);
+        let wild = step(height, WILD.map(|share| share * self.tree_m));
+        let woods =
+            (1.0 - above_trees) * green * copses.lerp(1.0, step(rise, WOODS_RISE).max(WILD_WOODS * wild));
+        let fields = FIELD_MEADOW * green * (1.0 - wild) * (0.5 + patch).clamp(0.0, 1.0);
         let meadow = fields.lerp(below_snow, above_trees);
         let bare = DRY_RISE.lerp(1.0, step(moist, [0.0, WOODS_MOISTURE[1]]));
         let scree = above_trees.max(1.0 - green) * step(rise, SCREE_RISE.map(|rise| rise * bare));
@@ -132,7 +144,12 @@ impl GroundCover {
         let wooded = woods * (1.0 - rock) * open;
         let layered = rock.max(scree * (1.0 - green)) * open;
         let ridges = if self.has_forms { RIDGES * ridge * steep.min(1.0) } else { 0.0 };
-        let texture = PATCHES * patch * open + CROWNS * fine * wooded + ridges;
+        let bushy = (1.0 - above_trees) * (1.0 - woods) * (1.0 - rock) * open;
+        let shrubs = bushy * step(fine + 0.5 * patch, SHRUBS);
+        let CoverColor { hue, light } = self.colors[0];
+        color = color.lerp(hue * (own * light), SHRUB_SHARE * shrubs);
+        let rough = TUFTS.lerp(CROWNS, wooded);
+        let texture = (PATCHES * patch + rough * fine) * open + ridges;
         // Nearly everywhere there is no rock, whose layers would be noise for nothing.
         let layers = if layered > 0.0 { layered * strata(post.height_m, change_m, uneven) } else { 0.0 };
         color * (1.0 + texture + STRATA * layers).max(0.3)
@@ -212,7 +229,8 @@ mod tests {
         let noise = CoverNoise { patch: -0.6, ..CoverNoise::default() };
         let seen = |height: f32, rise: f32| alps().over(TINT, &post(height, rise), 1e3, &noise);
         assert!(seen(1000.0, 0.3).y > 1.15 * seen(1000.0, 0.3).x, "woods on slopes");
-        assert!(lightness(seen(1000.0, 0.0)) > lightness(seen(1000.0, 0.3)) + 4.0, "fields in valleys");
+        assert!(lightness(seen(500.0, 0.0)) > lightness(seen(500.0, 0.3)) + 4.0, "fields in valleys");
+        assert!(lightness(seen(1300.0, 0.0)) < lightness(seen(500.0, 0.0)) - 3.0, "woods on plateaus");
         assert!(seen(2250.0, 0.1).y / seen(2250.0, 0.1).x > 1.1 * TINT.y / TINT.x, "green");
         assert!(seen(3500.0, 0.1).z > 0.95 * seen(3500.0, 0.1).x, "snow is cool");
         assert!(lightness(seen(1000.0, 1.5)) < lightness(TINT) - 3.0, "rock is dark");

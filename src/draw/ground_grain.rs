@@ -60,7 +60,7 @@ fn hash(at: UVec2) -> f32 {
 }
 
 /// Two numbers of which each depends on all bits of a lattice point.
-pub(crate) fn mixed(at: UVec2) -> [u32; 2] {
+fn mixed(at: UVec2) -> [u32; 2] {
     const FACTOR: u32 = 1_664_525;
     let step = |value: u32| value.wrapping_mul(FACTOR).wrapping_add(1_013_904_223);
     let (mut x, mut y) = (step(at.x), step(at.y));

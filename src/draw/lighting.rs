@@ -105,8 +105,9 @@ impl Lighting {
 ///     · mix(CLOSED, 1, sky visibility)
 /// ```
 ///
-/// Natural ground also returns the light of the sky in its shade, `fill · FILL · mix(albedo, gray, FILL_GRAY) · (1 − soft)`, so
-/// that dark slopes keep their tints, cooler and paler than in the sun.
+/// Natural ground also returns in its shade the light of the sky and of the slopes opposite,
+/// `fill · FILL · max(albedo + FILL_CHROMA · (albedo − gray), 0) · (1 − soft)`, `gray` being as light as the albedo. Much of it has
+/// met ground of the same color before, which deepens the tint: dark slopes keep their hues under the cool light.
 ///
 /// `gain` is [`Self::GAIN`] in light and [`Self::shade_gain`] in shade, so that the darkest slopes of gentle ground are as
 /// dark as those of mountains. Shadows need no such help: they are as dark on every ground. Ground that lies under symbols and
@@ -162,11 +163,11 @@ impl ReliefShading {
     /// The color of the light on slopes toward the sun.
     pub const WARM: Vec3 = Vec3::new(1.06, 1.0, 0.90);
     /// The color of the light in shade.
-    pub const COOL: Vec3 = Vec3::new(0.80, 0.90, 1.12);
+    pub const COOL: Vec3 = Vec3::new(0.82, 0.905, 1.09);
     /// The light of the sky in the deepest shade of natural ground, which the sun does not outshine there.
-    pub const FILL: Vec3 = Vec3::new(0.12, 0.165, 0.26);
-    /// The share of gray in the color that this light shows: colors are paler in shade.
-    pub const FILL_GRAY: f32 = 0.6;
+    pub const FILL: Vec3 = Vec3::new(0.135, 0.15, 0.185);
+    /// By how much this light deepens colors: 0 leaves them as they are, which the cool light makes gray.
+    pub const FILL_CHROMA: f32 = 0.35;
     /// Brightness where no sky is seen.
     pub const CLOSED: f32 = 0.5;
     /// The contrast of the lowest ground; that of the highest quarter is 1.
@@ -217,8 +218,9 @@ impl ReliefShading {
         let tint = Self::COOL.lerp(Self::WARM, (0.5 + 1.2 * (relief - shadow)).clamp(0.0, 1.0));
         let level = Self::COOL.lerp(Self::WARM, 0.5);
         let sky = Self::CLOSED + (1.0 - Self::CLOSED) * point.sky_visibility;
-        let pale = albedo.lerp(Vec3::splat(luminance(albedo)), Self::FILL_GRAY);
-        let fill = pale * Self::FILL * (self.fill * (1.0 - brightness).clamp(0.0, 1.0));
+        let gray = Vec3::splat(luminance(albedo));
+        let deep = (albedo + (albedo - gray) * Self::FILL_CHROMA).max(Vec3::ZERO);
+        let fill = deep * Self::FILL * (self.fill * (1.0 - brightness).clamp(0.0, 1.0));
         (albedo * tint / level * brightness + fill) * sky
     }
 
@@ -289,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn filled_shade_is_lighter_cooler_and_paler_and_level_ground_keeps_its_albedo() {
+    fn filled_shade_is_lighter_and_keeps_its_tint_and_level_ground_keeps_its_albedo() {
         let (plain, natural) = (shading(), ReliefShading { fill: 1.0, ..shading() });
         let albedo = Vec3::new(0.3, 0.5, 0.25);
         assert!(natural.shade(albedo, &LEVEL).abs_diff_eq(albedo, 1e-6));
@@ -297,10 +299,10 @@ mod tests {
         let [dark, filled] = [plain, natural].map(|shading| shading.shade(albedo, &shadow));
         let chroma = |color: Vec3| (color.max_element() - color.min_element()) / color.max_element();
         assert!(luminance(filled) > 1.3 * luminance(dark), "{filled} {dark}");
-        assert!(
-            filled.z / filled.x > 1.1 * dark.z / dark.x && chroma(filled) < chroma(dark),
-            "{filled} {dark}"
-        );
+        assert!(chroma(filled) > 0.9 * chroma(dark), "{filled} {dark}");
+        let lit = ReliefPoint { normal: Vec3::new(-0.3, 0.3, 0.9).normalize(), ..LEVEL };
+        let lit = natural.shade(albedo, &lit);
+        assert!(filled.z / filled.x > 1.2 * lit.z / lit.x, "the shade is cool: {filled} {lit}");
     }
 
     #[test]

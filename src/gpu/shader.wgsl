@@ -470,16 +470,20 @@ struct Noise {
 }
 
 fn noise_values(at: vec2u) -> vec2f {
-    return vec2f(mixed_bits(at) >> vec2u(8u)) / 8388608.0 - 1.0;
+    var bits = at.x * 2376512323u + at.y * 3625334849u;
+    bits = (bits ^ (bits >> 15u)) * 739982445u;
+    bits = (bits ^ (bits >> 12u)) * 695872825u;
+    bits ^= bits >> 15u;
+    return vec2f(vec2u(bits & 65535u, bits >> 16u)) / 32768.0 - 1.0;
 }
 
-fn cover_noise(at: vec2f, pixel_m: f32) -> Noise {
+fn cover_noise(at: vec2f, mean_pixel_m: f32) -> Noise {
     var sum = Noise(0.0, 0.0, 0.0, vec2f(0.0), 0.0);
     var wave_m = NOISE_FIRST_M;
     var turn = vec2f(1.0, 0.0);
     let widest = NOISE_FORM_CELLS * frame.cover_more.y;
     for (var octave = 0.0; octave < NOISE_OCTAVES; octave += 1.0) {
-        let shown = clamp(2.0 * wave_m / (GRAIN_WAVE_PX * pixel_m) - 1.0, 0.0, 1.0);
+        let shown = clamp(2.0 * wave_m / (NOISE_WAVE_PX * mean_pixel_m) - 1.0, 0.0, 1.0);
         if shown > 0.0 {
             let place = vec2f(turn.x * at.x - turn.y * at.y, turn.y * at.x + turn.x * at.y) / wave_m;
             let cell = floor(place);
@@ -535,8 +539,9 @@ fn with_cover(tint: vec3f, post: Post, change: f32, noise: Noise) -> vec3f {
     let green = smoothstep(COVER_WOODS_MOISTURE.x, COVER_WOODS_MOISTURE.y, moist);
     let copses = smoothstep(COVER_COPSES.x, COVER_COPSES.y, noise.patches + noise.fine);
     let sloping = smoothstep(COVER_WOODS_RISE.x, COVER_WOODS_RISE.y, rise);
-    let woods = (1.0 - above_trees) * green * mix(copses, 1.0, sloping);
-    let fields = COVER_FIELD_MEADOW * green * clamp(0.5 + noise.patches, 0.0, 1.0);
+    let wild = smoothstep(COVER_WILD.x * frame.cover.x, COVER_WILD.y * frame.cover.x, height);
+    let woods = (1.0 - above_trees) * green * mix(copses, 1.0, max(sloping, COVER_WILD_WOODS * wild));
+    let fields = COVER_FIELD_MEADOW * green * (1.0 - wild) * clamp(0.5 + noise.patches, 0.0, 1.0);
     let meadow = mix(fields, below_snow, above_trees);
     let bare = mix(COVER_DRY_RISE, 1.0, smoothstep(0.0, COVER_WOODS_MOISTURE.y, moist));
     let scree = max(above_trees, 1.0 - green) * smoothstep(COVER_SCREE_RISE.x * bare, COVER_SCREE_RISE.y * bare, rise);
@@ -552,10 +557,15 @@ fn with_cover(tint: vec3f, post: Post, change: f32, noise: Noise) -> vec3f {
     let open = max(1.0 - snow, 0.0);
     let wooded = woods * (1.0 - rock) * open;
     let strata = strata_wave(post.height, change, noise.uneven, COVER_STRATA_M.x)
-        + strata_wave(post.height, change, noise.uneven, COVER_STRATA_M.y);
+        + strata_wave(post.height, change, noise.uneven, COVER_STRATA_M.y)
+        + strata_wave(post.height, change, noise.uneven, COVER_STRATA_M.z);
     let layered = max(rock, scree * (1.0 - green)) * open;
     let ridges = COVER_RIDGES * noise.ridge * min(length(slope), 1.0) * frame.cover_more.z;
-    let texture = COVER_PATCHES * noise.patches * open + COVER_CROWNS * noise.fine * wooded + ridges;
+    let bushy = (1.0 - above_trees) * (1.0 - woods) * (1.0 - rock) * open;
+    let shrubs = bushy * smoothstep(COVER_SHRUBS.x, COVER_SHRUBS.y, noise.fine + 0.5 * noise.patches);
+    color = mix(color, frame.cover_colors[0].rgb * (own * frame.cover_colors[0].w), COVER_SHRUB_SHARE * shrubs);
+    let rough = mix(COVER_TUFTS, COVER_CROWNS, wooded);
+    let texture = (COVER_PATCHES * noise.patches + rough * noise.fine) * open + ridges;
     return color * max(1.0 + texture + COVER_STRATA * layered * strata, 0.3);
 }
 
@@ -823,8 +833,9 @@ fn relief_lit(albedo: vec3f, post: Post, small: vec2f, at: vec2f, received: vec2
     let brightness = soft_brightness(1.0 + gain * relief - RELIEF_GAIN * shadow);
     let hue = mix(RELIEF_COOL, RELIEF_WARM, clamp(0.5 + 1.2 * (relief - shadow), 0.0, 1.0));
     let tint = hue / mix(RELIEF_COOL, RELIEF_WARM, 0.5);
-    let pale = mix(albedo, vec3f(dot(albedo, vec3f(0.2126, 0.7152, 0.0722))), RELIEF_FILL_GRAY);
-    let fill = pale * RELIEF_FILL * (frame.cover_more.w * clamp(1.0 - brightness, 0.0, 1.0));
+    let gray = vec3f(dot(albedo, vec3f(0.2126, 0.7152, 0.0722)));
+    let deep = max(albedo + (albedo - gray) * RELIEF_FILL_CHROMA, vec3f(0.0));
+    let fill = deep * RELIEF_FILL * (frame.cover_more.w * clamp(1.0 - brightness, 0.0, 1.0));
     return (albedo * tint * brightness + fill) * mix(RELIEF_CLOSED, 1.0, post.visibility.y * received.y);
 }
 
@@ -975,7 +986,7 @@ fn on_ground(color: vec4f, flags: u32, world: vec3f, span: Footprint) -> Shaded 
     var noise = Noise(0.0, 0.0, 0.0, vec2f(0.0), 0.0);
     var small = vec2f(0.0);
     if has(COVER_PART) {
-        noise = cover_noise(world.xy, pixel_m(span));
+        noise = cover_noise(world.xy, sqrt(length(span.right.xy) * length(span.down.xy)));
         small = small_form(post, noise);
     }
     var unlit = 0.0;

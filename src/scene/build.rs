@@ -31,6 +31,7 @@ use crate::models;
 use crate::overlays;
 use crate::placed_sight;
 use crate::planned_pictures::ElevationNeed;
+use crate::relief_strength;
 use crate::roads::network;
 use crate::scene_model::SceneModel;
 use crate::shaped_ground::{shape, shape_loaded};
@@ -193,6 +194,10 @@ pub fn build_with(
     let heights =
         height_service(document, loaded.source, crs.clone(), Arc::clone(&lattice), &collected.decks)?;
     let surroundings = Surroundings::new(document);
+    let sunlight = match surroundings.land_cover {
+        true => sunlight.over(relief_strength::fall(&lattice)),
+        false => sunlight,
+    };
     if let Some(missing) = style::missing_place_note(document, &crs, lattice.map_extent().center()) {
         let span = document.terrain.dem.span().unwrap_or_default();
         collected.findings.add(FindingCode::NoPlaceOnEarth, span, missing);

@@ -70,6 +70,11 @@ impl Climate {
         }
     }
 
+    /// Whether the place is known.
+    pub fn is_known(&self) -> bool {
+        self.latitude_deg.is_some()
+    }
+
     /// The elevations at which land cover changes.
     pub fn lines(&self) -> CoverLines {
         CoverLines::at(self.latitude_deg)

@@ -4,7 +4,7 @@
 //! `atlas` means land cover: green where trees grow, near white where snow lies all year. A model that reaches neither
 //! the tree line nor the snow line of its latitude shows only the tints between. Its tints are those of the place's climate,
 //! after the cross-blended hypsometric tints of Patterson and Jenny (2011): lowlands are green where it rains, olive where
-//! it rains in one season, the color of sand in deserts, gray green in the tundra. The other ramps mean nothing but height
+//! it rains in one season, the color of sand in deserts, gray green in the tundra, and fresher beside a sea. The other ramps mean nothing but height
 //! and span the model's range. `viridis` and `cividis` are perceptually uniform: equal steps of height differ equally to
 //! the eye, to one that tells no red from green too (Smith and van der Walt 2015; Nuñez, Anderton and Renslow 2018).
 
@@ -34,6 +34,16 @@ const TROPICAL: [[u8; 3]; 7] = [
     [212, 204, 140],
     [224, 208, 164],
     [234, 224, 202],
+    [243, 239, 231],
+];
+/// The same beside a sea, whose air is moist and whose plains are low.
+const COASTAL: [[u8; 3]; 7] = [
+    [126, 164, 134],
+    [158, 186, 142],
+    [194, 206, 158],
+    [216, 212, 170],
+    [226, 215, 184],
+    [234, 225, 207],
     [243, 239, 231],
 ];
 /// The same where it rains in one season: steppe, chaparral, the Mediterranean.
@@ -68,6 +78,8 @@ const POLAR: [[u8; 3]; 7] = [
 ];
 /// The dryness of a place whose tints are those of [`SEMIARID`], and where those of [`HUMID`] end and those of [`ARID`] begin.
 const DRY_TINTS: [f64; 3] = [0.16, 0.5, 0.85];
+/// The share of the tints of [`COASTAL`] beside a sea.
+const COASTAL_SHARE: f32 = 0.7;
 /// Where the atlas' tints are those of open ground above trees, and where those of snow begin.
 const OPEN: f32 = 0.38;
 const SNOW: f32 = 0.9;
@@ -98,6 +110,8 @@ pub struct TintedGround {
     pub range_m: (f32, f32),
     /// Its climate.
     pub climate: Climate,
+    /// Whether a sea lies at its foot.
+    pub has_sea: bool,
 }
 
 /// The ramp called `name` over the heights of `ground`.
@@ -113,7 +127,7 @@ pub fn named(name: RampName, ground: &TintedGround) -> ColorRamp {
 
 /// The ramp of an atlas: the default.
 pub fn atlas(ground: &TintedGround) -> ColorRamp {
-    let tints = ColorRamp::new(tints(&ground.climate)).expect("the parts rise");
+    let tints = ColorRamp::new(tints(ground)).expect("the parts rise");
     let (low, high) = (f64::from(ground.range_m.0), f64::from(ground.range_m.1));
     let lines = ground.climate.lines();
     let above =
@@ -141,15 +155,17 @@ pub fn atlas(ground: &TintedGround) -> ColorRamp {
     stretched(parts, ground.range_m)
 }
 
-/// The tints of an atlas in a climate.
-fn tints(climate: &Climate) -> Vec<(f32, Srgba)> {
+/// The tints of an atlas in the climate of a ground.
+fn tints(TintedGround { climate, has_sea, .. }: &TintedGround) -> Vec<(f32, Srgba)> {
     let [humid, semiarid, arid] = DRY_TINTS;
     let share = |from: f64, to: f64| ((climate.dryness - from) / (to - from)).clamp(0.0, 1.0) as f32;
     let tint = |index: usize| {
-        let [wet, tropics, steppe, desert, tundra] = [HUMID, TROPICAL, SEMIARID, ARID, POLAR]
+        let [wet, tropics, steppe, desert, tundra, coast] = [HUMID, TROPICAL, SEMIARID, ARID, POLAR, COASTAL]
             .map(|table| Srgba::opaque(table[index][0], table[index][1], table[index][2]).linear());
         let moist = wet.lerp(tropics, climate.tropical as f32);
-        let dry = moist.lerp(steppe, share(humid, semiarid)).lerp(desert, share(semiarid, arid));
+        let beside = if *has_sea { COASTAL_SHARE } else { 0.0 };
+        let seasonal = moist.lerp(steppe, share(humid, semiarid)).lerp(coast, beside);
+        let dry = seasonal.lerp(desert, share(semiarid, arid));
         Srgba::from_linear(dry.lerp(tundra, climate.polar as f32))
     };
     ATLAS_PARTS.into_iter().enumerate().map(|(index, part)| (part, tint(index))).collect()
@@ -189,7 +205,11 @@ mod tests {
     }
 
     fn at(low: f32, high: f32, longitude: f64, latitude: f64) -> TintedGround {
-        TintedGround { range_m: (low, high), climate: Climate::at(Some(DVec2::new(longitude, latitude))) }
+        TintedGround {
+            range_m: (low, high),
+            climate: Climate::at(Some(DVec2::new(longitude, latitude))),
+            has_sea: false,
+        }
     }
 
     fn lightness_of(ramp: &ColorRamp) -> Vec<f32> {
@@ -225,6 +245,21 @@ mod tests {
             assert!(all.windows(2).all(|pair| pair[1] > pair[0] - 0.05), "{longitude} {latitude}: {all:?}");
             assert!(all[0] > 50.0 && all[255] > all[0] + 15.0, "{longitude} {latitude}");
         }
+    }
+
+    #[test]
+    fn ground_beside_a_sea_is_fresher_but_in_deserts_and_grows_lighter_with_height() {
+        for (longitude, latitude) in [(-4.0, 52.0), (7.4, 43.7), (20.4, -34.0), (16.0, 78.0), (100.0, 8.0)] {
+            let inland = at(0.0, 900.0, longitude, latitude);
+            let coast = atlas(&TintedGround { has_sea: true, ..inland });
+            let [beside, away] = [&coast, &atlas(&inland)].map(|ramp| ramp.stops()[0].1);
+            assert!(beside.z / beside.x >= away.z / away.x, "{longitude} {latitude}: {beside} {away}");
+            let all = lightness_of(&coast);
+            assert!(all.windows(2).all(|pair| pair[1] > pair[0] - 0.05), "{longitude} {latitude}: {all:?}");
+        }
+        let desert = at(0.0, 900.0, 10.0, 24.0);
+        let [coast, inland] = [true, false].map(|has_sea| atlas(&TintedGround { has_sea, ..desert }));
+        assert!((coast.stops()[0].1 - inland.stops()[0].1).length() < 0.05);
     }
 
     #[test]

@@ -57,6 +57,16 @@ impl ReliefStrength {
     }
 }
 
+/// Where the ground of `lattice` falls to as a whole: the sum of its downhill slopes as a part of the sum of their lengths,
+/// 0..=1; water, which is level, adds nothing.
+pub fn fall(lattice: &Lattice) -> Vec2 {
+    let slopes = land_slopes(lattice, VerticalScale(1.0), |_| false);
+    let (sum, lengths) = slopes.iter().fold((DVec2::ZERO, 0.0), |(sum, lengths), place| {
+        (sum - place.rise.as_dvec2(), lengths + f64::from(place.rise.length()))
+    });
+    (sum / lengths.max(1e-9)).as_vec2()
+}
+
 /// A slope and where it lies in the range of heights.
 struct LandSlope {
     /// Rise eastward and northward of the drawn ground, meters per meter.

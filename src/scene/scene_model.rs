@@ -199,7 +199,8 @@ impl SceneModel {
     pub fn ramp(&self) -> ColorRamp {
         let (low, high) = self.height_range_m;
         let low = self.shore_m().filter(|&shore_m| high > shore_m).map_or(low, |shore_m| low.max(shore_m));
-        self.ramp.over(&TintedGround { range_m: (low, high), climate: self.climate })
+        let has_sea = self.climate.is_known() && self.has_sea();
+        self.ramp.over(&TintedGround { range_m: (low, high), climate: self.climate, has_sea })
     }
 
     /// The elevations where the covers of natural ground change; `None` where the picture shows none.

@@ -1,5 +1,8 @@
 //! The direction of a scene's light: from the left of each picture, the upper left in views from above, as on maps; or
 //! from the sun's position at a time.
+//!
+//! Natural ground that falls away from light of the upper left as a whole, as a coast does, would lie in the dark with all
+//! that stands on it: there the light comes from the left.
 
 use glam::{DVec2, Vec2, Vec3};
 
@@ -17,6 +20,8 @@ pub struct Sunlight {
     pub azimuth_rad: Option<f32>,
     /// Above the horizon, radians.
     pub altitude_rad: f32,
+    /// Where natural ground falls to as a whole: the sum of its downhill slopes as a part of the sum of their lengths, 0..=1.
+    pub fall: Vec2,
 }
 
 /// The sun's height in degrees where it is not stated: low enough that gentle forms show.
@@ -30,6 +35,8 @@ const STEP_DEG: f32 = 15.0;
 pub const LEFT_DEG: [f32; 2] = [45.0, 100.0];
 /// From and up to how steep a view, degrees below the horizon, the light turns from one to the other.
 const PITCH_DEG: [f32; 2] = [40.0, 22.0];
+/// From and up to which fall away from the light of views from above it turns to that of views from the side.
+const TURNING_FALL: [f32; 2] = [0.25, 0.45];
 
 impl Sunlight {
     /// The document's light. `middle` is the middle of the scene in map coordinates of `crs`.
@@ -42,6 +49,7 @@ impl Sunlight {
             return Ok(Self {
                 azimuth_rad: light.azimuth.map(|degrees| degrees.to_radians() as f32),
                 altitude_rad: light.altitude.unwrap_or(ALTITUDE_DEG).to_radians() as f32,
+                fall: Vec2::ZERO,
             });
         };
         if light.azimuth.is_some() || light.altitude.is_some() {
@@ -65,7 +73,13 @@ impl Sunlight {
         }
         // Where the map's north points, seen on the globe.
         let turn = libm::atan2((north.x - place.x) * libm::cos(place.y.to_radians()), north.y - place.y);
-        Ok(Self { azimuth_rad: Some((azimuth_rad - turn) as f32), altitude_rad: altitude_rad as f32 })
+        let azimuth_rad = Some((azimuth_rad - turn) as f32);
+        Ok(Self { azimuth_rad, altitude_rad: altitude_rad as f32, fall: Vec2::ZERO })
+    }
+
+    /// The same over natural ground of a [`Self::fall`].
+    pub fn over(self, fall: Vec2) -> Self {
+        Self { fall, ..self }
     }
 
     /// Unit vector toward the sun in a picture of `camera`; without one, as on a map with north above.
@@ -75,9 +89,12 @@ impl Sunlight {
                 ((camera.forward() + camera.up()).truncate(), -camera.forward().z)
             });
             let pitch = libm::asinf(down.clamp(-1.0, 1.0)).to_degrees();
-            let share = ((pitch - PITCH_DEG[0]) / (PITCH_DEG[1] - PITCH_DEG[0])).clamp(0.0, 1.0);
-            let left = LEFT_DEG[0] + (LEFT_DEG[1] - LEFT_DEG[0]) * share;
-            let azimuth = libm::atan2f(heading.x, heading.y).to_degrees() - left;
+            let part = |value: f32, [from, to]: [f32; 2]| ((value - from) / (to - from)).clamp(0.0, 1.0);
+            let heading_deg = libm::atan2f(heading.x, heading.y).to_degrees();
+            let upper_left = (heading_deg - LEFT_DEG[0]).to_radians();
+            let away = -self.fall.dot(Vec2::new(libm::sinf(upper_left), libm::cosf(upper_left)));
+            let share = part(pitch, PITCH_DEG).max(part(away, TURNING_FALL));
+            let azimuth = heading_deg - LEFT_DEG[0] - (LEFT_DEG[1] - LEFT_DEG[0]) * share;
             ((azimuth / STEP_DEG).round() * STEP_DEG).to_radians()
         });
         let level = libm::cosf(self.altitude_rad);
@@ -108,7 +125,7 @@ mod tests {
 
     #[test]
     fn the_light_comes_from_the_left_of_every_picture_and_from_above_of_steep_ones() {
-        let light = Sunlight { azimuth_rad: None, altitude_rad: 0.7 };
+        let light = Sunlight { azimuth_rad: None, altitude_rad: 0.7, fall: Vec2::ZERO };
         for heading in 0..360 {
             let toward = Vec2::from_angle((90.0 - heading as f32).to_radians());
             for down in [0.1, 0.8, 1.2, 50.0] {
@@ -122,5 +139,23 @@ mod tests {
         }
         let north_west = light.to_sun(None);
         assert!((north_west.x + north_west.y).abs() < 1e-6 && north_west.x < 0.0, "{north_west}");
+    }
+
+    #[test]
+    fn a_coast_that_falls_to_the_lower_right_is_lit_from_the_left_and_no_other() {
+        let light = Sunlight { azimuth_rad: None, altitude_rad: 0.7, fall: Vec2::ZERO };
+        for turn in [0.0, 90.0, 180.0, 270.0] {
+            let toward = Vec2::from_angle((90.0 - turn as f32).to_radians());
+            let camera = Camera::new(Vec3::ZERO, toward.extend(-50.0), 0.5, (16, 9), (1.0, 9.0));
+            let camera = camera.expect("sound");
+            let fall = |right: f32, ahead: f32| camera.right().truncate() * right + toward * ahead;
+            let lit = |fall: Vec2| light.over(fall).to_sun(Some(&camera));
+            let plain = lit(Vec2::ZERO);
+            for gentle in [fall(0.1, -0.1), fall(-0.5, 0.5), fall(0.4, 0.4)] {
+                assert_eq!(lit(gentle), plain, "{gentle}");
+            }
+            let turned = lit(fall(0.4, -0.4));
+            assert!(turned.dot(camera.right()) < -0.7 && turned.truncate().dot(toward) < 0.1, "{turned}");
+        }
     }
 }

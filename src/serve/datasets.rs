@@ -114,7 +114,7 @@ impl ServedDataset {
                 DVec2::new(f64::midpoint(west, east), f64::midpoint(south, north))
             };
             let climate = Climate::at(self.bounds.as_ref().map(middle));
-            let ramp = ramps::atlas(&TintedGround { range_m: overviews.range_m(), climate });
+            let ramp = ramps::atlas(&TintedGround { range_m: overviews.range_m(), climate, has_sea: false });
             Ok(TileMap { overviews, ramp })
         };
         let made = self.tile_map.get_or_init(|| make().map_err(|error: QueryError| error_text(&error)));

@@ -50,7 +50,8 @@ pub fn viewshed_map(
     text: SheetText,
 ) -> Pixels {
     let (low_m, high_m) = lattice.height_range();
-    let ramp = ramps::atlas(&TintedGround { range_m: (low_m, high_m), climate: Climate::at(None) });
+    let ramp =
+        ramps::atlas(&TintedGround { range_m: (low_m, high_m), climate: Climate::at(None), has_sea: false });
     let colors = colors(lattice, viewshed, &ramp);
     let frame = MapFrame::around(lattice);
     let mut map = frame.resampled(&colors);

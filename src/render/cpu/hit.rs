@@ -49,6 +49,11 @@ impl FacePoint {
 }
 
 impl FacePoint {
+    /// The mean width of the pixel in plan, in meters: the geometric mean of its sides.
+    pub fn mean_pixel_m(&self) -> f32 {
+        (self.right.truncate().length_squared() * self.down.truncate().length_squared()).sqrt().sqrt()
+    }
+
     /// The greatest width of the pixel in plan, in meters.
     pub fn pixel_m(&self) -> f32 {
         self.right.truncate().length_squared().max(self.down.truncate().length_squared()).sqrt()

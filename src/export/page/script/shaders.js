@@ -245,16 +245,20 @@ vec3 water_at(float height) {
 struct Noise { float uneven; float patches; float fine; vec2 form; float ridge; };
 
 vec2 noise_values(uvec2 at) {
-  return vec2(mixed_bits(at) >> 8) / 8388608.0 - 1.0;
+  uint bits = at.x * 2376512323u + at.y * 3625334849u;
+  bits = (bits ^ (bits >> 15)) * 739982445u;
+  bits = (bits ^ (bits >> 12)) * 695872825u;
+  bits ^= bits >> 15;
+  return vec2(uvec2(bits & 65535u, bits >> 16)) / 32768.0 - 1.0;
 }
 
-Noise cover_noise(vec2 at, float pixel_m) {
+Noise cover_noise(vec2 at, float mean_pixel_m) {
   Noise sum = Noise(0.0, 0.0, 0.0, vec2(0.0), 0.0);
   float wave_m = NOISE_FIRST_M;
   vec2 turn = vec2(1.0, 0.0);
   float widest = NOISE_FORM_CELLS * cover_more.y;
   for (float octave = 0.0; octave < NOISE_OCTAVES; octave += 1.0) {
-    float shown = clamp(2.0 * wave_m / (GRAIN_WAVE_PX * pixel_m) - 1.0, 0.0, 1.0);
+    float shown = clamp(2.0 * wave_m / (NOISE_WAVE_PX * mean_pixel_m) - 1.0, 0.0, 1.0);
     if (shown > 0.0) {
       vec2 place = vec2(turn.x * at.x - turn.y * at.y, turn.y * at.x + turn.x * at.y) / wave_m;
       vec2 cell = floor(place);
@@ -306,8 +310,10 @@ vec3 with_cover(vec3 tint, float height_m, float change, vec2 slope, float sky_s
   float below_snow = 1.0 - smoothstep(cover.y - COVER_MEADOW_M.y, cover.y, height);
   float green = smoothstep(COVER_WOODS_MOISTURE.x, COVER_WOODS_MOISTURE.y, moist);
   float copses = smoothstep(COVER_COPSES.x, COVER_COPSES.y, here.patches + here.fine);
-  float woods = (1.0 - above_trees) * green * mix(copses, 1.0, smoothstep(COVER_WOODS_RISE.x, COVER_WOODS_RISE.y, rise));
-  float fields = COVER_FIELD_MEADOW * green * clamp(0.5 + here.patches, 0.0, 1.0);
+  float sloping = smoothstep(COVER_WOODS_RISE.x, COVER_WOODS_RISE.y, rise);
+  float wild = smoothstep(COVER_WILD.x * cover.x, COVER_WILD.y * cover.x, height);
+  float woods = (1.0 - above_trees) * green * mix(copses, 1.0, max(sloping, COVER_WILD_WOODS * wild));
+  float fields = COVER_FIELD_MEADOW * green * (1.0 - wild) * clamp(0.5 + here.patches, 0.0, 1.0);
   float meadow = mix(fields, below_snow, above_trees);
   float bare = mix(COVER_DRY_RISE, 1.0, smoothstep(0.0, COVER_WOODS_MOISTURE.y, moist));
   float scree = max(above_trees, 1.0 - green) * smoothstep(COVER_SCREE_RISE.x * bare, COVER_SCREE_RISE.y * bare, rise);
@@ -322,10 +328,15 @@ vec3 with_cover(vec3 tint, float height_m, float change, vec2 slope, float sky_s
   float open = max(1.0 - snow, 0.0);
   float wooded = woods * (1.0 - rock) * open;
   float strata = strata_wave(height_m, change, here.uneven, COVER_STRATA_M.x)
-    + strata_wave(height_m, change, here.uneven, COVER_STRATA_M.y);
+    + strata_wave(height_m, change, here.uneven, COVER_STRATA_M.y)
+    + strata_wave(height_m, change, here.uneven, COVER_STRATA_M.z);
   float layered = max(rock, scree * (1.0 - green)) * open;
   float ridges = COVER_RIDGES * here.ridge * min(length(slope), 1.0) * cover_more.z;
-  float texture_share = COVER_PATCHES * here.patches * open + COVER_CROWNS * here.fine * wooded + ridges;
+  float bushy = (1.0 - above_trees) * (1.0 - woods) * (1.0 - rock) * open;
+  float shrubs = bushy * smoothstep(COVER_SHRUBS.x, COVER_SHRUBS.y, here.fine + 0.5 * here.patches);
+  color = mix(color, cover_colors[0].rgb * (own * cover_colors[0].w), COVER_SHRUB_SHARE * shrubs);
+  float rough = mix(COVER_TUFTS, COVER_CROWNS, wooded);
+  float texture_share = (COVER_PATCHES * here.patches + rough * here.fine) * open + ridges;
   return color * max(1.0 + texture_share + COVER_STRATA * layered * strata, 0.3);
 }
 
@@ -376,8 +387,9 @@ vec3 relief_lit(vec3 albedo, float height, vec4 post, float sky_share, vec2 plac
   float shadow = contrast * lost;
   float brightness = soft_brightness(1.0 + (relief < 0.0 ? shade_gain : RELIEF_GAIN) * relief - RELIEF_GAIN * shadow);
   vec3 hue = mix(RELIEF_COOL, RELIEF_WARM, clamp(0.5 + 1.2 * (relief - shadow), 0.0, 1.0)) / mix(RELIEF_COOL, RELIEF_WARM, 0.5);
-  vec3 pale = mix(albedo, vec3(dot(albedo, vec3(0.2126, 0.7152, 0.0722))), RELIEF_FILL_GRAY);
-  vec3 fill = cover.z > 0.0 ? pale * RELIEF_FILL * clamp(1.0 - brightness, 0.0, 1.0) : vec3(0.0);
+  vec3 gray = vec3(dot(albedo, vec3(0.2126, 0.7152, 0.0722)));
+  vec3 deep = max(albedo + (albedo - gray) * RELIEF_FILL_CHROMA, vec3(0.0));
+  vec3 fill = cover.z > 0.0 ? deep * RELIEF_FILL * clamp(1.0 - brightness, 0.0, 1.0) : vec3(0.0);
   return (albedo * hue * brightness + fill) * mix(RELIEF_CLOSED, 1.0, sky_share);
 }
 
@@ -414,7 +426,7 @@ void main() {
   Noise here = Noise(0.0, 0.0, 0.0, vec2(0.0), 0.0);
   vec4 shaded = post;
   if (cover.z > 0.0) {
-    here = cover_noise(world.xy, pixel_m);
+    here = cover_noise(world.xy, sqrt(length(right_m) * length(down_m)));
     shaded.xy += small_form(post, here);
   }
   if (is_map > 0.5) {
