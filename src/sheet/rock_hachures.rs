@@ -405,7 +405,7 @@ mod tests {
         for at in edges.iter().flatten() {
             assert!(is_upper(at) || is_ridge(at), "{at}");
         }
-        assert!(edges.iter().flatten().any(|at| is_upper(at)));
+        assert!(edges.iter().flatten().any(is_upper));
         let outside = |at: &Vec2| (*at / 3.0 - middle).abs().max_element() > 44.0;
         assert!(!filled(&ground).iter().flat_map(|stroke| &stroke.path_px).any(outside));
     }
