@@ -163,7 +163,7 @@ impl ReliefShading {
     /// The color of the light on slopes toward the sun.
     pub const WARM: Vec3 = Vec3::new(1.06, 1.0, 0.90);
     /// The color of the light in shade.
-    pub const COOL: Vec3 = Vec3::new(0.82, 0.905, 1.09);
+    pub const COOL: Vec3 = Vec3::new(0.80, 0.90, 1.12);
     /// The light of the sky in the deepest shade of natural ground, which the sun does not outshine there.
     pub const FILL: Vec3 = Vec3::new(0.135, 0.15, 0.185);
     /// By how much this light deepens colors: 0 leaves them as they are, which the cool light makes gray.
