@@ -210,7 +210,7 @@ mod tests {
             for [c, d] in &sides[..index] {
                 let (along, other) = (*b - *a, *d - *c);
                 let part = (*c - *a).perp_dot(other) / along.perp_dot(other);
-                heights.extend((0.0..=1.0).contains(&part).then(|| a.y + part * along.y));
+                heights.extend((0.0..=1.0).contains(&part).then_some(a.y + part * along.y));
             }
         }
         heights.sort_by(f64::total_cmp);
