@@ -14,7 +14,7 @@ use crate::north::NorthArrow;
 use crate::rim::RimMark;
 use crate::scale_bar::ScaleBar;
 use crate::sheet::Sheet;
-use sandtable_description::words::LabelKind;
+use sandtable_description::words::{LabelKind, RoadShield};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::font::FontFile;
 use sandtable_symbology::symbol::MilitarySymbol;
@@ -27,6 +27,8 @@ pub struct Annotations {
     pub labels: Vec<PictureLabel>,
     /// Names along lines, in any order.
     pub line_labels: Vec<LineLabel>,
+    /// The strokes of rock, under all else.
+    pub rock: Vec<TaperedStroke>,
     /// Numbers and ticks of contour lines.
     pub contours: Option<ContourMarks>,
     /// Texts of graphics, the more important first.
@@ -60,6 +62,15 @@ pub struct Annotations {
     /// The part of the picture that shows the scene; scale bar and legend move from a lower to an upper corner if they
     /// would cover the scene in the lower corner and not in the upper one.
     pub cover: Option<SceneCover>,
+}
+
+/// A stroke whose width changes evenly from its start to its end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TaperedStroke {
+    /// Its middle line, pixels.
+    pub path_px: Vec<Vec2>,
+    /// Its widths at its start and at its end, pixels.
+    pub width_px: [f32; 2],
 }
 
 /// What a panorama has besides labels.
@@ -105,6 +116,8 @@ pub struct LineLabel {
     pub rank: f64,
     /// The size of its letters, of the usual size of its kind.
     pub size: f32,
+    /// The shield that the text stands in, level on the line.
+    pub shield: Option<RoadShield>,
     /// The label drawn instead where the name finds no place along the line.
     pub fallback: Option<PictureLabel>,
 }

@@ -113,6 +113,7 @@ fn line_label(contour: &NumberedContour) -> LineLabel {
         ink: None,
         rank: 0.0,
         size: 1.0,
+        shield: None,
         fallback: None,
     }
 }

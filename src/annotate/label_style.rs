@@ -8,6 +8,7 @@ use crate::drawing::{Drawing, polygon};
 use crate::fonts::FontCut;
 use crate::halo::{Halo, worst_contrast};
 use crate::sheet::{INK, PAPER, SOFT_INK, Sheet, WATER_INK};
+use crate::shield;
 use crate::text::TextStyle;
 use sandtable_description::words::LabelKind;
 use sandtable_draw::color::Srgba;
@@ -35,6 +36,9 @@ pub struct LineStyle {
 /// The sizes of names, in design pixels: each 15 % above the one before, which the eye tells apart without a direct
 /// comparison, so that no picture mixes sizes that look like mistakes.
 const TYPE_SCALE: [f32; 9] = [12.5, 14.4, 16.5, 19.0, 21.9, 25.1, 28.9, 33.2, 38.2];
+
+/// The size of numbers in shields.
+const SHIELD_TYPE: f32 = 14.4;
 
 /// The type of names of a kind: the one table of sizes, cuts, spaces and colors of labels.
 struct NameType {
@@ -152,6 +156,11 @@ impl LineStyle {
     }
 
     pub fn new(label: &LineLabel, composer: &Composer) -> Self {
+        if let Some(shield) = label.shield {
+            let [_, ink] = shield::colors(shield);
+            let text = composer.style(on_scale(SHIELD_TYPE, label.size), FontCut::Bold);
+            return Self { text, ink, halo: 0.0 };
+        }
         let named = NameType::of(label.kind);
         let size = on_scale(named.along_line, label.size);
         let text = TextStyle { tracking: named.tracking[1], ..composer.style(size, named.cut) };

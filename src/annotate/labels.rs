@@ -281,7 +281,7 @@ impl<'a> SheetNames<'a> {
             if let PreparedName::Line(line) = &name.name {
                 name.drawn
                     .iter()
-                    .for_each(|drawn| line.draw(drawn.occurrence, drawn.choice, ground, &mut drawing));
+                    .for_each(|drawn| line.draw(drawn.occurrence, drawn.choice, ground, sheet, &mut drawing));
             }
         }
         for name in &self.names {

@@ -22,6 +22,8 @@ use crate::letter_course::{CourseLetter, LIMITS, LetterCourse, SetLetter};
 use crate::paragraph::written_lines;
 use crate::pixel_box::PixelBox;
 use crate::place::{LabelCandidate, LabelRequest, TextAlignment};
+use crate::sheet::Sheet;
+use crate::shield;
 use crate::text::{CAP_HEIGHT, DESCENT, TypesetLetters};
 use sandtable_draw::pixels::Pixels;
 use sandtable_geom::polyline::Polyline;
@@ -132,8 +134,18 @@ impl<'a> PreparedLine<'a> {
         &self.occurrences[occurrence][choice].boxes
     }
 
-    pub fn draw(&self, occurrence: usize, choice: usize, ground: &Pixels, drawing: &mut Drawing) {
+    pub fn draw(
+        &self,
+        occurrence: usize,
+        choice: usize,
+        ground: &Pixels,
+        sheet: &Sheet,
+        drawing: &mut Drawing,
+    ) {
         let area = self.occurrences[occurrence][choice].boxes.text;
+        if let Some(shield) = self.label.shield {
+            shield::draw(shield, area, sheet, drawing);
+        }
         let halo = Halo::over(ground, &area, self.style.ink, self.style.halo);
         self.draw_on(halo, occurrence, choice, drawing);
     }
@@ -278,7 +290,8 @@ impl LineSetter<'_> {
     fn baselines(&self) -> Vec<f32> {
         let (size, half) = (self.style.text.size_px, self.label.half_width_px.max(0.0));
         let cap = CAP_HEIGHT * size;
-        let is_beside = matches!(self.label.placement, LinePlacement::Repeated | LinePlacement::Once);
+        let is_beside = matches!(self.label.placement, LinePlacement::Repeated | LinePlacement::Once)
+            && self.label.shield.is_none();
         // Inside a line that holds the letters with some margin.
         if !is_beside || half * 2.0 > cap * 1.7 {
             return vec![-cap * 0.5];
@@ -291,6 +304,11 @@ impl LineSetter<'_> {
     fn set(&self, piece: &Polyline, station: f32, baseline: f32) -> Option<(Vec<SetLetter>, f32)> {
         let at = |station: f32| piece.at(station.into());
         let half = self.letters.advance * 0.5;
+        if self.label.shield.is_some() {
+            let start = (at(station).as_vec2() - Vec2::new(half, baseline)).round();
+            let level = |letter: f32| SetLetter { at: start + Vec2::new(letter, 0.0), along: Vec2::X };
+            return Some((self.letters.letters.iter().map(|letter| level(letter.middle)).collect(), 0.0));
+        }
         let chord = at(station + half) - at(station - half);
         let is_upright = chord.x.abs() < chord.y.abs() * 0.1;
         let is_reversed = if is_upright { chord.y > 0.0 } else { chord.x < 0.0 };
@@ -307,8 +325,26 @@ impl LineSetter<'_> {
         course.set(at, letters)
     }
 
+    /// Level letters with the box of their shield.
+    fn shield(&self, letters: Vec<SetLetter>) -> LineCandidate {
+        let (cap, half) = (CAP_HEIGHT * self.style.text.size_px, self.letters.advance * 0.5);
+        let first = letters.first().zip(self.letters.letters.first());
+        let start = first.map_or(Vec2::ZERO, |(set, letter)| set.at - Vec2::new(letter.middle, 0.0));
+        let [beside, above] = shield::PADDING.map(|padding| padding * self.space);
+        let text = PixelBox::around(
+            start + Vec2::new(half, -cap * 0.5),
+            Vec2::new(half + beside, cap * 0.5 + above),
+        );
+        let alignment = TextAlignment::Center;
+        let boxes = LabelCandidate { text, letters: Vec::new(), symbol: None, leader: None, alignment };
+        LineCandidate { letters, boxes }
+    }
+
     fn candidate(&self, letters: Vec<SetLetter>) -> LineCandidate {
         let size = self.style.text.size_px;
+        if self.label.shield.is_some() {
+            return self.shield(letters);
+        }
         let around = self.style.halo + self.space;
         let shown = letters.iter().zip(&self.letters.letters).filter(|(_, letter)| letter.outline.is_some());
         let boxes: Vec<PixelBox> = shown
@@ -335,7 +371,7 @@ impl LineSetter<'_> {
 mod tests {
     use super::*;
     use crate::sheet::INK;
-    use sandtable_description::words::LabelKind;
+    use sandtable_description::words::{LabelKind, RoadShield};
 
     fn label(path: Vec<Vec2>) -> LineLabel {
         LineLabel {
@@ -347,6 +383,7 @@ mod tests {
             ink: None,
             rank: 0.0,
             size: 1.0,
+            shield: None,
             fallback: None,
         }
     }
@@ -432,11 +469,31 @@ mod tests {
     }
 
     #[test]
+    fn a_shield_is_level_on_its_line_however_steep_and_holds_its_number() {
+        let steep = vec![Vec2::new(900.0, 100.0), Vec2::new(1000.0, 900.0)];
+        let number = LineLabel {
+            text: "A 63".to_owned(),
+            shield: Some(RoadShield::Motorway),
+            kind: LabelKind::Road,
+            ..label(steep)
+        };
+        let line = prepared(&number);
+        let mut drawing = Drawing::default();
+        line.draw(0, 0, &Pixels::filled(64, 64, INK), &Composer::new(1920, 1080).sheet, &mut drawing);
+        let [candidate, ..] = &line.occurrences[0][..] else { panic!("a place") };
+        assert!(candidate.letters.iter().all(|letter| letter.along == Vec2::X));
+        assert!(candidate.boxes.text.grown(0.01).holds(&drawing.bounds()), "{:?}", drawing.bounds());
+        let middle = candidate.boxes.text.center();
+        let on_line = 900.0 + (middle.y - 100.0) / 8.0;
+        assert!((middle.x - on_line).abs() < 1.5, "{middle} beside the line");
+    }
+
+    #[test]
     fn the_boxes_of_letters_hold_what_is_drawn() {
         let label = label(arc(Vec2::new(960.0, 540.0), 200.0, 200.0, 330.0));
         let line = prepared(&label);
         let mut drawing = Drawing::default();
-        line.draw(0, 0, &Pixels::filled(64, 64, INK), &mut drawing);
+        line.draw(0, 0, &Pixels::filled(64, 64, INK), &Composer::new(64, 64).sheet, &mut drawing);
         let bounds = drawing.bounds();
         assert!(line.occurrences[0][0].boxes.text.holds(&bounds), "{bounds:?}");
     }

@@ -15,6 +15,7 @@ use crate::pixel_box::PixelBox;
 use crate::report::{AnnotationReport, FurnitureKind};
 use crate::sheet::{PAPER, Sheet};
 use crate::symbols::draw_symbols;
+use crate::tapered::draw_rock;
 use crate::{
     azimuth_scale, class_legend, credit, grid, legend, margin, north, rim, scale_bar, skyline_names, title,
 };
@@ -133,8 +134,8 @@ fn on_picture(
     report
         .boxes
         .retain(|area| area.text.is_some() || !known.contains(&PixelBox { min: area.min, max: area.max }));
-    lines
-        .into_iter()
+    std::iter::once(draw_rock(&annotations.rock))
+        .chain(lines)
         .chain(furniture)
         .chain(marks)
         .chain(figures)

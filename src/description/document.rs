@@ -43,7 +43,7 @@ use crate::diagnostic::Diagnostic;
 use crate::earthworks::EarthworkTable;
 use crate::elevation_file::{ElevationFile, elevation_files};
 use crate::feature_source::FeatureSource;
-use crate::feature_value::DefaultedValue;
+use crate::feature_value::{DefaultedValue, FeatureValue};
 use crate::features::{
     AreaTable, BridgeTable, BuildingTable, CoastTable, FenceTable, LakeTable, ModelPlacement, RiverTable,
     RoadTable, ScatterTable,
@@ -62,8 +62,8 @@ use crate::table::Table;
 use crate::table_key;
 use crate::unused::UnusedDefinitions;
 use crate::words::{
-    CameraProjection, GridName, HeightEncodingWord, LabelKind, PaperName, SheetLayout, StylePreset, TableTop,
-    VerticalUnitWord,
+    CameraProjection, ContourLook, GridName, HeightEncodingWord, LabelKind, PaperName, RoadShield,
+    SheetLayout, StylePreset, TableTop, VerticalUnitWord,
 };
 use sandtable_geom::crs::Crs;
 use sandtable_geom::position::Position;
@@ -209,6 +209,9 @@ table! {
         ramp: Stated<RampChoice> = key::ramp(), default "atlas";
         /// Contour lines.
         contours: Option<ContourTable> = table_key::table::<ContourTable>(), otherwise "no contour lines";
+        /// Rock drawing: strokes down the slopes of steep ground and lines along its upper edges and ridges, thinner toward the
+        /// light (Geisthövel and Hurni 2018), on views straight from above.
+        rock: Option<RockTable> = table_key::table::<RockTable>(), otherwise "no rock drawing, but with `preset = \"swiss\"`";
         /// How many summits, saddles and lakes without a label show their elevation, the most prominent first. Of a model of which
         /// pictures show means, hills smaller than these are missed; the elevation of those that are found is the file's.
         spot_heights: u32 = key::integer(0, 1000), default 0;
@@ -239,6 +242,15 @@ table! {
         major_every: u32 = key::integer(1, 1000), default 5;
         /// Color of the lines.
         color: Option<Color> = key::color(), otherwise "a translucent brown";
+        /// How the lines show the light. Whatever it is, those between the heavier ones fade where they would run together on
+        /// steep ground, and the heavier ones stay.
+        look: ContourLook = key::word::<ContourLook>(), default "plain";
+    }
+
+    /// `[style.rock]`: rock drawing by hachures.
+    struct RockTable {
+        /// Ground at least so steep is rock. Cells of tens of meters are less steep than the cliffs in them.
+        slope: f64 = key::number(Within(10.0, 80.0), "°"), default 38;
     }
 
     /// `[style.imagery]`.
@@ -298,6 +310,9 @@ table! {
         /// How large the letters are, of the usual size of the `kind`: a city above a village, by an expression over `place` or
         /// `population`. The nearest size of one scale is taken, whose steps differ by 15 %.
         size: DefaultedValue<f64> = key::feature_number(Within(0.5, 3.0), ""), default 1;
+        /// With `file`: the number of a road, in a level shield of this class on its line, again at a distance. Of a text with
+        /// several numbers between semicolons the first is taken.
+        shield: Option<FeatureValue<RoadShield>> = key::feature_word::<RoadShield>(), otherwise "no shield";
         /// Height above the ground at which the leader line starts.
         height: f64 = key::number(Within(0.0, 1e7), "m"), default 0;
         /// What the label names.
@@ -309,7 +324,7 @@ table! {
         if reader.key_span("file").is_some() {
             reader.need_expression("text");
         } else {
-            reader.without_effect(&["layer", "where", "columns", "most"], "on a label without a `file`", "name a `file`, or remove it");
+            reader.without_effect(&["layer", "where", "columns", "most", "shield"], "on a label without a `file`", "name a `file`, or remove it");
         }
     }
 
@@ -448,7 +463,7 @@ table! {
         /// Lines of text under the sources.
         notes: Option<Vec<String>> = key::text_list(), otherwise "none";
         /// The coordinate grid: lines on the ground, numbered where they leave the picture and along the block's edge.
-        grid: Option<GridName> = key::word::<GridName>(), otherwise "none; mgrs with `preset = \"military\"`";
+        grid: Option<GridName> = key::word::<GridName>(), otherwise "none; mgrs with `preset = \"military\"`, geographic with `preset = \"atlas\"`";
         /// Distance between its lines: meters, or minutes of arc of a geographic grid; more where that would be above 400
         /// lines. One line in 10, 5 or 2 is drawn heavier.
         grid_interval: Option<f64> = key::number(Above(0.0, 1e7), ""),

@@ -95,6 +95,14 @@ words! {
         Point = "point": "anything else",
     }
 
+    /// The road that a number in a shield is of, which decides its colors.
+    enum RoadShield {
+        Motorway = "motorway": "white on blue",
+        National = "national": "white on red",
+        Regional = "regional": "black on yellow",
+        Local = "local": "black on white",
+    }
+
     /// A built-in color ramp from the lowest to the highest ground, lighter with height all the way.
     enum RampName {
         Atlas = "atlas": "the lowland's tint by the climate of the place (green, olive, sand, gray green) over yellow to pale brown, and white above the snow line of the latitude",
@@ -102,6 +110,12 @@ words! {
         Gray = "gray": "dark to light",
         Viridis = "viridis": "blue over green to yellow in steps that look equal",
         Cividis = "cividis": "the same in blue and yellow, for eyes that tell no red from green",
+    }
+
+    /// How contour lines show the light.
+    enum ContourLook {
+        Plain = "plain": "lines of one color",
+        Illuminated = "illuminated": "light on slopes toward the light and dark on those away from it, wider the more they face it or turn from it: the ground looks like a stack of boards (Tanaka 1950); it needs a ground of middle tones",
     }
 
     /// How a camera draws the ground.
@@ -129,6 +143,9 @@ words! {
         Military = "military": "pale tints, light shade, contour lines, the military grid, clear air",
         Print = "print": "black on white, patterns in place of colors",
         Night = "night": "red light",
+        Swiss = "swiss": "pale tints that grow lighter and warmer with height, contour lines, rock drawing on views from above, clear air",
+        Atlas = "atlas": "layers of tints between round heights, their edges as fine lines, light shade, clear air, the graticule",
+        Clay = "clay": "a model of one pale material, without tints or lines",
     }
 
     /// What stands on the picture, and what round it.

@@ -248,7 +248,7 @@ mod tests {
 
     const SIZE: PostCount = PostCount { columns: 41, rows: 31 };
     const CONTOURS: Contours =
-        Contours { interval_m: 10.0, major_every: 5, color: Srgba::WHITE, width_px: 1.0 };
+        Contours { interval_m: 10.0, major_every: 5, color: Srgba::WHITE, width_px: 1.0, lit: None };
 
     /// Heights before and after.
     fn lifted(height: impl Fn(f32, f32) -> f32) -> (Vec<f32>, Vec<f32>) {

@@ -128,6 +128,9 @@ impl ColorRamp {
 /// `f(s) = clamp((s / w − 4) / 6, 0, 1)`, so that lines vanish before they run together. `spacing` is the interval
 /// for ordinary lines and the interval × `major_every` for heavy ones, which vanish later. Ordinary lines are
 /// `width_px` wide, heavy ones `width_px · (1 + f(interval))`.
+///
+/// Illuminated lines (Tanaka 1950) have the color `lit` on slopes toward the light and `color` on those away from it, and
+/// are the wider the more the slope faces the light or turns its back to it, as the edges of a stack of boards would be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contours {
     /// Height between lines, in meters.
@@ -138,6 +141,17 @@ pub struct Contours {
     pub color: Srgba,
     /// Width of an ordinary line in pixels.
     pub width_px: f32,
+    /// The color of lines on slopes toward the light, whose alpha counts for nothing; `None` for lines of one color and width.
+    pub lit: Option<Srgba>,
+}
+
+/// What a contour line adds to a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContourInk {
+    /// Its color in linear light.
+    pub color: Vec3,
+    /// The share of the pixel that it covers, its strength included.
+    pub cover: f32,
 }
 
 impl Contours {
@@ -146,6 +160,28 @@ impl Contours {
     ///
     /// 0 where the ground is level over the pixel: a lake at the height of a line is no line.
     pub fn strength(&self, height_m: f32, change_m: f32) -> f32 {
+        self.cover(height_m, change_m, self.width_px)
+    }
+
+    /// The width of illuminated lines along the light, of `width_px`, and what is added to it across the light.
+    pub const LIT_WIDTH: [f32; 2] = [0.5, 1.9];
+    /// How fast illuminated lines change their color where slopes turn from the light.
+    pub const LIT_TURN: f32 = 6.0;
+
+    /// The line at a pixel of [this](Self::strength) height and change. `facing` is the cosine of the angle between the directions
+    /// in plan down the slope and to the light.
+    pub fn ink(&self, height_m: f32, change_m: f32, facing: f32) -> ContourInk {
+        let (dark, alpha) = (self.color.linear(), self.color.alpha());
+        let Some(lit) = self.lit else {
+            return ContourInk { color: dark, cover: self.strength(height_m, change_m) * alpha };
+        };
+        let [along, across] = Self::LIT_WIDTH;
+        let width_px = self.width_px * (along + across * facing.abs());
+        let color = dark.lerp(lit.linear(), (0.5 + facing * Self::LIT_TURN).clamp(0.0, 1.0));
+        ContourInk { color, cover: self.cover(height_m, change_m, width_px) * alpha }
+    }
+
+    fn cover(&self, height_m: f32, change_m: f32, width_px: f32) -> f32 {
         let interval = self.interval_m;
         if !(interval > 0.0 && change_m > interval * 1e-6) {
             return 0.0;
@@ -155,9 +191,9 @@ impl Contours {
         let fade = |spacing: f32| ((spacing / change_m - 4.0) / 6.0).clamp(0.0, 1.0);
         let minor = fade(interval);
         let (width, strength) = if is_major {
-            (self.width_px * (1.0 + minor), fade(interval * self.major_every as f32))
+            (width_px * (1.0 + minor), fade(interval * self.major_every as f32))
         } else {
-            (self.width_px, minor)
+            (width_px, minor)
         };
         let away_px = (height_m - number * interval).abs() / change_m;
         (width / 2.0 + 0.5 - away_px).clamp(0.0, 1.0) * strength
@@ -173,6 +209,8 @@ pub struct GroundDetail {
     pub cover: CoverNoise,
     /// The picture over the map.
     pub draped: DrapedColor,
+    /// The cosine of the angle between the directions in plan down the slope and to the light; 0 where there is none.
+    pub facing: f32,
 }
 
 /// The change of the ground's values across a pixel.
@@ -254,8 +292,8 @@ impl GroundMap {
         let bare = if is_dry { land } else { WaterColor::over(land, post.height_m, &shore) };
         let bare = detail.draped.over(bare);
         let Some(contours) = &self.contours else { return bare };
-        let strength = contours.strength(post.height_m, change.height_m) * (1.0 - shore.cover);
-        bare.lerp(contours.color.linear(), strength * contours.color.alpha())
+        let line = contours.ink(post.height_m, change.height_m, detail.facing);
+        bare.lerp(line.color, line.cover * (1.0 - shore.cover))
     }
 
     /// The upward unit normal by which `post` is shaded.
@@ -333,8 +371,25 @@ mod tests {
     }
 
     #[test]
+    fn illuminated_lines_are_light_toward_the_light_dark_away_and_thin_along_it() {
+        const BROWN: Srgba = Srgba([112, 74, 40, 150]);
+        let lit = Srgba::opaque(255, 255, 255);
+        let lines =
+            Contours { interval_m: 10.0, major_every: 5, color: BROWN, width_px: 1.0, lit: Some(lit) };
+        let at = |away_px: f32, facing: f32| lines.ink(10.0 + away_px * 0.5, 0.5, facing);
+        assert_eq!(at(0.0, 1.0).color, Vec3::ONE);
+        assert_eq!(at(0.0, -1.0).color, BROWN.linear());
+        // A pixel from its middle, the line still covers something across the light, and nothing along it.
+        assert!(at(1.0, 1.0).cover > 0.3 && at(1.0, -1.0).cover > 0.3);
+        assert_eq!(at(1.0, 0.0).cover, 0.0);
+        let plain = Contours { lit: None, ..lines };
+        assert_eq!(plain.ink(10.2, 0.5, 1.0).cover, plain.strength(10.2, 0.5) * BROWN.alpha());
+    }
+
+    #[test]
     fn contours_follow_their_formula_and_survive_odd_settings() {
-        let plain = Contours { interval_m: 10.0, major_every: 5, color: Srgba::WHITE, width_px: 1.0 };
+        let plain =
+            Contours { interval_m: 10.0, major_every: 5, color: Srgba::WHITE, width_px: 1.0, lit: None };
         assert_eq!(plain.strength(20.0, 0.5), 1.0);
         assert!((plain.strength(20.3, 0.5) - 0.4).abs() < 1e-5);
         assert!((plain.strength(50.7, 0.5) - 0.1).abs() < 1e-5, "the fifth is twice as wide");

@@ -59,7 +59,8 @@ fn color(map: &GroundMap, at: Vec2, step: Vec2) -> Srgba {
     let change = PixelChange { height_m: change(|post| post.height_m), water: change(|post| post.water) };
     let draped = map.imagery.as_deref().map(|imagery| imagery.at(at)).unwrap_or_default();
     let noise = |_| CoverNoise::new(at, step.max_element(), map.cell.max_element());
-    let detail = GroundDetail { grain: 1.0, cover: map.cover.map(noise).unwrap_or_default(), draped };
+    let detail =
+        GroundDetail { grain: 1.0, cover: map.cover.map(noise).unwrap_or_default(), draped, facing: 0.0 };
     Srgba::from_linear(map.albedo(&map.sample(at), change, &detail))
 }
 
@@ -101,7 +102,7 @@ mod tests {
     #[test]
     fn contours_are_painted_where_they_run() {
         let red = Srgba::opaque(255, 0, 0);
-        let contours = Contours { interval_m: 400.0, major_every: 5, color: red, width_px: 1.0 };
+        let contours = Contours { interval_m: 400.0, major_every: 5, color: red, width_px: 1.0, lit: None };
         let painted = bake(&map(Some(Contours { interval_m: 20.0, ..contours })));
         let is_red = |x: u32| painted.pixels.at(x, 2).0[1] < painted.pixels.at(x, 2).0[0];
         assert!(!is_red(1), "at 7 m");

@@ -39,6 +39,8 @@ struct Frame {
     cover_colors: array<vec4f, 5>, // rgb of luminance 1, factor on the tint's luminance: woods, meadow, scree, rock, snow
     contour: vec4f,       // rgb, strength
     contour_shape: vec4f, // interval in meters (0: none), width in pixels, every how many is heavier; 1 where the ground has a grain
+    contour_lit: vec4f,   // rgb of lines toward the light, 1 where lines are illuminated
+    contour_turn: vec4f,  // Contours::LIT_WIDTH and LIT_TURN
     ground_levels: array<vec4u, 24>, // columns, rows, first post of all; binary logarithm of the texels in a row
     ground_windows: array<vec4u, 8>, // column and row of the first post, columns, rows
     window_size: vec4u,   // number of windows; rows of the texture for each
@@ -570,8 +572,8 @@ fn contour_fade(spacing: f32, per_pixel: f32) -> f32 {
     return clamp((spacing / per_pixel - 4.0) / 6.0, 0.0, 1.0);
 }
 
-// Contours: how much of a pixel a line covers, where height changes by `per_pixel` across one.
-fn contour_cover(height: f32, per_pixel: f32) -> f32 {
+// Contours: how much of a pixel a line `width_px` wide covers, where height changes by `per_pixel` across one.
+fn contour_cover(height: f32, per_pixel: f32, width_px: f32) -> f32 {
     let interval = frame.contour_shape.x;
     if !((interval > 0.0) & (per_pixel > interval * 1e-6)) {
         return 0.0;
@@ -580,7 +582,7 @@ fn contour_cover(height: f32, per_pixel: f32) -> f32 {
     let every = frame.contour_shape.z;
     let heavy = line - every * floor(line / every) < 0.5;
     let minor = contour_fade(interval, per_pixel);
-    let width = frame.contour_shape.y * select(1.0, 1.0 + minor, heavy);
+    let width = width_px * select(1.0, 1.0 + minor, heavy);
     let strength = select(minor, contour_fade(interval * every, per_pixel), heavy);
     return clamp(width * 0.5 + 0.5 - abs(height - line * interval) / per_pixel, 0.0, 1.0) * strength;
 }
@@ -918,8 +920,17 @@ fn ground_color(at: vec2f, post: Post, noise: Noise, right: vec2f, down: vec2f, 
     }
     if has(CONTOURS_PART) {
         let per_pixel = length(vec2f(dot(post.gradient, right), dot(post.gradient, down)));
-        let cover = contour_cover(post.height, per_pixel) * frame.contour.a;
-        seen.color = mix(seen.color, frame.contour.rgb, cover * land);
+        // Contours::ink.
+        var ink = frame.contour.rgb;
+        var width = frame.contour_shape.y;
+        if frame.contour_lit.w > 0.5 {
+            let down = -post.gradient / max(length(post.gradient), 1e-30);
+            let facing = dot(down, frame.to_sun.xy / max(length(frame.to_sun.xy), 1e-30));
+            width *= frame.contour_turn.x + frame.contour_turn.y * abs(facing);
+            ink = mix(ink, frame.contour_lit.rgb, clamp(0.5 + facing * frame.contour_turn.z, 0.0, 1.0));
+        }
+        let cover = contour_cover(post.height, per_pixel, width) * frame.contour.a;
+        seen.color = mix(seen.color, ink, cover * land);
     }
     return seen;
 }

@@ -10,7 +10,7 @@ use crate::tiles::TileProjection;
 use crate::windows::{MOST_WINDOWS, WindowPlace};
 use sandtable_draw::backdrop::Backdrop;
 use sandtable_draw::bathymetry::{STOP_COUNT, bathymetry};
-use sandtable_draw::ground::GroundMap;
+use sandtable_draw::ground::{Contours, GroundMap};
 use sandtable_draw::ground_levels::PostCount;
 use sandtable_draw::lighting::{Lighting, ReliefShading};
 use sandtable_draw::list::DrawItem;
@@ -67,6 +67,8 @@ pub struct FrameUniforms {
     cover_colors: [[f32; 4]; 5],
     contour: [f32; 4],
     contour_shape: [f32; 4],
+    contour_lit: [f32; 4],
+    contour_turn: [f32; 4],
     ground_levels: [[u32; 4]; MOST_LEVELS],
     ground_windows: [[u32; 4]; MOST_WINDOWS],
     window_size: [u32; 4],
@@ -207,6 +209,11 @@ impl FrameUniforms {
             let every = contours.major_every.max(1) as f32;
             frame.contour = with(contours.color.linear(), contours.color.alpha());
             frame.contour_shape[..3].copy_from_slice(&[contours.interval_m, contours.width_px, every]);
+            if let Some(lit) = contours.lit {
+                let [along, across] = Contours::LIT_WIDTH;
+                frame.contour_lit = with(lit.linear(), 1.0);
+                frame.contour_turn = [along, across, Contours::LIT_TURN, 0.0];
+            }
         }
         frame
     }

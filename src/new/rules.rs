@@ -415,6 +415,40 @@ pub(super) static RULES: &[TableRule] = &[
             most: 6,
             is_title: false,
         }),
+    rule(
+        "label",
+        "Names of lakes",
+        "polygons",
+        "has(name) and ((natural ?? fclass) = 'water' or (landuse ?? fclass) = 'reservoir')",
+    )
+    .keys(&["kind = \"water\""])
+    .label(LabelRule { text: "name", name: "name", rank: "match(natural ?? fclass, 'water', 6, 6.5)", most: 5, is_title: false }),
+    rule(
+        "label",
+        "Names of ranges and reserves",
+        "polygons",
+        "has(name) and ((leisure ?? fclass) = 'nature_reserve' or boundary in ('national_park', 'protected_area') or \
+         (natural ?? fclass) in ('mountain_range', 'ridge', 'valley'))",
+    )
+    .keys(&["kind = \"area\""])
+    .label(LabelRule { text: "name", name: "name", rank: "match(boundary, 'national_park', 8, 8.5)", most: 4, is_title: false }),
+    rule(
+        "label",
+        "Road numbers",
+        "lines",
+        "has(ref) and (highway ?? fclass) in ('motorway', 'trunk', 'primary', 'secondary')",
+    )
+    .keys(&[
+        "kind = \"road\"",
+        "shield = \"match(highway ?? fclass, 'motorway', 'motorway', 'trunk', 'national', 'primary', 'national', 'regional')\"",
+    ])
+    .label(LabelRule {
+        text: "ref",
+        name: "ref",
+        rank: "match(highway ?? fclass, 'motorway', 9, 'trunk', 10, 'primary', 11, 12)",
+        most: 12,
+        is_title: false,
+    }),
     // Units of a table or of another file whose features have symbol codes.
     rule("overlay", "Military symbols", "points", "has(sidc)"),
 ];

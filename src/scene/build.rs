@@ -211,6 +211,7 @@ pub fn build_with(
             || collected.graphics.iter().any(|graphic| graphic.style.is_none()),
         imagery: imagery.map(Arc::new),
         contours: style::contours(document, height_range_m),
+        rock: style::rock(document),
         preset: document.style.preset,
         grid: style::grid(document),
         sunlight,

@@ -65,6 +65,7 @@ pub(super) fn labels(
             left_out.nameless += 1;
             continue;
         };
+        let text = if table.shield.is_some() { first_number(&text) } else { text };
         let Some(shape) = attributes.geometry() else {
             left_out.off += 1;
             continue;
@@ -104,10 +105,12 @@ pub(super) fn labels(
             lines.insert(text, named.len());
         }
         let size = type_size(table, &attributes);
+        let shield = attributes.value(table.shield.as_ref());
         let ground = ground.as_vec3();
         let anchor = ground + Vec3::Z * table.height as f32;
         let stated = table.text.span().unwrap_or_default();
-        let label = SceneLabel { text: filled, stated, ground, anchor, course, kind: table.kind, rank, size };
+        let label =
+            SceneLabel { text: filled, stated, ground, anchor, course, kind: table.kind, rank, size, shield };
         named.push(NamedFeature { label, lines: pieces });
     }
     if named.is_empty() && left_out.off > 0 {
@@ -118,6 +121,11 @@ pub(super) fn labels(
         findings.add(FindingCode::LeftOut, source.span(), sentence);
     }
     Ok(labels)
+}
+
+/// The first of several road numbers.
+fn first_number(text: &str) -> String {
+    text.split(';').map(str::trim).find(|number| !number.is_empty()).unwrap_or(text).to_owned()
 }
 
 /// Whether names follow their features; those wished above them on a leader line do not.

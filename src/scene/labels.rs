@@ -56,5 +56,6 @@ fn label(
         kind: table.kind,
         rank: feature_labels::rank(table, &Attributes::default()),
         size: feature_labels::type_size(table, &Attributes::default()),
+        shield: None,
     })
 }

@@ -32,3 +32,28 @@ impl NamedSummits {
         Some(own.map_or(0.0, |summit| f64::from(summit.prominence_m)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec2;
+
+    #[test]
+    fn a_name_has_the_prominence_of_the_summit_near_it_and_0_on_a_slope() {
+        let cone = |x: f32, y: f32, at: [f32; 2], height_m: f32| {
+            height_m - 0.1 * Vec2::new(x, y).distance(Vec2::from(at))
+        };
+        let height = |index: usize| {
+            let [x, y] = [index % 65, index / 65].map(|post| post as f32 * 50.0);
+            cone(x, y, [1000.0, 1600.0], 300.0).max(cone(x, y, [2200.0, 1600.0], 220.0))
+        };
+        let heights = (0..65 * 65).map(height).collect();
+        let lattice = Lattice::new(DVec2::ZERO, DVec2::splat(50.0), 65, heights).expect("a lattice");
+        let summits = NamedSummits::new(&lattice);
+        let prominence_m = |x: f32, y: f32| summits.prominence_m(Vec2::new(x, y)).expect("known");
+        // The saddle is where the cones meet: 1200 m apart and 80 m of height, 0.1 a meter.
+        assert!((prominence_m(2150.0, 1650.0) - 20.0).abs() < 5.0, "{}", prominence_m(2150.0, 1650.0));
+        assert!(prominence_m(1000.0, 1600.0) > 150.0);
+        assert_eq!(prominence_m(1000.0, 800.0), 0.0);
+    }
+}

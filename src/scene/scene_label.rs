@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::Vec3;
 
 use crate::label_course::LabelCourse;
-use sandtable_description::words::LabelKind;
+use sandtable_description::words::{LabelKind, RoadShield};
 
 /// A name on the picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +26,8 @@ pub struct SceneLabel {
     pub rank: f64,
     /// The size of its letters, of the usual size of its kind.
     pub size: f32,
+    /// The shield that it stands in.
+    pub shield: Option<RoadShield>,
 }
 
 /// A height in whole meters, without a sign before 0.

@@ -22,7 +22,7 @@ use crate::scene_label::SceneLabel;
 use crate::scene_view::SceneView;
 use crate::sight_layers::SightLayers;
 use crate::source_reach::SourceOverlap;
-use crate::style::RampSource;
+use crate::style::{RampSource, RockDrawing};
 use crate::sunlight::Sunlight;
 use crate::symbols::LineSymbol;
 use crate::vertical_scale::VerticalScale;
@@ -94,6 +94,8 @@ pub struct SceneModel {
     pub imagery: Option<Arc<GroundImagery>>,
     /// Lines of equal height on the ground.
     pub contours: Option<Contours>,
+    /// Rock drawing, on views from above.
+    pub rock: Option<RockDrawing>,
     /// Where the light comes from.
     pub sunlight: Sunlight,
     /// How strongly its texture shows, 0..=1.

@@ -91,6 +91,7 @@ pub(super) fn spot_heights(
             },
             rank: FIRST_RANK + chosen.len() as f64,
             size: 1.0,
+            shield: None,
         });
     }
     Ok(chosen)

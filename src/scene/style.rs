@@ -8,7 +8,7 @@ use sandtable_base::message::suggest::quoted;
 use sandtable_description::color::{Color, RampChoice};
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
-use sandtable_description::words::{GridName, RampName, SheetLayout, StylePreset, TableTop};
+use sandtable_description::words::{ContourLook, GridName, RampName, SheetLayout, StylePreset, TableTop};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::ground::{ColorRamp, Contours};
 use sandtable_geom::crs::Crs;
@@ -16,6 +16,11 @@ use sandtable_geom::declination::CalendarDay;
 
 /// A translucent brown.
 const CONTOUR_COLOR: Srgba = Srgba([112, 74, 40, 150]);
+/// The edges of layers of tints.
+const LAYER_EDGE: Srgba = Srgba([84, 70, 48, 110]);
+/// Illuminated lines away from the light and toward it.
+const SHADED_CONTOUR: Srgba = Srgba([38, 42, 58, 215]);
+const LIT_CONTOUR: Srgba = Srgba([255, 253, 240, 255]);
 
 /// The source of the ground's colors.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +29,10 @@ pub enum RampSource {
     Named(RampName),
     /// The same, halfway to white: what is drawn over it stands out.
     Pale(RampName),
+    /// The same in layers between round heights, each of one tint.
+    Layers(RampName),
+    /// Tints of its own, which span the heights of the ground.
+    Stretched(&'static [(f32, [u8; 3])]),
     /// A ramp with heights of its own.
     Own(ColorRamp),
 }
@@ -54,6 +63,8 @@ impl RampSource {
         match self {
             Self::Named(name) => named(*name, ground),
             Self::Pale(name) => paler(&named(*name, ground)),
+            Self::Layers(name) => layered(&named(*name, ground), ground.range_m),
+            Self::Stretched(tints) => stretched(tints, ground.range_m),
             Self::Own(ramp) => ramp.clone(),
         }
     }
@@ -65,12 +76,48 @@ fn paler(ramp: &ColorRamp) -> ColorRamp {
     ColorRamp::new(ramp.stops().iter().map(pale).collect()).unwrap_or_else(|| ramp.clone())
 }
 
+/// Layers of a ramp between the lowest and the highest ground.
+const LAYERS: f64 = 8.0;
+
+/// A ramp in layers between round heights, each of the tint in its middle.
+fn layered(ramp: &ColorRamp, (low_m, high_m): (f32, f32)) -> ColorRamp {
+    let interval_m = round_interval(f64::from(high_m - low_m) / LAYERS).unwrap_or(high_m - low_m);
+    // As narrow as an edge can be between heights of 32 bits.
+    let edge_m = (interval_m * 1e-3).max(high_m.abs() * 1e-5);
+    let first = (low_m / interval_m).floor();
+    let layers = (0..=LAYERS as u32 + 1).map(|layer| (first + layer as f32) * interval_m);
+    let stops = layers.flat_map(|from_m| {
+        let tint = Srgba::from_linear(ramp.linear_at(from_m + interval_m * 0.5));
+        [(from_m, tint), (from_m + interval_m - edge_m, tint)]
+    });
+    ColorRamp::new(stops.collect()).unwrap_or_else(|| ramp.clone())
+}
+
+/// Tints from the lowest to the highest ground.
+fn stretched(tints: &[(f32, [u8; 3])], (low_m, high_m): (f32, f32)) -> ColorRamp {
+    let stop = |&(share, [red, green, blue]): &(f32, [u8; 3])| {
+        (low_m + share * (high_m - low_m).max(1.0), Srgba::opaque(red, green, blue))
+    };
+    ColorRamp::new(tints.iter().map(stop).collect()).expect("shares rise")
+}
+
+/// The tints of Swiss maps: gray green valleys, and heights that are lighter and warmer, as air clears above haze (Imhof 1965).
+const SWISS_TINTS: [(f32, [u8; 3]); 4] =
+    [(0.0, [190, 204, 186]), (0.35, [212, 216, 186]), (0.7, [238, 230, 202]), (1.0, [252, 247, 234])];
+/// The pale clay of models.
+const CLAY: [(f32, [u8; 3]); 1] = [(0.0, [214, 204, 190])];
+
 /// The tints of a preset.
 fn preset_ramp(preset: StylePreset) -> RampSource {
     match preset {
         StylePreset::Military => RampSource::Pale(RampName::Atlas),
         StylePreset::Relief | StylePreset::Print => RampSource::Named(RampName::Gray),
-        _ => RampSource::Named(RampName::Atlas),
+        StylePreset::Atlas => RampSource::Layers(RampName::Atlas),
+        StylePreset::Swiss => RampSource::Stretched(&SWISS_TINTS),
+        StylePreset::Clay => RampSource::Stretched(&CLAY),
+        StylePreset::Topographic | StylePreset::Satellite | StylePreset::Night => {
+            RampSource::Named(RampName::Atlas)
+        }
     }
 }
 
@@ -81,23 +128,52 @@ const PRESET_LINES: f64 = 16.0;
 pub fn contours(document: &Document, (low_m, high_m): (f32, f32)) -> Option<Contours> {
     let has_lines = matches!(
         document.style.preset,
-        Some(StylePreset::Topographic | StylePreset::Military | StylePreset::Print)
+        Some(StylePreset::Topographic | StylePreset::Military | StylePreset::Print | StylePreset::Swiss)
     );
+    if document.style.contours.is_none() && document.style.preset == Some(StylePreset::Atlas) {
+        let interval_m = round_interval(f64::from(high_m - low_m) / LAYERS)?;
+        return Some(Contours { interval_m, major_every: 1, color: LAYER_EDGE, width_px: 0.6, lit: None });
+    }
     if document.style.contours.is_none() && has_lines {
         let interval_m = round_interval(f64::from(high_m - low_m) / PRESET_LINES)?;
         let color = match document.style.preset {
             Some(StylePreset::Print) => Srgba([0, 0, 0, 150]),
             _ => CONTOUR_COLOR,
         };
-        return Some(Contours { interval_m, major_every: 5, color, width_px: 1.0 });
+        return Some(Contours { interval_m, major_every: 5, color, width_px: 1.0, lit: None });
     }
-    document.style.contours.as_ref().map(|contours| Contours {
-        interval_m: contours.interval as f32,
-        major_every: contours.major_every,
-        color: contours.color.map_or(CONTOUR_COLOR, |color| Srgba(color.0)),
-        width_px: 1.0,
+    document.style.contours.as_ref().map(|contours| {
+        let (usual, lit) = match contours.look {
+            ContourLook::Plain => (CONTOUR_COLOR, None),
+            ContourLook::Illuminated => (SHADED_CONTOUR, Some(LIT_CONTOUR)),
+        };
+        Contours {
+            interval_m: contours.interval as f32,
+            major_every: contours.major_every,
+            color: contours.color.map_or(usual, |color| Srgba(color.0)),
+            width_px: 1.0,
+            lit,
+        }
     })
 }
+
+/// The rock that is drawn by hachures.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RockDrawing {
+    /// The rise per meter from which ground is rock.
+    pub least_rise: f32,
+}
+
+/// The document's rock drawing.
+pub fn rock(document: &Document) -> Option<RockDrawing> {
+    let style = &document.style;
+    let usual = (style.preset == Some(StylePreset::Swiss)).then_some(PRESET_ROCK_DEG);
+    let slope_deg = style.rock.as_ref().map(|rock| rock.slope).or(usual)?;
+    Some(RockDrawing { least_rise: libm::tan(slope_deg.to_radians()) as f32 })
+}
+
+/// The slope of rock where a preset draws it: the default of `[style.rock]`.
+const PRESET_ROCK_DEG: f64 = 38.0;
 
 /// The least of 1, 2 and 5 times a power of ten that is not below `least`; `None` where there is none.
 fn round_interval(least: f64) -> Option<f32> {
@@ -125,23 +201,42 @@ impl Surroundings {
         let style = &document.style;
         let is_clear = matches!(
             style.preset,
-            Some(StylePreset::Topographic | StylePreset::Military | StylePreset::Print | StylePreset::Night)
+            Some(
+                StylePreset::Topographic
+                    | StylePreset::Military
+                    | StylePreset::Print
+                    | StylePreset::Night
+                    | StylePreset::Swiss
+                    | StylePreset::Atlas
+                    | StylePreset::Clay
+            )
         );
         let is_natural = style.preset == Some(StylePreset::Satellite);
         Self {
             haze_m: style.haze.map(|distance_m| distance_m as f32).or(is_clear.then_some(0.0)),
             table: *style.table,
             land_cover: style.land_cover.stated().copied().unwrap_or(is_natural || *style.land_cover),
-            is_base_map: matches!(style.preset, Some(StylePreset::Military | StylePreset::Print))
-                || !(document.graphics.is_empty() && document.symbols.is_empty()),
+            is_base_map: matches!(
+                style.preset,
+                Some(
+                    StylePreset::Military
+                        | StylePreset::Print
+                        | StylePreset::Atlas
+                        | StylePreset::Swiss
+                        | StylePreset::Clay
+                )
+            ) || !(document.graphics.is_empty() && document.symbols.is_empty()),
         }
     }
 }
 
 /// The grid of a document, as stated or by its preset.
 pub fn grid(document: &Document) -> GridName {
-    let is_military = document.style.preset == Some(StylePreset::Military);
-    document.furniture.grid.unwrap_or(if is_military { GridName::Mgrs } else { GridName::None })
+    document.furniture.grid.unwrap_or(match document.style.preset {
+        Some(StylePreset::Military) => GridName::Mgrs,
+        Some(StylePreset::Atlas) => GridName::Geographic,
+        _ => GridName::None,
+    })
 }
 
 /// A note on what the sheet lacks because the place of `middle`, the scene's middle in map coordinates, on Earth is unknown;
@@ -175,6 +270,16 @@ pub fn sheet_day(document: &Document) -> Result<Option<CalendarDay>, Diagnostic>
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn layers_have_one_tint_each_and_change_at_round_heights() {
+        let ramp =
+            ColorRamp::new(vec![(130.0, Srgba::opaque(0, 0, 0)), (930.0, Srgba::WHITE)]).expect("rises");
+        let layers = layered(&ramp, (130.0, 930.0));
+        assert_eq!(layers.linear_at(301.0), layers.linear_at(398.0));
+        assert!(layers.linear_at(401.0).x > layers.linear_at(398.0).x);
+        assert_eq!(layered(&ramp, (130.0, 130.0)).stops().len(), ramp.stops().len());
+    }
 
     #[test]
     fn intervals_of_presets_are_round() {

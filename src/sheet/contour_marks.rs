@@ -172,6 +172,7 @@ mod tests {
             major_every: 5,
             color: sandtable_draw::color::Srgba::WHITE,
             width_px: 1.0,
+            lit: None,
         };
         for spacing_px in [1.0, 2.0, 3.0] {
             assert_eq!(contours.strength(10.0, 10.0 / spacing_px), 0.0);

@@ -71,6 +71,7 @@ fn along(
         ink: Some(text.color),
         rank: RANK,
         size: 1.0,
+        shield: None,
         fallback: None,
     }
 }

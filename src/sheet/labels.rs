@@ -11,6 +11,7 @@ use crate::margin::margin_notes;
 use crate::military::picture_symbols;
 use crate::picture_middle::{ground_in_middle, north_arrow};
 use crate::rim::rim_marks;
+use crate::rock_hachures::rock_strokes;
 use sandtable_annotate::annotation::{Annotations, PictureLabel};
 use sandtable_annotate::cover::SceneCover;
 use sandtable_annotate::legend::Legend;
@@ -66,6 +67,7 @@ pub fn annotations(
     Annotations {
         labels,
         line_labels,
+        rock: shown.list.map(|list| rock_strokes(scene, list, camera, picture)).unwrap_or_default(),
         contours: shown.list.and_then(|list| contour_marks(scene, list, camera, picture)),
         fixed_texts: fixed,
         font: scene.font.clone(),

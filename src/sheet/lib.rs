@@ -28,6 +28,7 @@ pub mod picture_statistics;
 pub mod print_ink;
 pub mod relief;
 pub mod rim;
+mod rock_hachures;
 pub mod sheet_file;
 pub mod sidecar;
 pub mod viewshed_map;

@@ -48,7 +48,9 @@ pub fn line_label(
         ink: None,
         rank: label.rank,
         size: label.size,
-        fallback,
+        shield: label.shield,
+        // A number without its shield says nothing.
+        fallback: fallback.filter(|_| label.shield.is_none()),
     })
 }
 

@@ -181,7 +181,7 @@ mod tests {
     fn label(x: f32, rank: f64) -> SceneLabel {
         let ground = Vec3::new(x, 0.0, 0.0);
         let (text, course, kind) = (format!("at {x}"), LabelCourse::Place, LabelKind::Point);
-        SceneLabel { text, stated: 0..0, ground, anchor: ground, course, kind, rank, size: 1.0 }
+        SceneLabel { text, stated: 0..0, ground, anchor: ground, course, kind, rank, size: 1.0, shield: None }
     }
 
     fn shown(

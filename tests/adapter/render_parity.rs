@@ -7,7 +7,9 @@
 
 use crate::adapters::gpus;
 use crate::common::forest::{forest, overlook};
-use crate::common::synthetic::{HOUSE, MASKED, camera, material_of, scene, scene_with_contours};
+use crate::common::synthetic::{
+    HOUSE, MASKED, camera, material_of, scene, scene_with_contours, scene_with_illuminated_contours,
+};
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, SQRT_2};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -179,6 +181,11 @@ fn the_edges_of_the_ground_s_triangles_are_the_same_on_both() {
 #[test]
 fn contours_are_the_same_on_both() {
     compare(&scene_with_contours(), &camera(640, 480), "contours");
+}
+
+#[test]
+fn illuminated_contours_are_the_same_on_both() {
+    compare(&scene_with_illuminated_contours(), &camera(640, 480), "illuminated contours");
 }
 
 #[test]

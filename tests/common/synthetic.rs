@@ -188,8 +188,15 @@ pub fn scene_with_contours() -> DrawList {
     list
 }
 
+/// The same with lines that show the light.
+pub fn scene_with_illuminated_contours() -> DrawList {
+    let mut list = scene();
+    ground_of(&mut list).contours = Some(Contours { lit: Some(Srgba::WHITE), ..contours() });
+    list
+}
+
 fn contours() -> Contours {
-    Contours { interval_m: 5.0, major_every: 4, color: Srgba([70, 40, 20, 200]), width_px: 1.0 }
+    Contours { interval_m: 5.0, major_every: 4, color: Srgba([70, 40, 20, 200]), width_px: 1.0, lit: None }
 }
 
 fn ground_mesh() -> DrawMesh {

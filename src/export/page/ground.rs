@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use crate::page::container::PageSections;
 use sandtable_draw::color::srgb_from_linear;
-use sandtable_draw::ground::{ColorRamp, GroundMap, GroundPost};
+use sandtable_draw::ground::{ColorRamp, Contours, GroundMap, GroundPost};
 use sandtable_draw::ground_cover::CoverColor;
 use sandtable_draw::ground_levels::{GroundLevel, PostCount, level};
 use sandtable_terrain::lattice::{Lattice, Post};
@@ -96,6 +96,8 @@ pub fn map(sections: &mut PageSections, map: &GroundMap) -> Value {
             "every": contours.major_every,
             "width": contours.width_px,
             "color": contours.color.0,
+            "lit": contours.lit.map(|lit| lit.0),
+            "turn": [Contours::LIT_WIDTH[0], Contours::LIT_WIDTH[1], Contours::LIT_TURN],
         })),
         "cover": map.cover.map(|cover| json!({
             "tree": cover.tree_m,

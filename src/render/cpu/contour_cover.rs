@@ -116,7 +116,8 @@ mod tests {
     /// The lines of a plan of ground of 40 × 40 cells of 1 m, ten pixels each, at every tenth meter.
     fn lines(height: impl Fn(f32, f32) -> f32) -> Vec<Vec<f32>> {
         let size = PostCount { columns: 41, rows: 41 };
-        let contours = Contours { interval_m: 10.0, major_every: 5, color: Srgba::WHITE, width_px: 1.0 };
+        let contours =
+            Contours { interval_m: 10.0, major_every: 5, color: Srgba::WHITE, width_px: 1.0, lit: None };
         let post = |index: u32| GroundPost {
             height_m: height((index % 41) as f32, (index / 41) as f32),
             ..GroundPost::default()

@@ -25,6 +25,8 @@ pub struct GroundShader<'a> {
     coarser: Vec<GroundLevel>,
     draped: Option<(&'a GroundImagery, Texture<'a>)>,
     relief: ReliefShading,
+    /// The direction to the light in plan, of length 1; zero for a light straight above.
+    toward_light: Vec2,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -47,7 +49,15 @@ impl<'a> GroundShader<'a> {
         let draped = map.imagery.as_deref().map(|imagery| (imagery, Texture::new(&imagery.pixels)));
         let fill = f32::from(u8::from(map.cover.is_some()));
         let relief = ReliefShading { shade_gain: map.shade_gain, fill, ..ReliefShading::new(to_sun) };
-        Self { map, noise_origin: Vec2::ZERO, posts_per_meter: map.cell.recip(), coarser, draped, relief }
+        Self {
+            map,
+            noise_origin: Vec2::ZERO,
+            posts_per_meter: map.cell.recip(),
+            coarser,
+            draped,
+            relief,
+            toward_light: to_sun.truncate().normalize_or_zero(),
+        }
     }
 
     /// The same for a finer map whose world space lies at `origin` in that of the outermost.
@@ -124,7 +134,13 @@ impl<'a> GroundShader<'a> {
     pub fn albedo(&self, point: &GroundPoint, hit: &FacePoint) -> Vec3 {
         let change =
             PixelChange { height_m: change(point.gradient, hit), water: change(point.water_gradient, hit) };
-        let detail = GroundDetail { grain: self.grain(point, hit), cover: point.noise, draped: point.draped };
+        let down = (-point.gradient).try_normalize().unwrap_or_default();
+        let detail = GroundDetail {
+            grain: self.grain(point, hit),
+            cover: point.noise,
+            draped: point.draped,
+            facing: down.dot(self.toward_light),
+        };
         self.map.albedo(&point.post, change, &detail)
     }
 

@@ -103,6 +103,7 @@ pub fn ground_map(side: u32, half_m: f32, contours: bool, height: impl Fn(f32, f
             major_every: 5,
             color: Srgba([90, 60, 30, 190]),
             width_px: 1.2,
+            lit: None,
         }),
         imagery: None,
         cover: None,

@@ -194,6 +194,7 @@ fn contours_keep_their_width_from_near_to_far() {
         major_every: 1_000_000,
         color: Srgba::opaque(0, 0, 0),
         width_px: 1.5,
+        lit: None,
     });
     item(&mut list, ground_mesh(20, 500.0, slope), ground_material(), DepthLayer::Ground, FeatureId::GROUND);
     let camera = looking(Vec3::new(0.0, -420.0, -80.0), Vec3::new(0.0, 0.0, 20.0), (64, 900));

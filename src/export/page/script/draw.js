@@ -158,6 +158,10 @@ class Renderer {
     set("contour", "uniform4f", ...(contours
       ? [...contours.color.slice(0, 3).map((channel) => linear(channel / 255)), contours.color[3] / 255]
       : [0, 0, 0, 0]));
+    set("contour_lit", "uniform4f", ...(contours && contours.lit
+      ? [...contours.lit.slice(0, 3).map((channel) => linear(channel / 255)), 1]
+      : [0, 0, 0, 0]));
+    set("contour_turn", "uniform3f", ...(contours ? contours.turn : [0, 0, 0]));
     set("contour_shape", "uniform4f", ...(contours
       ? [contours.interval, contours.width * frame.pixelRatio, contours.every]
       : [1, 1, 1]), map.zFactor);

@@ -207,6 +207,8 @@ uniform vec4 cover;         // tree line, snow line, true rise over drawn (0: no
 uniform vec3 cover_more;    // moisture, cell of the ground in meters, 1 where it has forms too small for that
 uniform vec4 cover_colors[5]; // rgb of luminance 1, factor on the tint's luminance: woods, meadow, scree, rock, snow
 uniform vec4 contour;       // rgb, strength
+uniform vec4 contour_lit;   // rgb of lines toward the light, 1 where lines are illuminated
+uniform vec3 contour_turn;  // their width along the light and across it, how fast they turn
 uniform vec4 contour_shape; // interval, width, every how many is heavy, z factor
 uniform vec4 imagery;       // corner, 1 / size
 uniform vec4 imagery_size;  // texel, 1 where there is one, 1 where it is shaded
@@ -337,14 +339,14 @@ float contour_fade(float spacing, float per_pixel) {
   return clamp((spacing / per_pixel - 4.0) / 6.0, 0.0, 1.0);
 }
 
-float contour_cover(float height, float per_pixel) {
+float contour_cover(float height, float per_pixel, float width_px) {
   float interval = contour_shape.x;
   if (ramp_range.z < 0.5 || !(per_pixel > interval * 1e-6)) return 0.0;
   float line = round(height / interval);
   float every = contour_shape.z;
   bool heavy = line - every * floor(line / every) < 0.5;
   float minor = contour_fade(interval, per_pixel);
-  float width = contour_shape.y * (heavy ? 1.0 + minor : 1.0);
+  float width = width_px * (heavy ? 1.0 + minor : 1.0);
   float strength = heavy ? contour_fade(interval * every, per_pixel) : minor;
   return clamp(width * 0.5 + 0.5 - abs(height - line * interval) / per_pixel, 0.0, 1.0) * strength;
 }
@@ -417,7 +419,15 @@ void main() {
   }
   if (is_map > 0.5) {
     float per_pixel = length(vec2(dot(reading.gradient, right_m), dot(reading.gradient, down_m)));
-    float lines = contour_cover(reading.height, per_pixel) * contour.a;
+    vec3 ink = contour.rgb;
+    float line_width = contour_shape.y;
+    if (contour_lit.w > 0.5) {
+      vec2 downhill = -reading.gradient / max(length(reading.gradient), 1e-30);
+      float facing = dot(downhill, to_sun.xy / max(length(to_sun.xy), 1e-30));
+      line_width *= contour_turn.x + contour_turn.y * abs(facing);
+      ink = mix(ink, contour_lit.rgb, clamp(0.5 + facing * contour_turn.z, 0.0, 1.0));
+    }
+    float lines = contour_cover(reading.height, per_pixel, line_width) * contour.a;
     float away = (post.w - 0.5) / max(length(wet_change), 1e-4);
     float water = clamp(away + 0.5, 0.0, 1.0);
     float shore = 1.0 - WATER_SHORE * clamp(WATER_SHORE_PX - abs(away), 0.0, 1.0);
@@ -434,7 +444,7 @@ void main() {
       clamp(vec2(part_of.x, 1.0 - part_of.y), imagery_size.xy * 0.5, 1.0 - imagery_size.xy * 0.5));
     bool within = imagery_size.z > 0.5 && all(greaterThanEqual(part_of, vec2(0.0))) && all(lessThanEqual(part_of, vec2(1.0)));
     float share = within ? draped.a : 0.0;
-    color = vec4(mix(mix(bare, draped.rgb, share), contour.rgb, lines * (1.0 - water)), 1.0);
+    color = vec4(mix(mix(bare, draped.rgb, share), ink, lines * (1.0 - water)), 1.0);
     water_share = water * (1.0 - share);
     unlit = imagery_size.w > 0.5 ? share : 0.0;
   } else {

@@ -40,6 +40,7 @@ class StyleContoursKeys(TypedDict, total=False):
 
     color: Color
     interval: float
+    look: Literal["plain", "illuminated"]
     major_every: int
 
 
@@ -58,6 +59,12 @@ class StyleLightKeys(TypedDict, total=False):
     azimuth: float
     texture: float
     time: str
+
+
+class StyleRockKeys(TypedDict, total=False):
+    """Rock drawing: strokes down the slopes of steep ground and lines along its upper edges and ridges, thinner toward the light (Geisthövel and Hurni 2018), on views straight from above."""
+
+    slope: float
 
 
 class TerrainDemKeys(TypedDict, total=False):
@@ -1171,7 +1178,7 @@ class SceneTables:
             edge. `none`: no lines; the block's edge has coordinates of the scene's system; `metric`: the scene's own
             coordinate system; `utm`: UTM on WGS 84, zone by zone, and UPS round the poles; `mgrs`: the same lines,
             with the letters of the 100 km squares of the military grid; `geographic`: longitude and latitude on WGS
-            84. Default: none; mgrs with `preset = "military"`.
+            84. Default: none; mgrs with `preset = "military"`, geographic with `preset = "atlas"`.
         grid_interval : number, above 0 to 1e+07
             Distance between its lines: meters, or minutes of arc of a geographic grid; more where that would be above
             400 lines. One line in 10, 5 or 2 is drawn heavier. Default: a round one, for lines about 100 px apart in
@@ -1344,6 +1351,7 @@ class SceneTables:
         most: int | None = None,
         phases: str | Sequence[str] | None = None,
         rank: float | Expression | None = None,
+        shield: Literal["motorway", "national", "regional", "local"] | Expression | None = None,
         size: float | Expression | None = None,
         style: str | None = None,
         text: str | None = None,
@@ -1382,6 +1390,10 @@ class SceneTables:
             may read `prominence`: how far the model's summit there stands above the saddle to higher ground, in
             meters, and 0 where the model has no summit; `rank = "-prominence"` puts the most prominent first.
             Default: 0.
+        shield
+            With `file`: the number of a road, in a level shield of this class on its line, again at a distance. Of a
+            text with several numbers between semicolons the first is taken. `motorway`: white on blue; `national`:
+            white on red; `regional`: black on yellow; `local`: black on white. Default: no shield.
         size : number, from 0.5 to 3, or expression
             How large the letters are, of the usual size of the `kind`: a city above a village, by an expression over
             `place` or `population`. The nearest size of one scale is taken, whose steps differ by 15 %. Default: 1.
@@ -1397,7 +1409,8 @@ class SceneTables:
         return self._with(
             "label", "[[label]]", source,
             {"at": at, "columns": columns, "crs": crs, "height": height, "kind": kind, "layer": layer, "most": most,
-             "phases": phases, "rank": rank, "size": size, "style": style, "text": text, "where": where},
+             "phases": phases, "rank": rank, "shield": shield, "size": size, "style": style, "text": text,
+             "where": where},
         )
 
     def lakes(
@@ -1955,8 +1968,9 @@ class SceneTables:
         imagery: StyleImageryKeys | None = None,
         land_cover: bool | None = None,
         light: StyleLightKeys | None = None,
-        preset: Literal["topographic", "relief", "satellite", "military", "print", "night"] | None = None,
+        preset: Literal["topographic", "relief", "satellite", "military", "print", "night", "swiss", "atlas", "clay"] | None = None,
         ramp: Literal["atlas", "desert", "gray", "viridis", "cividis"] | Sequence[Sequence[Any]] | None = None,
+        rock: StyleRockKeys | None = None,
         spot_heights: int | None = None,
         table: Literal["paper", "wood", "ground", "none"] | None = None,
         wireframe: bool | None = None,
@@ -1985,10 +1999,17 @@ class SceneTables:
             `topographic`: tints by height, contour lines, clear air; `relief`: shaded relief in grays, without lines;
             `satellite`: the ground's natural cover, or `imagery`, without lines; `military`: pale tints, light shade,
             contour lines, the military grid, clear air; `print`: black on white, patterns in place of colors;
-            `night`: red light. Default: none: the defaults below.
+            `night`: red light; `swiss`: pale tints that grow lighter and warmer with height, contour lines, rock
+            drawing on views from above, clear air; `atlas`: layers of tints between round heights, their edges as
+            fine lines, light shade, clear air, the graticule; `clay`: a model of one pale material, without tints or
+            lines. Default: none: the defaults below.
         ramp
             Colors by height: the name of a ramp, or from 2 to 256 stops `[[height, "#rrggbb"], ...]`. Default:
             "atlas".
+        rock
+            Rock drawing: strokes down the slopes of steep ground and lines along its upper edges and ridges, thinner
+            toward the light (Geisthövel and Hurni 2018), on views straight from above. Default: no rock drawing, but
+            with `preset = "swiss"`.
         spot_heights : integer, from 0 to 1000
             How many summits, saddles and lakes without a label show their elevation, the most prominent first. Of a
             model of which pictures show means, hills smaller than these are missed; the elevation of those that are
@@ -2005,7 +2026,8 @@ class SceneTables:
         return self._with(
             "style", "[style]", None,
             {"contours": contours, "haze": haze, "imagery": imagery, "land_cover": land_cover, "light": light,
-             "preset": preset, "ramp": ramp, "spot_heights": spot_heights, "table": table, "wireframe": wireframe},
+             "preset": preset, "ramp": ramp, "rock": rock, "spot_heights": spot_heights, "table": table,
+             "wireframe": wireframe},
         )
 
     def styles(self: _T, name: str, **keys: Any) -> _T:
