@@ -425,7 +425,7 @@ pub(super) static RULES: &[TableRule] = &[
         "has(name) and ((natural ?? fclass) = 'water' or (landuse ?? fclass) = 'reservoir')",
     )
     .keys(&["kind = \"water\""])
-    .label(LabelRule { text: "name", name: "name", rank: "6", most: 5, is_title: false }),
+    .label(LabelRule { text: "name", name: "name", rank: "match(natural ?? fclass, 'water', 6, 6.5)", most: 5, is_title: false }),
     rule(
         "label",
         "Names of ranges and reserves",
@@ -434,7 +434,7 @@ pub(super) static RULES: &[TableRule] = &[
          (natural ?? fclass) in ('mountain_range', 'ridge', 'valley'))",
     )
     .keys(&["kind = \"area\""])
-    .label(LabelRule { text: "name", name: "name", rank: "8", most: 4, is_title: false }),
+    .label(LabelRule { text: "name", name: "name", rank: "match(boundary, 'national_park', 8, 8.5)", most: 4, is_title: false }),
     rule(
         "label",
         "Road numbers",
