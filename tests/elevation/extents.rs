@@ -107,7 +107,10 @@ fn the_ground_within_an_extent_is_that_of_the_whole_model_bit_for_bit() {
         let read = ground(&scratch, &text, None).unwrap_or_else(|error| panic!("{error}"));
         let expected = ground(&scratch, &text, Some(&whole)).unwrap_or_else(|error| panic!("{error}"));
         let what = format!("{name} in EPSG:{crs}");
-        assert!(read.source.samples.len() < whole.samples.len() * 3 / 4, "{what}: read nearly whole");
+        assert!(
+            read.source.raster().samples.len() < whole.samples.len() * 3 / 4,
+            "{what}: read nearly whole"
+        );
         assert_same_ground(&read, &expected, &what);
     }
 }
@@ -138,7 +141,7 @@ fn the_extent_of_tiles_is_read_from_those_that_it_meets() {
     let text = format!("[terrain]\ndem = \"t0.tif\"\n{extent}\n");
     let expected = ground(&scratch, &text, Some(&whole)).unwrap_or_else(|error| panic!("{error}"));
     assert_same_ground(&read, &expected, "tiles");
-    assert_eq!(read.source.vertical_datum.as_deref(), Some("EGM96"));
+    assert_eq!(read.source.header().vertical_datum.as_deref(), Some("EGM96"));
 }
 
 #[test]

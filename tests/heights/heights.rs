@@ -73,7 +73,11 @@ fn raster_of(lattice: &Lattice) -> Raster {
 }
 
 fn service_on(lattice: &Arc<Lattice>) -> HeightService {
-    HeightService::new(Arc::new(raster_of(lattice)), Crs::local(), Arc::clone(lattice))
+    HeightService::new(
+        Arc::new(sandtable_terrain::query::source_raster::SourceRaster::from(Arc::new(raster_of(lattice)))),
+        Crs::local(),
+        Arc::clone(lattice),
+    )
 }
 
 /// Rough ground, one post in `holes` without data (none for 0).

@@ -174,7 +174,11 @@ fn displayed_heights_lie_on_drawn_triangles_and_ground_heights_never_change() {
         ..Raster::without_place(1, 1)
     };
     let world = World::new(lattice);
-    let service = HeightService::new(Arc::new(raster), Crs::local(), Arc::new(world.lattice.clone()));
+    let service = HeightService::new(
+        Arc::new(sandtable_terrain::query::source_raster::SourceRaster::from(Arc::new(raster))),
+        Crs::local(),
+        Arc::new(world.lattice.clone()),
+    );
     let at: Vec<DVec2> = (0..4000)
         .map(|index| {
             world.lattice.origin() + DVec2::new(f64::from(index * 37 % 3570), f64::from(index * 53 % 2670))
