@@ -61,8 +61,12 @@ fn tiles(field: &Field) {
 fn compare(field: &Field, what: &'static str, at: &[DVec2], peer: Option<&mut Peer>) {
     let cold = field.service.snapshot();
     // A service of its own, whose tiles are made by the questions before the first round.
-    let warm =
-        HeightService::new(Arc::clone(cold.source()), Crs::local(), Arc::clone(cold.lattice())).snapshot();
+    let warm = HeightService::new(
+        Arc::new(sandtable_terrain::query::source_raster::SourceRaster::from(Arc::clone(cold.source()))),
+        Crs::local(),
+        Arc::clone(cold.lattice()),
+    )
+    .snapshot();
     let mut out = Out::new();
     for _ in 0..=cold.lattice().heights().len() / POINTS + 1 {
         out.apart(&warm, Surface::Ground, &field.random);
@@ -117,7 +121,12 @@ fn rate(work: impl FnOnce()) -> f64 {
 
 /// An epoch like this one that has not been asked anything.
 fn fresh(epoch: &Snapshot) -> Arc<Snapshot> {
-    HeightService::new(Arc::clone(epoch.source()), Crs::local(), Arc::clone(epoch.lattice())).snapshot()
+    HeightService::new(
+        Arc::new(sandtable_terrain::query::source_raster::SourceRaster::from(Arc::clone(epoch.source()))),
+        Crs::local(),
+        Arc::clone(epoch.lattice()),
+    )
+    .snapshot()
 }
 
 /// Where answers go.
@@ -209,7 +218,11 @@ impl Field {
             crs: None,
             ..Raster::without_place(1, 1)
         };
-        let service = HeightService::new(Arc::new(raster), Crs::local(), Arc::new(lattice));
+        let service = HeightService::new(
+            Arc::new(sandtable_terrain::query::source_raster::SourceRaster::from(Arc::new(raster))),
+            Crs::local(),
+            Arc::new(lattice),
+        );
         let extent = f64::from(n - 1) * CELL_M;
         let mut state = 88_172_645_463_325_252_u64;
         let mut random = move || {
