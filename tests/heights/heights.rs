@@ -19,7 +19,6 @@ use sandtable_terrain::query::batch::HeightSlices;
 use sandtable_terrain::query::batch::bilinear_ground;
 use sandtable_terrain::query::service::{HeightService, Snapshot};
 use sandtable_terrain::query::source::{raster_height, source_heights};
-use sandtable_terrain::query::source_raster::SourceRaster;
 use sandtable_terrain::query::tiles::HeightTiles;
 use sandtable_terrain::query::{Interpolation, Surface, ground_height};
 use sandtable_terrain::triangle_surface::{TriangleSurface, facet_contains, plane_z};
@@ -75,7 +74,7 @@ fn raster_of(lattice: &Lattice) -> Raster {
 
 fn service_on(lattice: &Arc<Lattice>) -> HeightService {
     HeightService::new(
-        Arc::new(SourceRaster::from(Arc::new(raster_of(lattice)))),
+        Arc::new(sandtable_terrain::query::source_raster::SourceRaster::from(Arc::new(raster_of(lattice)))),
         Crs::local(),
         Arc::clone(lattice),
     )

@@ -21,7 +21,6 @@ use sandtable_roam::displayed::DisplayedTerrain;
 use sandtable_roam::measured_ground::MeasuredGround;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::query::service::HeightService;
-use sandtable_terrain::query::source_raster::SourceRaster;
 use sandtable_terrain::query::{Interpolation, Surface};
 use sandtable_terrain::triangle_surface::TriangleSurface;
 use sandtable_view::camera::Camera;
@@ -176,7 +175,7 @@ fn displayed_heights_lie_on_drawn_triangles_and_ground_heights_never_change() {
     };
     let world = World::new(lattice);
     let service = HeightService::new(
-        Arc::new(SourceRaster::from(Arc::new(raster))),
+        Arc::new(sandtable_terrain::query::source_raster::SourceRaster::from(Arc::new(raster))),
         Crs::local(),
         Arc::new(world.lattice.clone()),
     );

@@ -15,7 +15,6 @@ use sandtable_raster::raster::{Raster, Samples};
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::query::batch::HeightSlices;
 use sandtable_terrain::query::service::{HeightService, Snapshot};
-use sandtable_terrain::query::source_raster::SourceRaster;
 use sandtable_terrain::query::tiles::HeightTiles;
 use sandtable_terrain::query::{Interpolation, Surface};
 
@@ -63,7 +62,7 @@ fn compare(field: &Field, what: &'static str, at: &[DVec2], peer: Option<&mut Pe
     let cold = field.service.snapshot();
     // A service of its own, whose tiles are made by the questions before the first round.
     let warm = HeightService::new(
-        Arc::new(SourceRaster::from(Arc::clone(cold.source()))),
+        Arc::new(sandtable_terrain::query::source_raster::SourceRaster::from(Arc::clone(cold.source()))),
         Crs::local(),
         Arc::clone(cold.lattice()),
     )
@@ -123,7 +122,7 @@ fn rate(work: impl FnOnce()) -> f64 {
 /// An epoch like this one that has not been asked anything.
 fn fresh(epoch: &Snapshot) -> Arc<Snapshot> {
     HeightService::new(
-        Arc::new(SourceRaster::from(Arc::clone(epoch.source()))),
+        Arc::new(sandtable_terrain::query::source_raster::SourceRaster::from(Arc::clone(epoch.source()))),
         Crs::local(),
         Arc::clone(epoch.lattice()),
     )
@@ -220,7 +219,7 @@ impl Field {
             ..Raster::without_place(1, 1)
         };
         let service = HeightService::new(
-            Arc::new(SourceRaster::from(Arc::new(raster))),
+            Arc::new(sandtable_terrain::query::source_raster::SourceRaster::from(Arc::new(raster))),
             Crs::local(),
             Arc::new(lattice),
         );
