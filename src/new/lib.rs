@@ -15,6 +15,7 @@ mod crop;
 pub mod demo;
 mod folder;
 pub mod found_files;
+mod named;
 mod overlays;
 mod rules;
 mod survey;

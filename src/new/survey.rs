@@ -14,10 +14,10 @@ use glam::DVec2;
 use serde_json::Value;
 
 use crate::buildings::SurveyedBuildings;
-use crate::rules::{BOUNDARIES, LabelRule, NAMES, PEAKS, RULES, TableRule};
+use crate::named::{NamedArea, NamedDistrict, NamedPlace, districts, named_place, names, only_area, parks};
+use crate::rules::{BOUNDARIES, NAMES, PEAKS, RULES, TableRule};
 use sandtable_base::limits::ASSET_BYTES;
 use sandtable_description::expression::Expression;
-use sandtable_description::scalar::Scalar;
 use sandtable_files::addressed;
 use sandtable_files::disk::{self, ReadFileError};
 use sandtable_files::error::FileError;
@@ -25,7 +25,7 @@ use sandtable_geom::crs::Crs;
 use sandtable_geom::polygon;
 use sandtable_scene::attributes::Attributes;
 use sandtable_vector::error::VectorError;
-use sandtable_vector::feature::{Feature, Geometry, Polygon, VectorLayer};
+use sandtable_vector::feature::{Feature, Geometry, VectorLayer};
 use sandtable_vector::hints::VectorHints;
 use sandtable_vector::read;
 
@@ -93,34 +93,8 @@ pub(super) struct LeftFeatures {
     pub examples: Vec<(String, Value)>,
 }
 
-/// The place of a name that may be the title of a scene.
-pub(super) struct NamedPlace {
-    pub name: String,
-    /// The lower, the more important.
-    pub rank: f64,
-    pub at: DVec2,
-}
-
-/// A district with a name.
-pub(super) struct NamedDistrict {
-    pub name: String,
-    /// OpenStreetMap's `admin_level`: the higher, the smaller the district.
-    pub level: f64,
-    pub polygons: Vec<Polygon>,
-}
-
-/// An area with a name.
-#[derive(Clone)]
-pub(super) struct NamedArea {
-    pub name: String,
-    pub polygons: Vec<Polygon>,
-}
-
 /// As many segments tell where the features of a layer lie: more would only take longer.
 const MOST_SEGMENTS: usize = 1 << 15;
-
-/// As many names tell whether a file is named after a place of its features.
-const MOST_NAMES: usize = 4096;
 
 /// As many properties as a reader looks over.
 const MOST_EXAMPLES: usize = 12;
@@ -307,45 +281,6 @@ fn segments_of(shape: &Geometry) -> Box<dyn Iterator<Item = [DVec2; 2]> + '_> {
     }
 }
 
-/// The name of a feature; `None` where it has none.
-fn name_of(feature: &Feature) -> Option<&str> {
-    let names = NAMES.iter().filter_map(|key| feature.properties.get(*key)?.as_str());
-    names.map(str::trim).find(|name| !name.is_empty())
-}
-
-fn names(layer: &VectorLayer) -> Vec<String> {
-    layer.features.iter().filter_map(name_of).take(MOST_NAMES).map(str::to_owned).collect()
-}
-
-fn named_area(feature: &Feature) -> Option<NamedArea> {
-    let (name, polygons) = (name_of(feature)?, feature.polygons());
-    (!polygons.is_empty()).then(|| NamedArea { name: name.to_owned(), polygons: polygons.to_vec() })
-}
-
-/// Parks and reserves by the tags of OpenStreetMap.
-fn parks(layer: &VectorLayer) -> Vec<NamedArea> {
-    const TAGS: [(&str, &[&str]); 3] = [
-        ("boundary", &["national_park", "protected_area"]),
-        ("leisure", &["park", "nature_reserve"]),
-        ("fclass", &["park", "nature_reserve", "national_park"]),
-    ];
-    let is_park = |feature: &&Feature| {
-        TAGS.iter().any(|(key, words)| {
-            let word = feature.properties.get(*key).and_then(Value::as_str);
-            word.is_some_and(|word| words.contains(&word))
-        })
-    };
-    layer.features.iter().filter(is_park).filter_map(named_area).collect()
-}
-
-/// The area of a layer that holds nothing else.
-fn only_area(layer: &VectorLayer) -> Option<NamedArea> {
-    match &layer.features[..] {
-        [only] => named_area(only),
-        _ => None,
-    }
-}
-
 /// Evenly chosen vertices of coastlines.
 fn coast(layer: &VectorLayer) -> Vec<DVec2> {
     let is_coast = |feature: &&Feature| {
@@ -425,36 +360,10 @@ fn name_property(features: &[&Feature]) -> Option<String> {
     known.or_else(|| keys().find(|key| is_name(key))).or_else(distinct).map(str::to_owned)
 }
 
-fn named_place(layer: &Arc<VectorLayer>, index: usize, label: &LabelRule) -> Option<NamedPlace> {
-    let attributes = Attributes::new(Arc::clone(layer), index);
-    let evaluated = |text: &str| attributes.evaluated(&Expression::parse(text).ok()?);
-    let name = match evaluated(label.name)? {
-        Scalar::Text(name) => name.trim().to_owned(),
-        Scalar::Bool(_) | Scalar::Number(_) => return None,
-    };
-    let at = *layer.features[index].geometry.vertices().next()?;
-    let rank = evaluated(label.rank)?.number()?;
-    (!name.is_empty()).then_some(NamedPlace { name, rank, at })
-}
-
-/// The districts of a layer, by the tags of OpenStreetMap.
-fn districts(layer: &VectorLayer) -> Vec<NamedDistrict> {
-    let district = |feature: &Feature| {
-        let text = |property: &str| feature.properties.get(property).and_then(Value::as_str).map(str::trim);
-        let name = text("name").filter(|name| !name.is_empty())?;
-        let level = feature.properties.get("admin_level")?;
-        let level =
-            level.as_f64().or_else(|| level.as_str()?.trim().parse().ok()).filter(|at| at.is_finite())?;
-        let polygons = feature.polygons();
-        let is_district = text("boundary") == Some("administrative") && !polygons.is_empty();
-        is_district.then(|| NamedDistrict { name: name.to_owned(), level, polygons: polygons.to_vec() })
-    };
-    layer.features.iter().filter_map(district).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use sandtable_vector::feature::Polygon;
 
     #[test]
     fn of_openstreetmap_the_complete_layers_are_taken() {

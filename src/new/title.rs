@@ -4,8 +4,8 @@ use std::path::Path;
 
 use glam::DVec2;
 
+use crate::named::NamedDistrict;
 use crate::rules::LEAST_TITLE_RANK;
-use crate::survey::NamedDistrict;
 use crate::text::VectorDraft;
 use sandtable_base::message::capitalized::capitalized;
 use sandtable_files::disk;

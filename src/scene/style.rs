@@ -64,7 +64,9 @@ impl RampSource {
             Self::Named(name) => named(*name, ground),
             Self::Pale(name) => paler(&named(*name, ground)),
             Self::Layers(name) => layered(&named(*name, ground), ground.range_m),
-            Self::Stretched(tints) => stretched(tints, ground.range_m),
+            Self::Stretched(tints) => {
+                stretched(tints, ground.range_m).unwrap_or_else(|| named(RampName::Atlas, ground))
+            }
             Self::Own(ramp) => ramp.clone(),
         }
     }
@@ -93,12 +95,15 @@ fn layered(ramp: &ColorRamp, (low_m, high_m): (f32, f32)) -> ColorRamp {
     ColorRamp::new(stops.collect()).unwrap_or_else(|| ramp.clone())
 }
 
-/// Tints from the lowest to the highest ground.
-fn stretched(tints: &[(f32, [u8; 3])], (low_m, high_m): (f32, f32)) -> ColorRamp {
+/// Tints from the lowest to the highest ground; `None` where the range is not finite.
+fn stretched(tints: &[(f32, [u8; 3])], (low_m, high_m): (f32, f32)) -> Option<ColorRamp> {
     let stop = |&(share, [red, green, blue]): &(f32, [u8; 3])| {
         (low_m + share * (high_m - low_m).max(1.0), Srgba::opaque(red, green, blue))
     };
-    ColorRamp::new(tints.iter().map(stop).collect()).expect("shares rise")
+    let mut stops: Vec<_> = tints.iter().map(stop).collect();
+    // Heights may be so large that their rounding leaves the first tint alone.
+    stops.dedup_by(|next, last| next.0 <= last.0);
+    ColorRamp::new(stops)
 }
 
 /// The tints of Swiss maps: gray green valleys, and heights that are lighter and warmer, as air clears above haze (Imhof 1965).
@@ -270,6 +275,15 @@ pub fn sheet_day(document: &Document) -> Result<Option<CalendarDay>, Diagnostic>
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn tints_span_the_heights_however_large_these_are() {
+        let heights = |range| stretched(&SWISS_TINTS, range).map(|ramp| ramp.height_range());
+        assert_eq!(heights((400.0, 4400.0)), Some((400.0, 4400.0)));
+        assert_eq!(heights((7.0, 7.0)), Some((7.0, 8.0)));
+        assert_eq!(heights((1e9, 1e9)), Some((1e9, 1e9)));
+        assert_eq!(heights((0.0, f32::INFINITY)), None);
+    }
 
     #[test]
     fn layers_have_one_tint_each_and_change_at_round_heights() {

@@ -38,14 +38,13 @@ impl SourceRaster {
     /// As [`Lattice::from_raster`].
     pub fn with_lattice(mut raster: Raster) -> Result<(Self, Lattice), LatticeError> {
         let (frame, columns) = (Lattice::frame(&raster)?, raster.width);
-        if raster.samples.is_wide() {
+        let Samples::F32(heights) = &mut raster.samples else {
             let lattice = Lattice::from_raster(&raster)?;
             return Ok((Self::from(Arc::new(raster)), lattice));
-        }
+        };
+        let mut heights = std::mem::take(heights);
         Lattice::check_memory(raster.width, raster.height)?;
         let header = Arc::new(raster.without_samples());
-        let Samples::F32(heights) = &mut raster.samples else { unreachable!("samples of 32 bits") };
-        let mut heights = std::mem::take(heights);
         turn_rows(&mut heights, columns as usize);
         let lattice = Lattice::new(frame.0, frame.1, columns, heights)?;
         let turned = Some(lattice.shared_heights());

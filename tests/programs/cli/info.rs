@@ -118,7 +118,7 @@ fn missing_empty_and_strange_files_are_refused() {
         (["model", "info", "nowhere.obj"], "no such file"),
         (["model", "info", "empty.obj"], "empty.obj"),
         (["model", "info", "."], "not a file"),
-        (["check", ".", "--allow=."], "not a file"),
+        (["check", ".", "--allow=."], "a folder, not a scene file"),
     ] {
         let refused = run_in(scratch.folder(), &arguments).failed(1);
         assert!(refused.contains(wanted), "{arguments:?}: {refused}");
