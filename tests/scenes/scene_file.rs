@@ -304,7 +304,7 @@ const BROKEN: &[(&str, &[&str])] = &[
         "[style]\nelephant = 1\n",
         &[
             "hill.toml:4:1:",
-            "[style] knows `preset`, `ramp`, `contours`, `spot_heights`, `imagery`, `land_cover`, `wireframe`, `light`, `haze` and `table`",
+            "[style] knows `preset`, `ramp`, `contours`, `rock`, `spot_heights`, `imagery`, `land_cover`, `wireframe`, `light`, `haze` and `table`",
         ],
     ),
     ("[style.light]\nalitude = 3\n", &["hill.toml:4:1:", "in [style.light]", "did you mean `altitude`?"]),
