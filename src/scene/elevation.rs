@@ -12,6 +12,7 @@ use std::cell::RefCell;
 use glam::DVec2;
 
 use crate::assets::{AssetError, Assets};
+use crate::decoded_whole::decoded_whole;
 use crate::given_tile::given_tile;
 use crate::overridden_crs::OverriddenCrs;
 use crate::planned_pictures::ElevationNeed;
@@ -484,17 +485,8 @@ fn decoded(
     overridden: &dyn Fn(&Crs),
 ) -> Option<Raster> {
     let bytes = assets.bytes_on_disk(&file.name).filter(|_| file.source.is_none())?;
-    let mut windows =
-        open_windows(&TileFile::alone(file.name.clone(), 0.0), assets, stated, overridden).ok()??;
-    let (size, is_wide) = (windows.size(), windows.metadata().samples.is_wide());
-    let window = RasterWindow::all(size);
-    let samples = u64::from(size.0) * u64::from(size.1);
-    let sample_bytes = if is_wide { size_of::<f64>() } else { size_of::<f32>() } as u64;
-    // A small file may claim to hold many samples that were never written.
-    let is_large =
-        samples * sample_bytes > WINDOW_CACHE_BYTES as u64 && samples <= RASTER_SAMPLES.get().min(bytes);
-    let samples = is_large.then(|| windows.samples(window).ok()).flatten()?;
-    Some(Raster { samples, ..windows.metadata().without_samples() })
+    let alone = TileFile::alone(file.name.clone(), 0.0);
+    decoded_whole(open_windows(&alone, assets, stated, overridden).ok()??, bytes)
 }
 
 /// Windows with `meters` added to their heights.

@@ -27,6 +27,7 @@ mod city_buildings;
 mod city_paint;
 pub mod climate;
 pub mod crossed_shapes;
+mod decoded_whole;
 pub mod earthworks;
 mod elevation;
 mod exact_ground;

@@ -19,10 +19,10 @@
 use std::sync::Arc;
 
 use glam::{DVec2, Vec2, Vec3};
-use rayon::prelude::*;
 
 use crate::height_scan;
 use crate::post_rect::PostRect;
+use crate::row_order::turned;
 use sandtable_base::limits::memory::{MemoryRefused, check_memory};
 use sandtable_geom::rect::Rect;
 use sandtable_raster::raster::{Raster, Samples};
@@ -500,21 +500,6 @@ impl Lattice {
         let (columns, rows) = (self.columns, self.rows);
         (0..rows).flat_map(move |row| (0..columns).map(move |column| Post { column, row }))
     }
-}
-
-/// Rows in the reverse order, as heights; on all threads.
-fn turned<T: Copy + Sync>(values: &[T], columns: usize, height: impl Fn(T) -> f32 + Sync) -> Vec<f32> {
-    let mut heights = vec![0.0; values.len()];
-    let rows = heights.par_chunks_mut(columns).zip(values.par_chunks(columns).rev());
-    rows.for_each(|(to, from)| to.iter_mut().zip(from).for_each(|(to, &from)| *to = height(from)));
-    heights
-}
-
-/// Puts rows into the reverse order, where they are; on all threads.
-pub(crate) fn turn_rows(values: &mut [f32], columns: usize) {
-    let (first, last) = values.split_at_mut(values.len() / columns / 2 * columns);
-    let rows = first.par_chunks_exact_mut(columns).zip(last.par_rchunks_exact_mut(columns));
-    rows.for_each(|(first, last)| first.swap_with_slice(last));
 }
 
 /// Sets heights that are NaN to the one before.

@@ -14,6 +14,7 @@ pub mod profile;
 pub mod prominence;
 pub mod pyramid;
 pub mod query;
+mod row_order;
 pub mod sight;
 mod slopes;
 pub mod stop_flag;

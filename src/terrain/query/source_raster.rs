@@ -12,7 +12,8 @@
 
 use std::sync::{Arc, OnceLock};
 
-use crate::lattice::{Lattice, LatticeError, turn_rows};
+use crate::lattice::{Lattice, LatticeError};
+use crate::row_order::turn_rows;
 use sandtable_raster::raster::{Raster, SampleFloat, Samples};
 
 /// The raster of a ground as it was read: its samples are held, or those of the ground before anything shaped it.
