@@ -68,6 +68,14 @@ impl<T: FromScalar> FeatureValue<T> {
         }
     }
 
+    /// Whether its expression reads a property.
+    pub fn reads(&self, property: &str) -> bool {
+        match self {
+            Self::Fixed(_) => false,
+            Self::Computed { expression, .. } => expression.properties().contains(&property),
+        }
+    }
+
     /// The table and the key whose expression may give no value; `None` where the value is the same for all features.
     pub fn computed_key(&self) -> Option<&str> {
         match self {

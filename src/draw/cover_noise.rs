@@ -7,6 +7,8 @@
 
 use glam::{UVec2, Vec2};
 
+use crate::lowbias::lowbias32;
+
 /// The wavelength of the first octave, meters, and the factor from one to the next.
 pub(crate) const FIRST_M: f32 = 3000.0;
 pub(crate) const FINER: f32 = 0.3;
@@ -93,13 +95,9 @@ fn pair(at: Vec2) -> (Vec2, Vec2) {
 
 /// Two numbers from -1 to 1 for a lattice point.
 ///
-/// A weighted sum of the coordinates, mixed twice (after `lowbias32` of Wellons 2018): it takes half the
-/// products of the hash of the grain.
+/// A weighted sum of the coordinates, mixed: it takes half the products of the hash of the grain.
 fn values(at: UVec2) -> Vec2 {
-    let mut bits = at.x.wrapping_mul(0x8da6_b343).wrapping_add(at.y.wrapping_mul(0xd816_3841));
-    bits = (bits ^ (bits >> 15)).wrapping_mul(0x2c1b_3c6d);
-    bits = (bits ^ (bits >> 12)).wrapping_mul(0x297a_2d39);
-    bits ^= bits >> 15;
+    let bits = lowbias32(at.x.wrapping_mul(0x8da6_b343).wrapping_add(at.y.wrapping_mul(0xd816_3841)));
     // 16 bits are exact in an f32.
     Vec2::new((bits & 0xffff) as f32, (bits >> 16) as f32) / 32_768.0 - 1.0
 }

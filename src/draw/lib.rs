@@ -18,6 +18,7 @@ pub mod ground_window;
 pub mod hatching;
 pub mod lighting;
 pub mod list;
+pub mod lowbias;
 pub mod material;
 pub mod patches;
 pub mod pixels;

@@ -11,11 +11,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::found_files::SCENE_NAME;
 use sandtable_files::disk::{self, WriteFileError};
 use sandtable_files::output_files::OutputFiles;
-
-/// The name of the scene in its folder.
-const SCENE_NAME: &str = "scene.toml";
 
 const SCENE: &str = include_str!("../../scenes/jacksboro.toml");
 

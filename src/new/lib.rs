@@ -31,6 +31,7 @@ use glam::DVec2;
 use crate::cameras::cameras;
 use crate::crop::{around_vectors, is_on_ground, main_extent, with_straight_edges};
 use crate::folder::{FolderError, SceneFolder};
+use crate::found_files::SCENE_NAME;
 use crate::survey::{SurveyError, SurveyedLayer};
 use crate::text::{SceneDraft, VectorDraft};
 use sandtable_annotate::nice::NiceNumber;
@@ -44,9 +45,6 @@ use sandtable_scene::build::build_with;
 use sandtable_scene::planned_pictures::{ElevationNeed, PlannedPictures};
 use sandtable_scene::scene_file::OpenSceneError;
 use sandtable_scene::scene_model::SceneModel;
-
-/// The name of the scene file in its folder.
-const FILE_NAME: &str = "scene.toml";
 
 /// About as many contour lines as the eye can follow.
 const CONTOURS: f64 = 12.0;
@@ -104,7 +102,7 @@ pub fn write(
     progress: &dyn Fn(&'static str),
 ) -> Result<WrittenScene, NewSceneError> {
     progress("surveying files");
-    let path = options.folder.join(FILE_NAME);
+    let path = options.folder.join(SCENE_NAME);
     if path.symlink_metadata().is_ok() {
         return Err(NewSceneError::Exists(path));
     }

@@ -211,7 +211,7 @@ pub fn build_with(
         climate: Climate::at(place_deg(&crs, lattice.map_extent().center())),
         land_cover: surroundings.land_cover,
         // Plain lines and areas of an overlay leave the relief as strong as roads do.
-        is_base_map: surroundings.is_base_map
+        is_lightly_shaded: surroundings.is_lightly_shaded
             || !military.is_empty()
             || collected.graphics.iter().any(|graphic| graphic.style.is_none()),
         imagery: imagery.map(Arc::new),

@@ -4,6 +4,12 @@ use sandtable_base::limits::RASTER_SAMPLES;
 use sandtable_raster::raster::Raster;
 use sandtable_raster::windows::{RasterWindow, WINDOW_CACHE_BYTES, Windows};
 
+/// Whether a file of so many `bytes` may be large: one byte holds no more than a sample. What is not is opened once, to be read
+/// whole.
+pub(super) fn may_be_large(bytes: u64) -> bool {
+    bytes > (WINDOW_CACHE_BYTES / size_of::<f64>()) as u64
+}
+
 /// All samples of a large file of so many `bytes`; `None` for a small one, and for one that cannot be read so.
 pub(super) fn decoded_whole(mut windows: Box<dyn Windows + Send>, bytes: u64) -> Option<Raster> {
     let (size, is_wide) = (windows.size(), windows.metadata().samples.is_wide());

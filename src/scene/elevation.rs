@@ -12,7 +12,7 @@ use std::cell::RefCell;
 use glam::DVec2;
 
 use crate::assets::{AssetError, Assets};
-use crate::decoded_whole::decoded_whole;
+use crate::decoded_whole::{decoded_whole, may_be_large};
 use crate::given_tile::given_tile;
 use crate::overridden_crs::OverriddenCrs;
 use crate::planned_pictures::ElevationNeed;
@@ -484,7 +484,8 @@ fn decoded(
     stated: &DemOptions,
     overridden: &dyn Fn(&Crs),
 ) -> Option<Raster> {
-    let bytes = assets.bytes_on_disk(&file.name).filter(|_| file.source.is_none())?;
+    let bytes =
+        assets.bytes_on_disk(&file.name).filter(|bytes| may_be_large(*bytes) && file.source.is_none())?;
     let alone = TileFile::alone(file.name.clone(), 0.0);
     decoded_whole(open_windows(&alone, assets, stated, overridden).ok()??, bytes)
 }

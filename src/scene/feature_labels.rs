@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, Vec3};
 
-use crate::attributes::{Attributes, written};
+use crate::attributes::{Attributes, PROMINENCE, written};
 use crate::exact_ground::ExactGround;
 use crate::label_course::{LabelCourse, across, along};
 use crate::named_summits::NamedSummits;
@@ -41,11 +41,11 @@ pub(super) fn labels(
     let Some(source) = table.source() else { return Ok(Vec::new()) };
     let text = Expression::parse(&table.text).map_err(|error| frame.document.error(&table.text, error))?;
     let (crs, features) = sources.features(&source)?;
-    let summits = (table.kind == LabelKind::Summit).then(|| NamedSummits::new(lattice));
+    let summits = reads_prominence(table, &text).then(|| NamedSummits::new(lattice));
     let known = |attributes: Attributes| {
         let prominence_m = summits.as_ref().and_then(|summits| {
             let at = place(attributes.geometry()?, &crs, frame, lattice)?;
-            summits.prominence_m(at.truncate().as_vec2())
+            Some(summits.prominence_m(at.truncate().as_vec2()))
         });
         attributes.with_prominence(prominence_m)
     };
@@ -121,6 +121,15 @@ pub(super) fn labels(
         findings.add(FindingCode::LeftOut, source.span(), sentence);
     }
     Ok(labels)
+}
+
+/// Whether an expression of a table of summits, of which `text` is one, reads their prominence.
+fn reads_prominence(table: &LabelTable, text: &Expression) -> bool {
+    table.kind == LabelKind::Summit
+        && (text.properties().contains(&PROMINENCE)
+            || table.rank.stated().is_some_and(|rank| rank.reads(PROMINENCE))
+            || table.size.stated().is_some_and(|size| size.reads(PROMINENCE))
+            || table.shield.as_ref().is_some_and(|shield| shield.reads(PROMINENCE)))
 }
 
 /// The first of several road numbers.

@@ -73,7 +73,7 @@ pub fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: Gr
     let ramp = scene.ramp();
     let ReliefStrength { z_factor, shade_gain } =
         ReliefStrength::of(lattice, scene.scale, &ramp, to_sun, is_water);
-    let shade_gain = if scene.is_base_map { ReliefShading::BASE_GAIN } else { shade_gain };
+    let shade_gain = if scene.is_lightly_shaded { ReliefShading::BASE_GAIN } else { shade_gain };
     if scene.texture > 0.0 {
         let texture = TextureShading {
             strength: scene.texture,
@@ -111,9 +111,4 @@ pub fn form_level(lattice: &Lattice) -> u32 {
 /// The width of the smallest forms of the generalized ground, meters.
 fn form_m(lattice: &Lattice) -> f64 {
     lattice.extent().size().max_element() * FORM_SHARE
-}
-
-/// Whether all heights that are numbers are whole.
-pub(super) fn is_whole_meters(heights: &[f32]) -> bool {
-    heights.iter().all(|height| height.is_nan() || height.fract() == 0.0)
 }

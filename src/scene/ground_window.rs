@@ -6,7 +6,6 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-use crate::ground_map::is_whole_meters;
 use crate::scene_model::SceneModel;
 use crate::texture_shading::sky_in_part;
 use sandtable_draw::contour_ground::lift_level_ground;
@@ -16,7 +15,7 @@ use sandtable_draw::ground_window::GroundWindow;
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::light::TerrainLight;
 use sandtable_terrain::post_rect::PostRect;
-use sandtable_terrain::terraces::without_terraces;
+use sandtable_terrain::terraces::{are_whole, without_terraces};
 
 /// A part of the ground with a border around it.
 pub struct WindowGround {
@@ -36,7 +35,7 @@ pub fn ground_window(
 ) -> GroundWindow {
     let drawn = (scene.scale.0 != 1.0).then(|| lattice.stretched(scene.scale.0));
     let light = TerrainLight::new(drawn.as_ref().unwrap_or(lattice), to_sun, 0);
-    let smooth = is_whole_meters(lattice.heights()).then(|| without_terraces(lattice, 1.0, &|_| false));
+    let smooth = are_whole(lattice.heights()).then(|| without_terraces(lattice, 1.0, &|_| false));
     let shaded = smooth.as_ref().unwrap_or(lattice);
     let columns = inner.first.column..=inner.last.column;
     let row = |row: u32| -> Vec<GroundPost> {

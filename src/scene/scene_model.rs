@@ -88,8 +88,8 @@ pub struct SceneModel {
     /// The climate of the middle of its ground.
     pub climate: Climate,
     pub(crate) land_cover: bool,
-    /// Whether it is there to carry symbols and graphics.
-    pub(crate) is_base_map: bool,
+    /// Whether its shade is light: it carries symbols and graphics, or its preset wants it so.
+    pub(crate) is_lightly_shaded: bool,
     /// The picture draped over the ground.
     pub imagery: Option<Arc<GroundImagery>>,
     /// Lines of equal height on the ground.

@@ -196,8 +196,8 @@ pub struct Surroundings {
     pub table: TableTop,
     /// Whether the ground's natural cover shows.
     pub land_cover: bool,
-    /// Whether the ground is a base map by its preset, or by its own symbols and graphics: its shade is lighter then.
-    pub is_base_map: bool,
+    /// Whether the ground's shade is light, by its preset, or by its own symbols and graphics, which are to stand out.
+    pub is_lightly_shaded: bool,
 }
 
 impl Surroundings {
@@ -221,7 +221,7 @@ impl Surroundings {
             haze_m: style.haze.map(|distance_m| distance_m as f32).or(is_clear.then_some(0.0)),
             table: *style.table,
             land_cover: style.land_cover.stated().copied().unwrap_or(is_natural || *style.land_cover),
-            is_base_map: matches!(
+            is_lightly_shaded: matches!(
                 style.preset,
                 Some(
                     StylePreset::Military

@@ -6,9 +6,10 @@
 
 use glam::Vec2;
 
+use crate::shown_elevation::shown_elevation_m;
 use sandtable_annotate::annotation::{ContourMarks, NumberedContour};
 use sandtable_annotate::nice::format_number;
-use sandtable_draw::list::{DrawList, FeatureId};
+use sandtable_draw::list::DrawList;
 use sandtable_geom::isolines::{Isoline, ValueGrid, isolines};
 use sandtable_render::picture::Rendering;
 use sandtable_scene::scene_model::SceneModel;
@@ -67,14 +68,9 @@ impl ReadGround {
         let (mut elevations_m, mut depths_m) = (Vec::new(), Vec::new());
         for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
             let (x, y) = (column * step, row * step);
-            let index = y * width + x;
-            let depth = picture.depth_m[index];
-            depths_m.push(depth);
-            let is_ground = picture.features[index] == FeatureId::GROUND && depth.is_finite();
+            depths_m.push(picture.depth_m[y * width + x]);
             let pixel = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-            let at = camera.point_at(pixel, depth).truncate();
-            let height_m = if is_ground { list.ground_height_m(at) } else { None };
-            elevations_m.push(height_m.unwrap_or(f32::NAN));
+            elevations_m.push(shown_elevation_m(list, camera, picture, pixel).unwrap_or(f32::NAN));
         }
         Self { columns, step, elevations_m, depths_m }
     }

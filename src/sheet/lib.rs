@@ -30,6 +30,7 @@ pub mod relief;
 pub mod rim;
 mod rock_hachures;
 pub mod sheet_file;
+mod shown_elevation;
 pub mod sidecar;
 pub mod step_watch;
 pub mod viewshed_map;

@@ -12,8 +12,10 @@
 
 use glam::Vec2;
 
+use crate::shown_elevation::shown_elevation_m;
 use sandtable_annotate::annotation::TaperedStroke;
-use sandtable_draw::list::{DrawList, FeatureId};
+use sandtable_draw::list::DrawList;
+use sandtable_draw::lowbias::lowbias32;
 use sandtable_geom::isolines::{Isoline, ValueGrid, isolines};
 use sandtable_render::picture::Rendering;
 use sandtable_scene::scene_model::SceneModel;
@@ -89,17 +91,9 @@ impl ReadPlan {
         let (width, height) = (picture.pixels.width() as usize, picture.pixels.height() as usize);
         let step = (height / ROWS).max(2);
         let (columns, rows) = (width.div_ceil(step), height.div_ceil(step));
-        let place = |column: usize, row: usize| {
-            let (x, y) = (column * step, row * step);
-            let depth = picture.depth_m[y * width + x];
-            camera.point_at(Vec2::new(x as f32, y as f32), if depth.is_finite() { depth } else { 1.0 })
-        };
         let elevation = |index: usize| {
-            let (column, row) = (index % columns, index / columns);
-            let at = (row * step) * width + column * step;
-            let is_ground = picture.features[at] == FeatureId::GROUND && picture.depth_m[at].is_finite();
-            let height_m = is_ground.then(|| list.ground_height_m(place(column, row).truncate())).flatten();
-            height_m.unwrap_or(f32::NAN)
+            let pixel = Vec2::new((index % columns * step) as f32, (index / columns * step) as f32);
+            shown_elevation_m(list, camera, picture, pixel).unwrap_or(f32::NAN)
         };
         let elevations_m = (0..columns * rows).map(elevation).collect();
         let across_m = camera.point_at(Vec2::new(step as f32, 0.0), 1.0) - camera.point_at(Vec2::ZERO, 1.0);
@@ -308,14 +302,9 @@ fn length(path: &[Vec2]) -> f32 {
 
 /// A number in 0..1 by a place.
 fn chance(column: u32, row: u32, salt: u32) -> f32 {
-    let mut bits =
+    let place =
         column.wrapping_mul(0x9e37_79b1) ^ row.wrapping_mul(0x85eb_ca77) ^ salt.wrapping_mul(0xc2b2_ae3d);
-    bits ^= bits >> 15;
-    bits = bits.wrapping_mul(0x2c1b_3c6d);
-    bits ^= bits >> 12;
-    bits = bits.wrapping_mul(0x297a_2d39);
-    bits ^= bits >> 15;
-    (bits >> 8) as f32 / (1u32 << 24) as f32
+    (lowbias32(place) >> 8) as f32 / (1u32 << 24) as f32
 }
 
 /// The vertices of strokes so far, by square cells.

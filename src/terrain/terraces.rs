@@ -8,10 +8,17 @@
 use rayon::prelude::*;
 
 use crate::lattice::Lattice;
+use sandtable_raster::raster::SampleFloat;
 
 /// Half the widths of the neighborhoods, in posts: a much wider terrace keeps a level middle. Wider neighborhoods first
 /// leave more of it behind than they level.
 const REACHES: [usize; 8] = [4, 4, 2, 2, 1, 1, 1, 1];
+
+/// Whether all heights that are numbers are whole: those of a model that was rounded.
+pub fn are_whole<T: SampleFloat>(heights: &[T]) -> bool {
+    let whole = |height: f64| height.is_nan() || height.fract() == 0.0;
+    heights.iter().all(|&height| whole(height.into()))
+}
 
 /// The lattice with heights that are within half of `step_m` of its own, and smooth. Posts for which `is_fixed` (by index,
 /// as [`Lattice::heights`]) keep their heights, and so do pinned ones.

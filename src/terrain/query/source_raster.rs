@@ -14,7 +14,8 @@ use std::sync::{Arc, OnceLock};
 
 use crate::lattice::{Lattice, LatticeError};
 use crate::row_order::turn_rows;
-use sandtable_raster::raster::{Raster, SampleFloat, Samples};
+use crate::terraces::are_whole;
+use sandtable_raster::raster::{Raster, Samples};
 
 /// The raster of a ground as it was read: its samples are held, or those of the ground before anything shaped it.
 #[derive(Debug)]
@@ -68,10 +69,6 @@ impl SourceRaster {
 
     /// Whether all samples that are numbers are whole.
     pub fn holds_whole_numbers(&self) -> bool {
-        fn are_whole<T: SampleFloat>(samples: &[T]) -> bool {
-            let whole = |value: f64| value.is_nan() || value.fract() == 0.0;
-            samples.iter().all(|&sample| whole(sample.into()))
-        }
         match (&self.turned, &self.header.samples) {
             (Some(samples), _) => are_whole(samples),
             (None, Samples::F32(samples)) => are_whole(samples),
