@@ -149,12 +149,12 @@ enum PreparedName<'a> {
 impl<'a> PreparedName<'a> {
     fn new(turn: &LabelTurn<'a>, composer: &mut Composer) -> Result<Self, LabelOutcome> {
         match turn.source {
-            LabelSource::Point(label) => Self::at_place(label, composer),
+            LabelSource::Point(label) => Self::at_place(label, composer).map(Self::point),
             LabelSource::Line(label) => {
                 let line = PreparedLine::new(label, composer).ok_or(LabelOutcome::Empty)?;
                 match &label.fallback {
                     _ if line.count() > 0 => Ok(Self::Line(line)),
-                    Some(fallback) => Self::at_place(fallback, composer),
+                    Some(fallback) => Self::off_line(fallback, composer),
                     None if label.path_px.is_empty() => Err(LabelOutcome::Hidden),
                     None => Err(LabelOutcome::CrowdedOut),
                 }
@@ -162,14 +162,23 @@ impl<'a> PreparedName<'a> {
         }
     }
 
-    fn at_place(label: &'a PictureLabel, composer: &mut Composer) -> Result<Self, LabelOutcome> {
+    fn point(label: PreparedLabel<'a>) -> Self {
+        Self::Point(Box::new(label))
+    }
+
+    /// The name of a line or an area that finds no place along it.
+    fn off_line(fallback: &'a PictureLabel, composer: &mut Composer) -> Result<Self, LabelOutcome> {
+        Self::at_place(fallback, composer).map(|label| Self::point(label.without_symbol()))
+    }
+
+    fn at_place(label: &'a PictureLabel, composer: &mut Composer) -> Result<PreparedLabel<'a>, LabelOutcome> {
         if !composer.sheet.bounds().contains(label.anchor_px) {
             return Err(LabelOutcome::Outside);
         }
         if !label.visible {
             return Err(LabelOutcome::Hidden);
         }
-        PreparedLabel::new(label, composer).map(|label| Self::Point(Box::new(label)))
+        PreparedLabel::new(label, composer)
     }
 
     fn first_request(&self) -> LabelRequest {
@@ -257,7 +266,7 @@ impl<'a> SheetNames<'a> {
             else {
                 continue;
             };
-            if let Ok(prepared) = PreparedName::at_place(fallback, composer) {
+            if let Ok(prepared) = PreparedName::off_line(fallback, composer) {
                 let choice = placer.place(&[prepared.first_request()])[0];
                 name.drawn.extend(choice.map(|choice| DrawnName { occurrence: 0, choice }));
                 name.name = prepared;

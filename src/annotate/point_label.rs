@@ -53,8 +53,19 @@ impl<'a> PreparedLabel<'a> {
         Ok(Self { label, style, block, metrics, positions: metrics.positions() })
     }
 
+    /// The name of a line or an area that found no place along it: without the symbol of a point, and never led to one.
+    pub fn without_symbol(mut self) -> Self {
+        self.positions.retain(|position| position.leader.is_none());
+        self.positions.iter_mut().for_each(|position| position.symbol = None);
+        self
+    }
+
     pub fn request(&self) -> LabelRequest {
-        LabelRequest { candidates: self.positions.clone(), reserved: Some(self.metrics.symbol_box()) }
+        let has_symbol = self.positions.iter().any(|position| position.symbol.is_some());
+        LabelRequest {
+            candidates: self.positions.clone(),
+            reserved: has_symbol.then(|| self.metrics.symbol_box()),
+        }
     }
 
     pub fn draw_symbol(
@@ -182,6 +193,16 @@ mod tests {
             let contrast = worst_contrast(halo, prepared.style.note_ink);
             assert!(contrast >= 4.5, "{light}: {contrast}");
         }
+    }
+
+    #[test]
+    fn a_name_off_its_line_has_no_symbol_and_no_leader() {
+        let mut composer = Composer::new(1920, 1080);
+        let river = PictureLabel { kind: LabelKind::Water, ..label("Emory River", 400.0, 500.0) };
+        let prepared = PreparedLabel::new(&river, &mut composer).expect("letters").without_symbol();
+        let bare = |position: &LabelCandidate| position.symbol.is_none() && position.leader.is_none();
+        assert!(prepared.positions.len() > 8 && prepared.positions.iter().all(bare));
+        assert_eq!(prepared.request().reserved, None);
     }
 
     #[test]
