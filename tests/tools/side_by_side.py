@@ -53,6 +53,9 @@ PLACES = {
     "zion": ("dem/zion_srtm_u16_deflate.tif", []),
 }
 
+# Systems of files that state none.
+SYSTEMS = {"boulder": "EPSG:4326"}
+
 JUDGED = ["relief", "tint", "light", "water", "ground", "names", "symbols", "composition"]
 
 # The most posts along the longer side of a reference's ground.
@@ -96,6 +99,8 @@ def draw_ours(program, data, out, name, size):
     folder = out / "scenes" / name
     shutil.rmtree(folder, ignore_errors=True)
     options = [option for vector in vectors for option in ("--vectors", data / vector)]
+    if name in SYSTEMS:
+        options += ["--crs", SYSTEMS[name]]
     run(program, "new", folder, "--dem", data / dem, *options)
     picture = out / f"{name}.png"
     run(program, "render", folder / "scene.toml", "--allow", data, "--size", size, "--sidecar", "-o", picture)
@@ -109,7 +114,7 @@ def ground_of(data, name, folder, sidecar):
     dem = data / PLACES[name][0]
     with rasterio.open(dem) as source:
         # A file that states no system is in that of the scene.
-        own = source.crs or crs
+        own = source.crs or SYSTEMS.get(name, crs)
         extent = scene["terrain"].get("extent")
         west, south, east, north = (
             [*extent[0], *extent[1]] if extent else transform_bounds(own, crs, *source.bounds, densify_pts=41)
