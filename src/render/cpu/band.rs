@@ -62,9 +62,8 @@ pub fn draw_band<const N: usize>(frame: &TileContext<N>, number: u32, rows: Band
     let pieces: Vec<FacePiece> = frame.geometry.pieces_in(band).copied().collect();
     let window =
         |tile: u32| PixelWindow { from: [tile * TILE, top], to: [(tile * TILE + TILE).min(width), bottom] };
-    let draw = |scratch: &mut TileScratch<N>, part: PixelWindow| {
-        (part, draw_tile(frame, &pieces, part, scratch))
-    };
+    let draw =
+        |scratch: &mut TileScratch<N>, part: PixelWindow| (part, draw_tile(frame, &pieces, part, scratch));
     let tiles: Vec<Vec<_>> = (0..width.div_ceil(TILE))
         .into_par_iter()
         // A thread that is done takes any tile that is left, one at a time.
