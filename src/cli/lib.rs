@@ -32,6 +32,7 @@ mod options;
 mod output;
 mod output_format;
 mod pick;
+mod picture_maker;
 mod plan;
 mod plan_analysis;
 mod positions;

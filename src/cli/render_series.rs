@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use crate::backend::BackendName;
 use crate::error::CliError;
+use crate::picture_maker::{ComposedPicture, MadePicture, PictureMaker};
 use crate::progress::StepTimer;
 use crate::render::{RenderArguments, find_camera, named_by_option};
 use sandtable_annotate::contact_sheet::{ContactPicture, ContactSheet};
@@ -22,14 +23,12 @@ use sandtable_render::RenderBackend;
 use sandtable_scene::planned_pictures::{ElevationNeed, NearGround, PlannedCameras, PlannedPictures};
 use sandtable_scene::scene_file::{open_scene_for, phases};
 use sandtable_scene::scene_model::SceneModel;
-use sandtable_scene::scene_view::{SceneView, ViewAim};
-use sandtable_sheet::picture::{
-    ComposedView, DrawnView, PictureError, PictureSize, compose_view, draw_view_counted,
-};
+use sandtable_scene::scene_view::SceneView;
+use sandtable_sheet::in_order::PicturesInOrder;
+use sandtable_sheet::picture::{ComposedView, PictureSize};
 use sandtable_sheet::picture_buffers::PictureBuffers;
 use sandtable_sheet::picture_statistics::PictureStatistics;
 use sandtable_sheet::sheet_file::{picture_description, write_sheet};
-use sandtable_sheet::sidecar::SidecarDraft;
 
 /// A scene in one phase, and the pictures of it.
 pub struct RenderedScene {
@@ -116,15 +115,6 @@ struct RenderSeries<'a> {
     steps: &'a StepTimer,
     outputs: OutputFiles,
     failures: Vec<RenderFailure>,
-}
-
-/// Where a picture goes.
-struct PictureTarget<'a> {
-    path: PathBuf,
-    /// Its size on a sheet.
-    small: Option<[u32; 2]>,
-    /// The scene's, where a sidecar states it.
-    fingerprint: Option<&'a str>,
 }
 
 /// Which of the scenes of a file it is, one in each phase.
@@ -216,63 +206,60 @@ impl RenderSeries<'_> {
             false => None,
         };
         let mut pictures = Vec::new();
-        let series = self.steps.series().map(|series| Arc::clone(&series.flag)).unwrap_or_default();
+        let (steps, series) = (self.steps, self.steps.series().map(|series| Arc::clone(&series.flag)));
+        let series = series.unwrap_or_default();
         series.stretch(number.share(), views.len());
-        for (&view, path) in views.iter().zip(paths) {
-            let own_size = || arguments.size.unwrap_or_else(|| PictureSize::of(&scene, view));
-            let size = small.map_or_else(own_size, |[width, height]| PictureSize { width, height });
-            let steps = self.steps;
-            if let (ViewAim::Panorama(_), Some(_)) = (view.aim, &arguments.buffers) {
-                self.leave_out("camera", &view.name, PictureError::PanoramaPixels.into(), views.len())?;
-                continue;
-            }
-            match draw_view_counted(
-                &scene,
-                view,
-                size,
-                self.backend,
-                &|step| steps.begin(step),
-                steps.step_watch().drawn(),
-            ) {
-                Ok(drawn) => {
-                    let target = PictureTarget { path, small, fingerprint: fingerprint.as_deref() };
-                    pictures.push(self.picture(&scene, view, drawn, target)?);
-                }
+        let (backend, file, fingerprint) = (self.backend, self.file, fingerprint.as_deref());
+        let maker = PictureMaker { arguments, backend, scene: &scene, file, fingerprint, steps };
+        let making = PicturesInOrder {
+            count: views.len(),
+            make: &|index, progress| maker.made((index, views[index]), small, progress),
+            bytes: &|made| made.as_ref().map_or(u64::MAX, MadePicture::bytes),
+            progress: &|step| steps.begin(step),
+        };
+        making.each(|index, made| {
+            let (view, path) = (views[index], paths[index].clone());
+            match made {
+                Ok(made) => pictures.push(self.picture(&maker, view, made, (path, small.is_some()))?),
                 Err(error) => self.leave_out("camera", &view.name, error.into(), views.len())?,
             }
             series.did(1);
-        }
+            Ok::<_, CliError>(())
+        })?;
         Ok(RenderedScene { scene, pictures })
     }
 
     /// Writes a picture to its file, with a sidecar where the scene has a fingerprint, or keeps it for a sheet.
     fn picture(
         &mut self,
-        scene: &SceneModel,
+        maker: &PictureMaker<'_>,
         camera: &SceneView,
-        drawn: DrawnView,
-        target: PictureTarget,
+        made: MadePicture,
+        (path, is_small): (PathBuf, bool),
     ) -> Result<RenderedPicture, CliError> {
         let (arguments, steps, outputs) = (self.arguments, self.steps, &mut self.outputs);
         let progress = |step| steps.begin(step);
-        let PictureTarget { path, small, fingerprint } = target;
-        let statistics = arguments.json.then(|| PictureStatistics::new(&drawn.picture));
-        if let Some(folder) = &arguments.buffers {
-            progress("writing buffers");
-            // The buffers of several pictures lie in folders named as the pictures are.
-            let is_one = !arguments.all_cameras && !arguments.all_phases && arguments.scenes.len() == 1;
-            let folder = if is_one { folder.clone() } else { folder.join(disk::file_stem(&path)) };
-            disk::make_folder(&folder)?;
-            let buffers = PictureBuffers { scene, camera: &drawn.camera, rendering: &drawn.picture };
-            buffers.write(outputs, &folder)?;
-        }
-        let draft = fingerprint.map(|fingerprint| {
-            progress("describing the picture");
-            SidecarDraft::new(scene, (self.file, fingerprint), camera, &drawn)
-        });
-        let ComposedView { sheet, drawn, annotations } = compose_view(scene, drawn, &progress);
+        let scene = maker.scene;
+        let composed = match made {
+            MadePicture::Composed(composed) => composed,
+            MadePicture::Drawn(drawn) => {
+                if let Some(folder) = &arguments.buffers {
+                    progress("writing buffers");
+                    // The buffers of several pictures lie in folders named as the pictures are.
+                    let is_one =
+                        !arguments.all_cameras && !arguments.all_phases && arguments.scenes.len() == 1;
+                    let folder = if is_one { folder.clone() } else { folder.join(disk::file_stem(&path)) };
+                    disk::make_folder(&folder)?;
+                    let buffers = PictureBuffers { scene, camera: &drawn.camera, rendering: &drawn.picture };
+                    buffers.write(outputs, &folder)?;
+                }
+                maker.composed(camera, *drawn, &progress)
+            }
+        };
+        let ComposedPicture { view, draft, statistics } = *composed;
+        let ComposedView { sheet, drawn, annotations } = view;
         let (triangles, ground_triangles) = (triangles(scene, &drawn.list), drawn.ground_triangles);
-        let output = if small.is_some() {
+        let output = if is_small {
             PictureOutput::Sheet(sheet.painted())
         } else {
             progress("writing the picture");

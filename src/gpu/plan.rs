@@ -10,7 +10,8 @@
 //! opaque ones with an alpha of one, so that the order of the list is all that counts: thousands of roads with their
 //! markings are one call.
 //!
-//! A window's plan has its solids in groups of neighbors (`culling`), whose order in depth the depth rule alone decides.
+//! A window's plan has its solids in groups of neighbors (`culling`), whose order in depth the depth rule alone decides. Few
+//! triangles out of view do not part two groups in view that one call draws.
 //!
 //! Items of a mesh of their own are copied into one buffer, in the list's order and in world space, so that those that
 //! follow each other there are drawn at once. A mesh at many places is drawn once with an instance a place.
@@ -32,6 +33,10 @@ use sandtable_view::camera::Camera;
 /// The most triangles that one merged buffer holds: 72 MiB at the most, where no two triangles share a corner. Larger
 /// buffers save few calls, and some drivers cannot hold them.
 pub const MERGED_TRIANGLES: u32 = 1 << 19;
+
+/// The most triangles of neighbors out of view that a call draws between those in view: they cost a device less than another
+/// call costs the processor.
+const HIDDEN_TRIANGLES: u64 = 1024;
 
 /// The shape that one call draws.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -119,6 +124,15 @@ impl DrawCall {
 }
 
 impl DrawShape {
+    /// How many triangles it has at all places.
+    fn triangles(&self) -> u64 {
+        let (indices, places) = match self {
+            Self::Merged { indices, .. } => (indices, 1),
+            Self::Placed { indices, instances, .. } => (indices, instances.len() as u64),
+        };
+        indices.len() as u64 / 3 * places
+    }
+
     /// Adds `next` if it goes on where this one ends.
     fn extend(&mut self, next: &Self) -> bool {
         match (self, next) {
@@ -199,11 +213,22 @@ impl Plan {
     pub fn seen(&self, camera: &Camera) -> Vec<DrawCall> {
         let view = CullingView::new(camera);
         let is_seen: Vec<bool> = self.groups.iter().map(|group| view.shows(group)).collect();
-        let shows = |call: &&DrawCall| call.group.is_none_or(|GroupId(group)| is_seen[group as usize]);
+        let shows = |call: &DrawCall| call.group.is_none_or(|GroupId(group)| is_seen[group as usize]);
         let mut calls: Vec<DrawCall> = Vec::new();
-        for call in self.color.iter().filter(shows) {
-            if calls.last_mut().is_none_or(|last| !last.join(call)) {
-                calls.push(call.clone());
+        // The last of them with the hidden ones that follow it.
+        let mut bridge: Option<DrawCall> = None;
+        for call in &self.color {
+            if shows(call) {
+                let over = bridge.take().and_then(|mut over| over.join(call).then_some(over));
+                match (calls.last_mut(), over) {
+                    (Some(last), Some(over)) => *last = over,
+                    _ => calls.push(call.clone()),
+                }
+                bridge = calls.last().cloned();
+            } else if let (Some(last), Some(over)) = (calls.last(), &mut bridge) {
+                let is_bridged =
+                    over.join(call) && over.shape.triangles() - last.shape.triangles() <= HIDDEN_TRIANGLES;
+                bridge = bridge.filter(|_| is_bridged);
             }
         }
         let transparent = self.transparent_in(camera, |call| view.shows(&call.place));
@@ -508,6 +533,27 @@ mod tests {
         let camera = Camera::new(Vec3::ZERO, Vec3::Y, 1.0, (800, 800), (0.1, 100.0)).expect("sound");
         let [made, _] = plan.keys(ShaderParts::NONE);
         assert!(keys(&plan.seen(&camera)).iter().all(|key| made.contains(key)), "made before they are seen");
+    }
+
+    #[test]
+    fn one_call_draws_what_is_seen_on_both_sides_of_a_few_triangles_that_are_not() {
+        let calls = |triangles: usize| -> Vec<Vec<usize>> {
+            let mut list = list(&[(DepthLayer::Solid, AlphaMode::Opaque, 50.0)]);
+            list.meshes[0] = mesh(triangles);
+            list.items[0].triangles = 0..triangles as u32;
+            // In the order of cells: ahead, beside the view, ahead.
+            for (x, y) in [(100.0, 50.0), (0.0, 100.0)] {
+                let world_from_mesh = Mat4::from_translation(Vec3::new(x, y, 0.0));
+                list.items.push(DrawItem { world_from_mesh, ..list.items[0].clone() });
+            }
+            let places = TexturePlaces::new(&list, TextureScope::Items, &wgpu::Limits::default());
+            let plan = Plan::of_solids(&list, &places);
+            let camera = Camera::new(Vec3::ZERO, Vec3::Y, 0.5, (800, 800), (0.1, 500.0)).expect("sound");
+            plan.seen(&camera).iter().map(|call| items_of(&plan, call)).collect()
+        };
+        assert_eq!(calls(1), [vec![0, 1, 2]]);
+        assert_eq!(calls(HIDDEN_TRIANGLES as usize), [vec![0, 1, 2]]);
+        assert_eq!(calls(HIDDEN_TRIANGLES as usize + 1), [vec![0], vec![2]]);
     }
 
     #[test]

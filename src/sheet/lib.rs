@@ -4,12 +4,14 @@
 //! scene, view ─► picture ─► labels, legend, grid, margin, rim ─► sheet_file     PNG, PDF, SVG
 //!                   ├─────► panorama, with peaks_in_sight
 //!                   └─────► picture_buffers, picture_statistics, sidecar       what the pixels show
+//! in_order              several pictures at once
 //! ```
 
 pub mod analysis_map;
 mod contour_marks;
 pub mod graphic_texts;
 pub mod grid;
+pub mod in_order;
 pub mod labels;
 pub mod legend;
 pub mod legend_overlay;

@@ -101,6 +101,20 @@ pub fn render_view(
     Ok(annotate_view(scene, draw_view(scene, view, size, backend, progress)?, progress))
 }
 
+/// About how much memory a picture takes while it is made, with its draw list and its ground map, in bytes.
+pub fn bytes_of_making(drawn: &ViewDraw, pixels: &Pixels) -> u64 {
+    /// Colors, depths and features, the sheet, and what is painted and packed of it.
+    const PER_PIXEL: u64 = 32;
+    /// Corners and indices, and the faces and shadows of a part of them.
+    const PER_TRIANGLE: u64 = 250;
+    /// Six numbers, and those of the coarser levels.
+    const PER_POST: u64 = 32;
+    let posts = drawn.list.ground.as_ref().map_or(0, |map| map.posts.len());
+    pixels.data().len() as u64 * PER_PIXEL
+        + drawn.list.triangle_count() as u64 * PER_TRIANGLE
+        + posts as u64 * PER_POST
+}
+
 /// The first half of [`render_view`]: the picture without annotations, as large as the margin of a page of `size` leaves it.
 ///
 /// # Errors

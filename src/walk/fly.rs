@@ -14,7 +14,8 @@ use sandtable_files::fingerprint::fingerprint;
 use sandtable_render::RenderBackend;
 use sandtable_scene::flights::SceneFlight;
 use sandtable_scene::scene_model::SceneModel;
-use sandtable_sheet::picture::{PictureError, PictureSize, render_view};
+use sandtable_sheet::in_order::PicturesInOrder;
+use sandtable_sheet::picture::{PictureError, PictureSize, bytes_of_making, render_view};
 
 /// The note beside the frames.
 const NOTE: &str = "frames.json";
@@ -77,20 +78,27 @@ pub fn fly_to_folder(
     } else {
         disk::write(&note_path, note.as_bytes())?;
     }
-    let mut count = FrameCount::default();
-    for number in 1..=options.frames {
-        let path = folder.join(format!("frame-{number:05}.png"));
-        // A frame is written whole or not at all.
-        if path.is_file() {
-            count.kept += 1;
-        } else {
-            disk::check_output(&path, &scene.files)?;
-            disk::write_picture(&path, &frame(scene, flight, options, number)?)?;
-            count.drawn += 1;
-        }
-        done(number);
+    let path = |number: u32| folder.join(format!("frame-{number:05}.png"));
+    // A frame is written whole or not at all.
+    let missing: Vec<u32> = (1..=options.frames).filter(|number| !path(*number).is_file()).collect();
+    let mut finished = 0;
+    let mut finish = |number: u32| {
+        (finished + 1..=number).for_each(done);
+        finished = number;
+    };
+    if let Some(&first) = missing.first() {
+        disk::check_output(&path(first), &scene.files)?;
     }
-    Ok(count)
+    frames(scene, flight, options, &missing, |number, pixels| {
+        finish(number - 1);
+        disk::check_output(&path(number), &scene.files)?;
+        disk::write_picture(&path(number), &pixels)?;
+        finish(number);
+        Ok::<_, FlyError>(())
+    })?;
+    finish(options.frames);
+    let drawn = missing.len() as u32;
+    Ok(FrameCount { drawn, kept: options.frames - drawn })
 }
 
 /// Draws all frames of `flight` into one animated PNG, which plays without end. `done` is called after each frame with its
@@ -108,15 +116,23 @@ pub fn fly_to_file(
     disk::check_output(path, &scene.files)?;
     let mut failure = None;
     let written = disk::write_with(path, |out| {
-        let mut draw = |number| {
-            let drawn = frame(scene, flight, options, number);
+        let mut animation = animation(out, options)?;
+        let numbers: Vec<u32> = (1..=options.frames).collect();
+        let drawn = frames(scene, flight, options, &numbers, |number, pixels| {
+            let rgb: Vec<u8> =
+                pixels.data().iter().flat_map(|color| [color.0[0], color.0[1], color.0[2]]).collect();
+            animation.write_image_data(&rgb).map_err(|error| FrameError::Written(error.into()))?;
             done(number);
-            drawn.map_err(|error| {
+            Ok(())
+        });
+        match drawn {
+            Ok(()) => Ok(animation.finish()?),
+            Err(FrameError::Written(error)) => Err(error),
+            Err(FrameError::Drawn(error)) => {
                 failure = Some(error);
-                io::Error::other("a frame cannot be drawn")
-            })
-        };
-        animate(out, options, &mut draw)
+                Err(io::Error::other("a frame cannot be drawn"))
+            }
+        }
     });
     match failure {
         Some(error) => Err(error.into()),
@@ -124,35 +140,52 @@ pub fn fly_to_file(
     }
 }
 
-/// Writes an animated PNG (PNG 3rd edition, section 11.3.4) of the frames that `draw` draws.
-fn animate(
-    out: &mut impl Write,
-    options: &FlyOptions,
-    draw: &mut dyn FnMut(u32) -> io::Result<Pixels>,
-) -> io::Result<()> {
+/// Why a frame of an animation is missing.
+enum FrameError {
+    Drawn(PictureError),
+    Written(io::Error),
+}
+
+impl From<PictureError> for FrameError {
+    fn from(error: PictureError) -> Self {
+        Self::Drawn(error)
+    }
+}
+
+/// An animated PNG (PNG 3rd edition, section 11.3.4) without frames.
+fn animation<W: Write>(out: W, options: &FlyOptions) -> io::Result<png::Writer<W>> {
     let mut encoder = png::Encoder::new(out, options.size.width, options.size.height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_animated(options.frames, 0)?;
     encoder.set_frame_delay(1, options.fps)?;
-    let mut writer = encoder.write_header()?;
-    for number in 1..=options.frames {
-        let pixels = draw(number)?;
-        let rgb: Vec<u8> =
-            pixels.data().iter().flat_map(|color| [color.0[0], color.0[1], color.0[2]]).collect();
-        writer.write_image_data(&rgb)?;
-    }
-    Ok(writer.finish()?)
+    Ok(encoder.write_header()?)
 }
 
-/// Frame `number` from 1.
-fn frame(
+/// Draws the frames with these numbers, from 1, and hands them to `take` in this order; several at once where the processor
+/// draws.
+fn frames<E: From<PictureError>>(
     scene: &SceneModel,
     flight: &SceneFlight,
     options: &FlyOptions,
-    number: u32,
-) -> Result<Pixels, PictureError> {
-    let share = f64::from(number - 1) / f64::from((options.frames - 1).max(1));
-    Ok(render_view(scene, &flight.view(share), options.size, options.backend, &|_| ())?.pixels)
+    numbers: &[u32],
+    mut take: impl FnMut(u32, Pixels) -> Result<(), E>,
+) -> Result<(), E> {
+    let frame = |number: u32| {
+        let share = f64::from(number - 1) / f64::from((options.frames - 1).max(1));
+        let view = render_view(scene, &flight.view(share), options.size, options.backend, &|_| ())?;
+        let bytes = bytes_of_making(&view.drawn, &view.pixels);
+        Ok::<_, PictureError>((view.pixels, bytes))
+    };
+    if let RenderBackend::Gpu(_) = options.backend {
+        return numbers.iter().try_for_each(|&number| take(number, frame(number)?.0));
+    }
+    let making = PicturesInOrder {
+        count: numbers.len(),
+        make: &|index, _| frame(numbers[index]),
+        bytes: &|made| made.as_ref().map_or(u64::MAX, |(_, bytes)| *bytes),
+        progress: &|_| (),
+    };
+    making.each(|index, made| take(numbers[index], made?.0))
 }
 
 /// What the frames depend on.

@@ -14,7 +14,7 @@
 //! Coverage is integer arithmetic on snapped corners. Depth and attributes come from the exact planes of the unsnapped
 //! triangles in f64, so that a road cut from the ground's triangles has exactly the ground's depth. Shading runs once
 //! per pixel and face, as in multisampling, at the mean of the samples that the face covers. Tiles are independent and
-//! are drawn in parallel on the current `rayon` pool. Within a tile ground and drapes keep the list's order. Solids
+//! are drawn in parallel on the current `rayon` pool, the last in quarters. Within a tile ground and drapes keep the list's order. Solids
 //! are drawn from the nearest on, and hidden ones are skipped; the picture does not depend on their order.
 //!
 //! Draped faces follow [`sandtable_draw::list::DepthLayer`], with a tolerance widened where f32 corners far from the
@@ -51,7 +51,7 @@ mod visibility;
 
 use rayon::prelude::*;
 
-use crate::cpu::band::{BandRows, draw_band};
+use crate::cpu::band::{BandRows, TilesLeft, draw_band};
 use crate::cpu::geometry::GeometrySource;
 use crate::cpu::pattern::{EIGHT, FOUR, ONE, SamplePattern};
 use crate::cpu::screen::Screen;
@@ -215,10 +215,11 @@ fn draw<const N: usize>(
             .zip(depth_m[strip.clone()].par_chunks_mut(band))
             .zip(features[strip].par_chunks_mut(band))
             .enumerate();
+        let left = TilesLeft::new(width, rows.end - rows.start);
         let draw = || {
             bands.for_each(|(number, ((colors, depths_m), features))| {
                 let rows = colors.len() as u32 / width;
-                draw_band(&frame, first + number as u32, BandRows { colors, depths_m, features });
+                draw_band(&frame, first + number as u32, BandRows { colors, depths_m, features }, &left);
                 drawn.add(rows);
             });
         };

@@ -28,6 +28,27 @@ fn each_camera_has_a_picture_and_each_is_that_of_the_camera_alone() {
 }
 
 #[test]
+fn pictures_that_are_drawn_at_once_are_those_drawn_one_by_one() {
+    let scene = project("scenes/jacksboro.toml");
+    let drawn = |threads: &str| {
+        let scratch = Scratch::new();
+        let options = ["--all-cameras", "--sidecar", "--json", "--threads", threads, "-o", "all.png"];
+        let out = run_in(scratch.folder(), &[&["render", &scene], &options[..], &SMALL[..]].concat()).ok();
+        let mut all: Value = serde_json::from_str(&out).expect("JSON");
+        all.as_array_mut().expect("a list").iter_mut().for_each(|one| one["seconds"] = Value::Null);
+        let names = scratch.names();
+        let files = names.iter().map(|name| std::fs::read(scratch.at(name)).expect("there"));
+        let files: Vec<Vec<u8>> = files.collect();
+        (names, files, all)
+    };
+    let one = drawn("1");
+    assert_eq!(one.0.len(), 10, "{:?}", one.0);
+    for threads in ["2", "5"] {
+        assert!(drawn(threads) == one, "{threads} threads");
+    }
+}
+
+#[test]
 fn each_phase_has_a_picture_with_what_is_there_then() {
     let scratch = Scratch::new();
     let scene = project("scenes/phases.toml");
