@@ -231,13 +231,13 @@ mod tests {
         let height = |index: u32| {
             let (column, row) = ((index % 101) as f32, (index / 101) as f32);
             let cone = |east: f32, north: f32, top: f32| top - 20.0 * f32::hypot(column - east, row - north);
-            let height = cone(25.0, 35.0, 300.0).max(cone(75.0, 55.0, 280.0)).max(0.0);
-            if column < 50.0 && row < 30.0 { f32::NAN } else { height }
+            let height = cone(25.0, 35.0, 300.0).max(cone(88.0, 55.0, 280.0)).max(0.0);
+            if column < 80.0 && row < 30.0 { f32::NAN } else { height }
         };
         let heights = (0..101 * 101).map(height).collect();
         let lattice = Lattice::new(DVec2::ZERO, DVec2::splat(10.0), 101, heights).expect("sound");
         let block = boldest_block(&lattice, None).expect("there are hills");
-        assert!(block.contains(DVec2::new(750.0, 550.0)), "{block:?}");
+        assert!(block.contains(DVec2::new(880.0, 550.0)), "{block:?}");
     }
 
     #[test]
