@@ -225,8 +225,8 @@ table! {
         wireframe: bool = key::switch(), default false;
         /// Where the light comes from.
         light: LightTable = table_key::table::<LightTable>(), default {};
-        /// Distance from the near edge of the scene at which 63 % of what is seen is haze; 0 for clear air. Fitted
-        /// to the view where it is not stated: faint in an overview, more where the horizon shows, none in plan.
+        /// Distance from the near edge of the scene at which 63 % of what is seen is haze, which begins at a quarter of it; 0
+        /// for clear air. Fitted to the view where it is not stated: faint in an overview, more where the horizon shows, none in plan.
         haze: Option<f64> = key::number(Within(0.0, 1e9), "m"),
             otherwise "fitted to the view";
         /// What the block stands on, with its shadow and coordinates along its near edges, in a picture that shows its

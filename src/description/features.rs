@@ -20,8 +20,8 @@ use crate::stated::Stated;
 use crate::table::Table;
 use crate::table_key;
 use crate::words::{
-    Anchor, BaseRule, Border, Clamp, Cover, FenceKind, Footing, Join, LevelRule, Markings, ProfileMode,
-    RoadSurface, RoofShape, Water,
+    Anchor, BaseRule, Border, Clamp, CoastInside, Cover, FenceKind, Footing, Join, LevelRule, Markings,
+    ProfileMode, RoadSurface, RoofShape, Water,
 };
 use sandtable_geom::crs::Crs;
 use sandtable_geom::position::Position;
@@ -148,13 +148,21 @@ table! {
         }
     }
 
-    /// `[[coast]]`: lines with the land on their left, as OpenStreetMap's `natural=coastline` has them.
+    /// `[[coast]]`: lines with the land on their left, as OpenStreetMap's `natural=coastline` has them, or polygons of sea or
+    /// land.
     ///
     /// Ground in the sea lies at `sea_level` of `[terrain]`, else at 0 m; land that would be drawn as sea, or lies beside it, half
     /// a meter above it. Ground below a stated level keeps its depths.
     struct CoastTable {
-        /// The coastline; lines that share an end are one.
+        /// The coast: lines, of which those that share an end are one, or polygons. Inline points are a line.
         source: FeatureSource = table_key::source::<LINE>(), inline;
+        /// Of polygons: what lies inside of them.
+        inside: CoastInside = key::word::<CoastInside>(), default "sea", unless ["points"];
+    }
+    check(reader) {
+        if source.as_ref().is_some_and(|source| source.points.is_some()) {
+            reader.without_effect(&["inside"], "on a line", "remove it: land lies on the left of inline points");
+        }
     }
 
     /// `[[lake]]`.

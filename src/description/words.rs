@@ -215,6 +215,12 @@ words! {
         Drape = "drape": "on the ground as it is",
     }
 
+    /// What the polygons of a coast hold.
+    enum CoastInside {
+        Sea = "sea": "the area inside of polygons is sea, such as osmdata's `water_polygons`, and the rest is land",
+        Land = "land": "the area inside of polygons is land, such as osmdata's `land_polygons`, and the rest is sea",
+    }
+
     /// Which height of the ground along its shore is a lake's level.
     enum LevelRule {
         Lowest = "lowest": "the lowest",

@@ -4,6 +4,11 @@
 //! lattice point gives two values, of which the first also has its rise. An octave fades before its waves are a few pixels
 //! wide: from afar borders and patches of kilometers show, near by those of meters. A pixel that looks along the ground is
 //! long and narrow; its mean width counts, so that the ground before the eye does not turn to paint.
+//!
+//! Most of the time is that of hashes, and next to a pixel lies one in the same cells of the lattices: each thread keeps the
+//! corners of the last cell of each octave.
+
+use std::cell::Cell;
 
 use glam::{UVec2, Vec2};
 
@@ -48,20 +53,29 @@ pub struct CoverNoise {
 impl CoverNoise {
     /// The noise at world X and Y, over a pixel of a mean width of `pixel_m` meters, on a map of cells `cell_m` meters wide.
     pub fn new(at: Vec2, pixel_m: f32, cell_m: f32) -> Self {
+        LAST_CELLS.with(|cells| Self::with_cells(at, pixel_m, cell_m, cells))
+    }
+
+    fn with_cells(
+        at: Vec2,
+        pixel_m: f32,
+        cell_m: f32,
+        cells: &[Cell<LatticeCell>; OCTAVES as usize],
+    ) -> Self {
         let mut sum = Self::default();
-        let (mut wave_m, mut turn) = (FIRST_M, Vec2::X);
-        for octave in 0..OCTAVES {
-            let shown = (2.0 * wave_m / (WAVE_PX * pixel_m) - 1.0).clamp(0.0, 1.0);
+        let [per_pixel, per_cell] = [2.0 / (WAVE_PX * pixel_m), 1.0 / (0.75 * FORM_CELLS * cell_m)];
+        for (index, (NoiseOctave { wave_m, turn }, cell)) in OCTAVE_TABLE.into_iter().zip(cells).enumerate() {
+            let shown = (wave_m * per_pixel - 1.0).clamp(0.0, 1.0);
             if shown > 0.0 {
-                let place = Vec2::new(turn.x * at.x - turn.y * at.y, turn.y * at.x + turn.x * at.y) / wave_m;
-                let (value, rise) = pair(place);
+                let turned = Vec2::new(turn.x * at.x - turn.y * at.y, turn.y * at.x + turn.x * at.y);
+                let (value, rise) = pair(turned * wave_m.recip(), cell);
                 sum.uneven += SHARE * shown * value.x;
-                if octave < FIRST_FINE {
+                if index < FIRST_FINE as usize {
                     sum.patch += SHARE * shown * value.y;
                 } else {
                     sum.fine += SHARE * shown * value.y;
                 }
-                let within = ((FORM_CELLS * cell_m - wave_m) / (0.75 * FORM_CELLS * cell_m)).clamp(0.0, 1.0);
+                let within = ((FORM_CELLS * cell_m - wave_m) * per_cell).clamp(0.0, 1.0);
                 if within > 0.0 {
                     let away = (value.x * value.x + CREST * CREST).sqrt();
                     let crest = -value.x / away;
@@ -71,26 +85,84 @@ impl CoverNoise {
                     sum.ridge += SHARE * shown * within * 2.0 * (MEAN_AWAY - away);
                 }
             }
-            wave_m *= FINER;
-            turn = Vec2::new(TURN.x * turn.x - TURN.y * turn.y, TURN.y * turn.x + TURN.x * turn.y);
         }
         sum
     }
 }
 
-/// Two value noises, -1..=1, and the rise of the first.
-fn pair(at: Vec2) -> (Vec2, Vec2) {
-    let cell = at.floor();
-    let part = at - cell;
+/// An octave.
+#[derive(Clone, Copy, Debug)]
+struct NoiseOctave {
+    wave_m: f32,
+    /// Cosine and sine of its turn.
+    turn: Vec2,
+}
+
+/// The octaves, the widest first.
+const OCTAVE_TABLE: [NoiseOctave; OCTAVES as usize] = {
+    let mut octaves = [NoiseOctave { wave_m: FIRST_M, turn: Vec2::X }; OCTAVES as usize];
+    let mut index = 1;
+    while index < octaves.len() {
+        let NoiseOctave { wave_m, turn } = octaves[index - 1];
+        let turn = Vec2::new(TURN.x * turn.x - TURN.y * turn.y, TURN.y * turn.x + TURN.x * turn.y);
+        octaves[index] = NoiseOctave { wave_m: wave_m * FINER, turn };
+        index += 1;
+    }
+    octaves
+};
+
+/// A cell of a lattice: its south-western corner, and the values at it, the south-eastern, the north-western and the
+/// north-eastern.
+#[derive(Clone, Copy, Debug)]
+struct LatticeCell {
+    corner: Vec2,
+    values: [Vec2; 4],
+}
+
+impl LatticeCell {
+    /// A cell that no place lies in.
+    const NONE: Self = Self { corner: Vec2::NAN, values: [Vec2::ZERO; 4] };
+
+    fn new(corner: Vec2) -> Self {
+        let at = corner.as_ivec2().as_uvec2();
+        let value =
+            |east: u32, north: u32| values(UVec2::new(at.x.wrapping_add(east), at.y.wrapping_add(north)));
+        Self { corner, values: [value(0, 0), value(1, 0), value(0, 1), value(1, 1)] }
+    }
+}
+
+thread_local! {
+    /// The last cell of each octave that the thread looked at.
+    static LAST_CELLS: [Cell<LatticeCell>; OCTAVES as usize] =
+        const { [const { Cell::new(LatticeCell::NONE) }; OCTAVES as usize] };
+}
+
+/// Two value noises, -1..=1, and the rise of the first; `last` is the cell of the place before.
+fn pair(at: Vec2, last: &Cell<LatticeCell>) -> (Vec2, Vec2) {
+    let corner = Vec2::new(floor(at.x), floor(at.y));
+    let part = at - corner;
     let smooth = part * part * (Vec2::splat(3.0) - 2.0 * part);
     let steep = 6.0 * part * (Vec2::ONE - part);
-    let corner = cell.as_ivec2().as_uvec2();
-    let value =
-        |east: u32, north: u32| values(UVec2::new(corner.x.wrapping_add(east), corner.y.wrapping_add(north)));
-    let [sw, se, nw, ne] = [value(0, 0), value(1, 0), value(0, 1), value(1, 1)];
+    let mut cell = last.get();
+    if cell.corner != corner {
+        cell = LatticeCell::new(corner);
+        last.set(cell);
+    }
+    let [sw, se, nw, ne] = cell.values;
     let (south, north) = (sw + (se - sw) * smooth.x, nw + (ne - nw) * smooth.x);
     let east = (se.x - sw.x) + ((ne.x - nw.x) - (se.x - sw.x)) * smooth.y;
     (south + (north - south) * smooth.y, Vec2::new(east * steep.x, (north.x - south.x) * steep.y))
+}
+
+/// The greatest whole number not above `value`: by a conversion where that is exact, which takes a fraction of the time.
+fn floor(value: f32) -> f32 {
+    const EXACT: f32 = 8_388_608.0;
+    if value.abs() < EXACT {
+        let whole = value as i32 as f32;
+        if whole > value { whole - 1.0 } else { whole }
+    } else {
+        value.floor()
+    }
 }
 
 /// Two numbers from -1 to 1 for a lattice point.
@@ -105,6 +177,30 @@ fn values(at: UVec2) -> Vec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The noise where no cell is known.
+    fn pair(at: Vec2) -> (Vec2, Vec2) {
+        super::pair(at, &Cell::new(LatticeCell::NONE))
+    }
+
+    #[test]
+    fn floors_are_those_of_the_standard_library() {
+        for value in [0.0, -0.0, 0.5, -0.5, 1.0, -1.0, 7.999, -7.001, 8_388_607.5, -8_388_607.5, 1e20, -1e20]
+        {
+            assert_eq!(floor(value), value.floor(), "{value}");
+        }
+    }
+
+    #[test]
+    fn the_cells_that_a_thread_keeps_change_nothing() {
+        let fresh = |at: Vec2| {
+            let cells = [const { Cell::new(LatticeCell::NONE) }; OCTAVES as usize];
+            CoverNoise::with_cells(at, 1.0, 30.0, &cells)
+        };
+        for at in places().flat_map(|at| [at, at + Vec2::new(0.7, 0.0), -at]) {
+            assert_eq!(CoverNoise::new(at, 1.0, 30.0), fresh(at), "{at}");
+        }
+    }
 
     fn places() -> impl Iterator<Item = Vec2> {
         (0..4000).map(|index| Vec2::new((index % 80) as f32 * 91.3 - 4000.0, (index / 80) as f32 * 77.9))

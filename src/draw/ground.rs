@@ -283,12 +283,13 @@ impl GroundMap {
     /// across it: the ramp with land cover and [`Undergrowth`], or water, under a draped picture and contours.
     pub fn albedo(&self, post: &GroundPost, change: PixelChange, detail: &GroundDetail) -> Vec3 {
         let tint = self.ramp.linear_at(post.height_m);
-        let land = self.cover.map_or(tint, |cover| cover.over(tint, post, change.height_m, &detail.cover));
+        let shore = ShorePixel::new(post.water, change.water);
+        let cover = self.cover.filter(|_| !shore.is_open());
+        let land = cover.map_or(tint, |cover| cover.over(tint, post, change.height_m, &detail.cover));
         // Nearly everywhere there are no trees, and no share of undergrowth changes nothing.
         let woods = Undergrowth::cover(post.water);
         let land = if woods > 0.0 { Undergrowth::over(land, woods) } else { land } * detail.grain;
-        let shore = ShorePixel::new(post.water, change.water);
-        let is_dry = shore.cover <= 0.0 && shore.line <= 0.0;
+        let is_dry = shore.cover <= 0.0 && shore.line <= 0.0 && shore.wet <= 0.0;
         let bare = if is_dry { land } else { WaterColor::over(land, post.height_m, &shore) };
         let bare = detail.draped.over(bare);
         let Some(contours) = &self.contours else { return bare };

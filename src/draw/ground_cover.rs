@@ -48,7 +48,7 @@ pub(crate) const FIELD_MEADOW: f32 = 0.5;
 /// The greatest share of a cover over the tint.
 pub(crate) const MOST: f32 = 0.85;
 /// By how much the light of a cover's patches, of crowns, of strata in rock differs from the mean at the most.
-pub(crate) const PATCHES: f32 = 0.13;
+pub(crate) const PATCHES: f32 = 0.17;
 pub(crate) const CROWNS: f32 = 0.50;
 pub(crate) const STRATA: f32 = 0.24;
 /// The same of grass and stones on open ground.

@@ -39,7 +39,7 @@ pub struct Haze {
     pub color: Vec3,
     /// The distance in meters from the eye at which haze begins, at least 0.
     pub near_m: f32,
-    /// The distance in meters at which 63 % of the color is haze; infinite for clear air.
+    /// How far past `near_m` 63 % of the color is haze, meters; infinite for clear air.
     pub distance_m: f32,
 }
 
@@ -165,7 +165,7 @@ impl ReliefShading {
     /// The color of the light in shade.
     pub const COOL: Vec3 = Vec3::new(0.80, 0.90, 1.12);
     /// The light of the sky in the deepest shade of natural ground, which the sun does not outshine there.
-    pub const FILL: Vec3 = Vec3::new(0.135, 0.15, 0.185);
+    pub const FILL: Vec3 = Vec3::new(0.105, 0.117, 0.144);
     /// By how much this light deepens colors: 0 leaves them as they are, which the cool light makes gray.
     pub const FILL_CHROMA: f32 = 0.35;
     /// Brightness where no sky is seen.

@@ -101,6 +101,7 @@ pub fn shader_constants() -> Vec<(&'static str, Vec<f32>)> {
         ("WATER_MIRRORED", vec![WaterColor::MIRRORED]),
         ("WATER_MOST_MIRRORED", vec![WaterColor::MOST_MIRRORED]),
         ("WATER_SHORE", vec![WaterColor::SHORE]),
+        ("WATER_WET", vec![WaterColor::WET]),
         ("WATER_SHORE_PX", vec![WaterColor::SHORE_PX]),
         ("HATCHING_PITCH_PX", vec![hatching::PITCH_PX]),
         ("HATCHING_WIDTH_PX", vec![hatching::WIDTH_PX]),

@@ -1,5 +1,5 @@
 //! The look of water: one blue, lighter along the shore and deeper far from it and over depths ([`bathymetry`]), a dark
-//! line between it and the land, and the sky in it.
+//! line between it and the land, which is wet there, and the sky in it.
 //!
 //! A calm surface mirrors what lies at the mirrored angle, by Fresnel's law in the approximation of Schlick (1994): two
 //! hundredths of it from above and nearly all at a grazing angle. Waves turn part of the surface toward the eye, so that
@@ -16,8 +16,8 @@ use crate::lighting::Lighting;
 ///
 /// On the ground map, water is a number with the shore at 0.5 (see [`GroundPost::water`]), which says how far a pixel lies
 /// from the shore in pixels, `a = (water − 0.5) / change`, `change` being its change across the pixel. Water covers
-/// `c = clamp(a + 0.5, 0, 1)` of the pixel and the line along the shore `l = clamp(1.25 − |a|, 0, 1)`; the color is
-/// `mix(land, water, c) · (1 − SHORE · l)`.
+/// `c = clamp(a + 0.5, 0, 1)` of the pixel and the line along the shore `l = clamp(1.25 − |a|, 0, 1)`. Land grows wetter toward
+/// the shore, `w = clamp(4 · water − 1, 0, 1)²`; the color is `mix(land · (1 − WET · w), water, c) · (1 − SHORE · l)`.
 ///
 /// [`GroundPost::water`]: crate::ground::GroundPost::water
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +37,8 @@ impl WaterColor {
     pub const SHORE_LINE: Srgba = Srgba::opaque(46, 96, 138);
     /// The share by which the line along the shore is darker than land and water.
     pub const SHORE: f32 = 0.4;
+    /// The share by which wet land is darker at the shore: sand and soil lose more when soaked, but shores would look like walls.
+    pub const WET: f32 = 0.3;
     /// Half the width of that line in pixels, and half a pixel.
     pub const SHORE_PX: f32 = 1.25;
     /// The share of light from straight above that water mirrors.
@@ -54,6 +56,7 @@ impl WaterColor {
 
     /// The color in linear light of a pixel of `land`, whose `shore` says what of it is water, over a bed at `height_m`.
     pub fn over(land: Vec3, height_m: f32, shore: &ShorePixel) -> Vec3 {
+        let land = land * (1.0 - Self::WET * shore.wet);
         land.lerp(Self::tint(height_m, shore.off_shore), shore.cover) * (1.0 - Self::SHORE * shore.line)
     }
 }
@@ -65,6 +68,8 @@ pub struct ShorePixel {
     pub cover: f32,
     /// The share of it that the line along the shore covers.
     pub line: f32,
+    /// How wet the land is, 0..=1.
+    pub wet: f32,
     /// How far it lies from the shore, as a share of the way to open water.
     pub off_shore: f32,
 }
@@ -78,11 +83,18 @@ impl ShorePixel {
     /// [`GroundPost::water`]: crate::ground::GroundPost::water
     pub fn new(water: f32, change: f32) -> Self {
         let away_px = (water - 0.5) / change.max(Self::LEAST_CHANGE);
+        let wet = (4.0 * water - 1.0).clamp(0.0, 1.0);
         Self {
             cover: (away_px + 0.5).clamp(0.0, 1.0),
             line: (WaterColor::SHORE_PX - away_px.abs()).clamp(0.0, 1.0),
+            wet: wet * wet,
             off_shore: ((water - 0.75) * 4.0).clamp(0.0, 1.0),
         }
+    }
+
+    /// Whether nothing of the pixel shows land, nor the line along the shore.
+    pub fn is_open(&self) -> bool {
+        self.cover >= 1.0 && self.line <= 0.0
     }
 }
 
@@ -168,12 +180,21 @@ mod tests {
     }
 
     #[test]
+    fn land_is_darker_the_nearer_the_shore_and_dry_land_keeps_its_color() {
+        let land = Vec3::splat(0.4);
+        let light = |water: f32| WaterColor::over(land, 10.0, &ShorePixel::new(water, 1e-3)).x;
+        assert_eq!([light(0.0), light(0.25)], [0.4; 2]);
+        assert!(light(0.3) > light(0.4) && light(0.4) > light(0.47) && light(0.47) > 0.28);
+    }
+
+    #[test]
     fn a_shore_is_as_wide_on_the_picture_however_large_the_water_is_shown() {
         for change in [0.001, 0.01, 0.1] {
             let at = |px: f32| ShorePixel::new(0.5 + px * change, change);
             assert_eq!((at(0.0).cover, at(0.0).line), (0.5, 1.0));
             assert_eq!((at(1.5).cover, at(1.5).line, at(-1.5).cover, at(-1.5).line), (1.0, 0.0, 0.0, 0.0));
         }
+        assert_eq!([0.5, 0.6, 0.7].map(|water| ShorePixel::new(water, 0.1).is_open()), [false, false, true]);
         assert_eq!([0.3, 0.9].map(|water| ShorePixel::new(water, 0.0).cover), [0.0, 1.0]);
     }
 

@@ -1,4 +1,5 @@
-//! Coasts: the ground follows coastlines, so that the sea ends where they run and not where cells do.
+//! Coasts: the ground follows coastlines and the outlines of seas and lands, so that the sea ends where they run and not where
+//! cells do.
 //!
 //! ```text
 //!   land  land  land  land          ╲ of posts within a cell of the line the side of the nearest place on it counts;
@@ -9,11 +10,13 @@
 //!
 //! Posts of the sea get its level. Posts of the land that would be drawn as sea, or lie beside it, rise above it by the
 //! least that serves. Ground to which an open end of a line is nearest stays as it is: nobody said on which side it lies.
+//! Polygons need no nearest place: what lies in one is land or sea, and what lies in none is the other where no line says more.
 
 use std::collections::{BTreeMap, VecDeque};
 
 use glam::DVec2;
 
+use crate::coast_polygons::{CoastRings, MOST_CROSSED, PostPlace, post_places};
 use sandtable_geom::polyline::{VertexKey, vertex_key};
 use sandtable_geom::segment;
 use sandtable_terrain::lattice::{Lattice, Post};
@@ -58,7 +61,18 @@ pub struct CoastChanges {
     pub highest_cut_m: f64,
 }
 
-/// Coastlines that the ground cannot follow.
+/// What tells the sea from the land, in world coordinates.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Coasts {
+    /// Lines with the land on their left. Lines that share an end are one line; closed ones have their first point last.
+    pub lines: Vec<Vec<DVec2>>,
+    /// Polygons that the sea fills.
+    pub seas: Vec<CoastRings>,
+    /// Polygons of land, which hold where they lie on those of the sea.
+    pub lands: Vec<CoastRings>,
+}
+
+/// Coasts that the ground cannot follow.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum CoastError {
     /// The ground on the right is the higher one.
@@ -67,11 +81,22 @@ pub enum CoastError {
          on its left"
     )]
     LandOnTheRight(f64),
+    /// The ground in the polygons is higher than that of the land, or lower than that of the sea.
+    #[error(
+        "the ground of the sea that the polygons tell lies {0:.0} m higher than that of the land, on the mean"
+    )]
+    SeaIsHigher(f64),
     /// There is too much of them.
     #[error(
         "the coast is more than {MOST_STEPS} cells of the ground long; take fewer lines, or a smaller extent"
     )]
     TooLong,
+    /// There are too many edges of polygons.
+    #[error(
+        "the edges of the coast's polygons cross rows of the ground more than {MOST_CROSSED} times; take fewer polygons, or a smaller \
+         extent"
+    )]
+    TooManyEdges,
 }
 
 /// Where a post lies.
@@ -84,22 +109,66 @@ enum CoastSide {
     Neither,
 }
 
-/// Makes the ground follow coastlines in world coordinates, with the land on their left. Lines that share an end are one line;
-/// closed ones have their first point last. Posts without data get the level where they lie in the sea.
+/// Makes the ground follow coasts. Posts without data get the level where they lie in the sea.
 ///
-/// Time and memory grow with the number of posts, and with the length of the lines on the ground.
+/// Time and memory grow with the number of posts, and with the length of the lines and outlines on the ground.
 ///
 /// # Errors
-/// The lines run the wrong way, or are too long. The ground is as it was.
+/// Sea and land are the wrong way round, or there are too many lines or outlines. The ground is as it was.
 pub fn follow(
     lattice: &mut Lattice,
-    lines: &[Vec<DVec2>],
+    coasts: &Coasts,
     sea: SeaGround<'_>,
 ) -> Result<CoastChanges, CoastError> {
-    let Some(mut sides) = sides_beside(lattice, lines)? else { return Ok(CoastChanges::default()) };
-    spread(lattice, &mut sides);
-    check_direction(lattice, &sides)?;
+    let mut sides = sides_beside(lattice, &coasts.lines)?;
+    if let Some(sides) = &mut sides {
+        spread(lattice, sides);
+    }
+    let polygons = [(CoastSide::Sea, &coasts.seas), (CoastSide::Land, &coasts.lands)];
+    let has_polygons = polygons.iter().any(|(_, polygons)| !polygons.is_empty());
+    if has_polygons {
+        sides = sides_in_polygons(lattice, sides, polygons)?;
+    }
+    let Some(sides) = sides else { return Ok(CoastChanges::default()) };
+    if let Some(above_m) = sea_above_land_m(lattice, &sides) {
+        let error = if has_polygons { CoastError::SeaIsHigher } else { CoastError::LandOnTheRight };
+        return Err(error(above_m));
+    }
     Ok(shape(lattice, &sides, sea))
+}
+
+/// The sides of all posts where polygons of the sea and of land lie on the ground, which lines give the sides `by_lines`;
+/// as these are where none does.
+fn sides_in_polygons(
+    lattice: &Lattice,
+    by_lines: Option<Vec<CoastSide>>,
+    polygons: [(CoastSide, &Vec<CoastRings>); 2],
+) -> Result<Option<Vec<CoastSide>>, CoastError> {
+    let mut within: Vec<CoastSide> = Vec::new();
+    let mut has = [false; 2];
+    for ((side, polygons), has) in polygons.into_iter().zip(&mut has) {
+        let places = if polygons.is_empty() { Vec::new() } else { post_places(lattice, polygons)? };
+        // A border is land, as a line is.
+        let is_within = |place: PostPlace| match side {
+            CoastSide::Sea => place == PostPlace::Inside,
+            _ => place != PostPlace::Outside,
+        };
+        if places.iter().any(|&place| is_within(place)) {
+            *has = true;
+            within.resize(places.len(), CoastSide::Untold);
+            let inside = within.iter_mut().zip(places).filter(|(_, place)| is_within(*place));
+            inside.for_each(|(within, _)| *within = side);
+        }
+    }
+    let elsewhere = match has {
+        [false, false] => return Ok(by_lines),
+        [true, false] => CoastSide::Land,
+        [false, true] => CoastSide::Sea,
+        [true, true] => CoastSide::Neither,
+    };
+    let untold = within.iter_mut().enumerate().filter(|(_, side)| **side == CoastSide::Untold);
+    untold.for_each(|(index, side)| *side = by_lines.as_ref().map_or(elsewhere, |sides| sides[index]));
+    Ok(Some(within))
 }
 
 /// The sides of the posts near the lines; `None` where no line comes near the ground.
@@ -225,9 +294,9 @@ impl LineEnds {
     }
 }
 
-/// # Errors
-/// The ground on the right of the lines is higher than that on their left.
-fn check_direction(lattice: &Lattice, sides: &[CoastSide]) -> Result<(), CoastError> {
+/// By how much the ground of the sea lies higher than that of the land, on the mean, in meters; `None` where that is no more
+/// than noise.
+fn sea_above_land_m(lattice: &Lattice, sides: &[CoastSide]) -> Option<f64> {
     let mean = |wanted: CoastSide| {
         let heights = sides
             .iter()
@@ -237,12 +306,8 @@ fn check_direction(lattice: &Lattice, sides: &[CoastSide]) -> Result<(), CoastEr
             heights.fold((0.0, 0u32), |(sum, count), (_, height)| (sum + f64::from(*height), count + 1));
         (count > 0).then(|| sum / f64::from(count))
     };
-    match (mean(CoastSide::Sea), mean(CoastSide::Land)) {
-        (Some(sea_m), Some(land_m)) if sea_m > land_m + NOISE_M => {
-            Err(CoastError::LandOnTheRight(sea_m - land_m))
-        }
-        _ => Ok(()),
-    }
+    let above_m = mean(CoastSide::Sea)? - mean(CoastSide::Land)?;
+    (above_m > NOISE_M).then_some(above_m)
 }
 
 /// Gives every post without a side that of the nearest one with it, by steps east, north, west and south.
@@ -325,6 +390,19 @@ mod tests {
         (0..=90).map(vertex).collect()
     }
 
+    fn lines(lines: &[Vec<DVec2>]) -> Coasts {
+        Coasts { lines: lines.to_vec(), ..Coasts::default() }
+    }
+
+    /// The island as a polygon of land, or the sea around it with the island as a hole.
+    fn polygons(is_sea: bool) -> Coasts {
+        let island = island()[..90].to_vec();
+        let far = [(-1e4, -1e4), (1e4, -1e4), (1e4, 1e4), (-1e4, 1e4)].map(DVec2::from).to_vec();
+        let (seas, lands) =
+            if is_sea { (vec![vec![far, island]], vec![]) } else { (vec![], vec![vec![island]]) };
+        Coasts { seas, lands, ..Coasts::default() }
+    }
+
     fn is_on_island(lattice: &Lattice, post: Post) -> bool {
         polygon::contains([&island()[..90]], lattice.position(post).as_dvec2())
     }
@@ -337,7 +415,7 @@ mod tests {
             if bay {
                 coast.reverse();
             }
-            let changes = follow(&mut lattice, &[coast], SEA).expect("sound");
+            let changes = follow(&mut lattice, &lines(&[coast]), SEA).expect("sound");
             let sea = |post: Post| is_on_island(&lattice, post) == bay;
             for post in lattice.posts() {
                 assert_eq!(lattice.height(post) == 0.0, sea(post), "{post:?}");
@@ -349,13 +427,45 @@ mod tests {
     }
 
     #[test]
+    fn a_coast_gives_the_same_ground_as_a_line_as_land_and_as_sea() {
+        let mut by_line = level_ground(3.0);
+        let changes = follow(&mut by_line, &lines(&[island()]), SEA).expect("sound");
+        for is_sea in [false, true] {
+            let mut by_polygon = level_ground(3.0);
+            assert_eq!(follow(&mut by_polygon, &polygons(is_sea), SEA), Ok(changes));
+            assert!(by_polygon.heights() == by_line.heights(), "{is_sea}");
+        }
+        let mut both = level_ground(3.0);
+        let coasts = Coasts { lands: polygons(false).lands, ..polygons(true) };
+        follow(&mut both, &coasts, SEA).expect("sound");
+        assert!(both.heights() == by_line.heights());
+    }
+
+    #[test]
+    fn polygons_off_the_ground_and_those_of_the_wrong_kind_change_nothing() {
+        let off = [(2e4, 0.0), (3e4, 0.0), (3e4, 500.0)].map(DVec2::from).to_vec();
+        let cone = |post: Post, lattice: &Lattice| if is_on_island(lattice, post) { 40.0 } else { 0.0 };
+        let mut lattice = level_ground(0.0);
+        for post in lattice.posts().collect::<Vec<_>>() {
+            let height_m = cone(post, &lattice);
+            lattice.heights_mut(post, post.column)[0] = height_m;
+        }
+        let before = lattice.clone();
+        let lands = Coasts { lands: vec![vec![off]], ..Coasts::default() };
+        assert_eq!(follow(&mut lattice, &lands, SEA), Ok(CoastChanges::default()));
+        let island_as_sea = Coasts { seas: polygons(false).lands, ..Coasts::default() };
+        assert_eq!(follow(&mut lattice, &island_as_sea, SEA), Err(CoastError::SeaIsHigher(40.0)));
+        assert!(lattice.heights() == before.heights());
+    }
+
+    #[test]
     fn a_coast_in_pieces_is_one_line_in_any_order() {
         let coast = island();
         let mut whole = level_ground(3.0);
-        follow(&mut whole, std::slice::from_ref(&coast), SEA).expect("sound");
+        follow(&mut whole, &lines(std::slice::from_ref(&coast)), SEA).expect("sound");
         let pieces = [&coast[60..], &coast[..21], &coast[20..41], &coast[40..61]].map(<[DVec2]>::to_vec);
         let mut parted = level_ground(3.0);
-        follow(&mut parted, &pieces, SEA).expect("sound");
+        follow(&mut parted, &lines(&pieces), SEA).expect("sound");
         assert!(whole.heights() == parted.heights());
     }
 
@@ -363,7 +473,7 @@ mod tests {
     fn land_beside_the_sea_rises_above_it_and_depths_stay() {
         let mut lattice = level_ground(-4.0);
         let sea = SeaGround { holds_depths: true, ..SEA };
-        follow(&mut lattice, &[island()], sea).expect("sound");
+        follow(&mut lattice, &lines(&[island()]), sea).expect("sound");
         for post in lattice.posts() {
             let on_island = is_on_island(&lattice, post);
             let height_m = lattice.height(post);
@@ -372,7 +482,7 @@ mod tests {
         let middle = Post { column: 40, row: 30 };
         assert_eq!(lattice.height(middle), -4.0, "a polder behind a dike");
         let is_water = vec![true; lattice.heights().len()];
-        follow(&mut lattice, &[island()], SeaGround { is_water: &is_water, ..sea }).expect("sound");
+        follow(&mut lattice, &lines(&[island()]), SeaGround { is_water: &is_water, ..sea }).expect("sound");
         assert_eq!(lattice.height(middle), LEAST_LAND_M, "what would be drawn as sea");
     }
 
@@ -382,7 +492,7 @@ mod tests {
         // From the western border to the middle, with the land in the north.
         let coast = vec![DVec2::new(400.0, 200.0), DVec2::new(-100.0, 200.0)];
         let coast: Vec<DVec2> = coast.into_iter().rev().collect();
-        follow(&mut lattice, &[coast], SEA).expect("sound");
+        follow(&mut lattice, &lines(&[coast]), SEA).expect("sound");
         let height = |column, row| lattice.height(Post { column, row });
         assert_eq!((height(10, 5), height(10, 50), height(70, 5)), (0.0, 3.0, 3.0));
     }
@@ -396,9 +506,9 @@ mod tests {
         let coast = vec![DVec2::new(-50.0, 101.0), DVec2::new(900.0, 101.0)];
         let reversed = coast.iter().rev().copied().collect();
         let mut lattice = slope();
-        assert_eq!(follow(&mut lattice, &[reversed], SEA), Err(CoastError::LandOnTheRight(30.5)));
+        assert_eq!(follow(&mut lattice, &lines(&[reversed]), SEA), Err(CoastError::LandOnTheRight(30.5)));
         assert!(lattice.heights() == slope().heights(), "it is as it was");
-        follow(&mut lattice, &[coast], SEA).expect("land in the north");
+        follow(&mut lattice, &lines(&[coast]), SEA).expect("land in the north");
         let height = |row| lattice.height(Post { column: 40, row });
         assert_eq!((height(10), height(11)), (0.0, 11.0));
     }

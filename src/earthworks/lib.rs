@@ -4,6 +4,7 @@ pub mod alignment;
 pub mod brush;
 pub mod channel;
 pub mod coast;
+pub mod coast_polygons;
 pub mod earthwork;
 pub mod falling_levels;
 pub mod grading;

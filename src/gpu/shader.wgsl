@@ -919,7 +919,8 @@ fn ground_color(at: vec2f, post: Post, noise: Noise, right: vec2f, down: vec2f, 
         let water = clamp(away + 0.5, 0.0, 1.0);
         let shore = 1.0 - WATER_SHORE * clamp(WATER_SHORE_PX - abs(away), 0.0, 1.0);
         let tint = water_tint(post.height, clamp((post.visibility.z - 0.75) * 4.0, 0.0, 1.0));
-        seen.color = mix(seen.color, tint, water) * shore;
+        let wet = clamp(4.0 * post.visibility.z - 1.0, 0.0, 1.0);
+        seen.color = mix(seen.color * (1.0 - WATER_WET * wet * wet), tint, water) * shore;
         seen.water_share = water;
     }
     let land = 1.0 - seen.water_share;

@@ -6,6 +6,7 @@ use glam::{DVec2, DVec3};
 
 use sandtable_geom::azimuth::heading;
 use sandtable_geom::rect::Rect;
+use sandtable_scene::framing::main_part::main_part;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::sunlight::{ALTITUDE_DEG, LEFT_DEG};
 use sandtable_terrain::lattice::{Lattice, Post};
@@ -36,6 +37,8 @@ const LOW_AZIMUTHS_DEG: [f64; 5] = [0.0, -30.0, 30.0, -60.0, 60.0];
 const DARK: f64 = 0.25;
 /// Where the ground before a block is looked at, in sixteenths of its longer side from its middle: fine enough for a ridge.
 const APPROACH: Range<u32> = 8..32;
+/// Where there is no ground before any block, that with the greatest difference of heights is the best still.
+const LEAST_HELD: f64 = 0.01;
 /// Along each side of a block as many places are looked at: enough to compare directions.
 const PLACES: u32 = 48;
 
@@ -44,12 +47,19 @@ const PLACES: u32 = 48;
 pub(super) fn cameras(scene: &SceneModel, vectors: Rect, exaggeration: f64) -> Vec<CameraDraft> {
     let lattice = &scene.lattice;
     let ground = lattice.map_extent();
+    let on_map = |part: Rect| Rect { min: part.min + lattice.origin(), max: part.max + lattice.origin() };
+    let main_part = main_part(scene);
     let mut cameras = vec![CameraDraft {
         name: "overview",
-        about: "The whole ground from the south, as large as it fits into the picture.",
+        about: match main_part {
+            None => "The whole ground from the south, as large as it fits into the picture.",
+            Some(_) => {
+                "The ground past whose ends the picture runs, so that it is filled; without `shows`, the whole of it."
+            }
+        },
         azimuth_deg: None,
         pitch_deg: None,
-        shown: None,
+        shown: main_part.map(on_map),
     }];
     let shown = vectors.grown(vectors.size().max_element() * MARGIN).intersection(&ground);
     if !shown.is_empty() && (shown.size() / ground.size()).min_element() < NEARLY_ALL {
@@ -64,24 +74,22 @@ pub(super) fn cameras(scene: &SceneModel, vectors: Rect, exaggeration: f64) -> V
     let on_ground = vectors.intersection(&ground);
     let in_world = Rect { min: on_ground.min - lattice.origin(), max: on_ground.max - lattice.origin() };
     let subject = (!on_ground.is_empty()).then_some(in_world);
-    cameras.extend(boldest_block(lattice, subject).map(|block| {
-        let shown = Rect { min: block.min + lattice.origin(), max: block.max + lattice.origin() };
-        CameraDraft {
-            name: "relief",
-            about: match subject {
-                Some(_) => "The boldest relief among the features, from low above the ground before it.",
-                None => "The boldest relief, from low above the ground before it.",
-            },
-            azimuth_deg: Some(best_approach(lattice, block, exaggeration)),
-            pitch_deg: Some(LOW_PITCH_DEG),
-            shown: Some(shown),
-        }
+    cameras.extend(boldest_block(lattice, subject).map(|block| CameraDraft {
+        name: "relief",
+        about: match subject {
+            Some(_) => "The boldest relief among the features, from low above the ground before it.",
+            None => "The boldest relief, from low above the ground before it.",
+        },
+        azimuth_deg: Some(best_approach(lattice, block, exaggeration)),
+        pitch_deg: Some(LOW_PITCH_DEG),
+        shown: Some(on_map(block)),
     }));
     cameras
 }
 
 /// The block of the ground with the greatest difference of heights and a block around it, from the south-west post on; of
-/// those whose middle lies in `subject`, where that is stated and holds any. `None` on level ground.
+/// those whose middle lies in `subject`, where that is stated and holds any. Where data are missing, the difference counts by
+/// how much ground there is around the block and before it, lest the walls of the model hide it. `None` on level ground.
 fn boldest_block(lattice: &Lattice, subject: Option<Rect>) -> Option<Rect> {
     let side = (lattice.columns().max(lattice.rows()) / BLOCKS).max(2);
     let relief = |&(left, below): &(u32, u32)| {
@@ -104,29 +112,52 @@ fn boldest_block(lattice: &Lattice, subject: Option<Rect>) -> Option<Rect> {
     };
     let among: Vec<(u32, u32)> = corners.clone().filter(is_subject).collect();
     let among = if among.is_empty() { corners.collect() } else { among };
-    let ((left, below), relief) = among
+    let block = |(column, row): (u32, u32)| {
+        let min = lattice.position(Post { column, row }).as_dvec2();
+        let size = lattice.cell() * f64::from(side);
+        Rect { min: min - size, max: min + size * 2.0 }.intersection(&lattice.extent())
+    };
+    let is_masked = lattice.heights().iter().any(|height| height.is_nan());
+    let worth = |corner: (u32, u32)| {
+        let held = if is_masked { held_share(lattice, block(corner)) } else { 1.0 };
+        f64::from(relief(&corner)) * held * held
+    };
+    let (corner, worth) = among
         .into_iter()
-        .map(|corner| (corner, relief(&corner)))
+        .map(|corner| (corner, worth(corner)))
         .fold(((0, 0), 0.0), |best, next| if next.1 > best.1 { next } else { best });
-    let min = lattice.position(Post { column: left, row: below }).as_dvec2();
-    let size = lattice.cell() * f64::from(side);
-    (relief > 0.0).then(|| Rect { min: min - size, max: min + size * 2.0 }.intersection(&lattice.extent()))
+    (worth > 0.0).then(|| block(corner))
+}
+
+/// The share of a block and of the ground before it, from the best of the low camera's directions, that holds data.
+fn held_share(lattice: &Lattice, block: Rect) -> f64 {
+    let held = places(block).filter(|at| is_held(lattice, *at)).count() as f64 / f64::from(PLACES * PLACES);
+    let before = LOW_AZIMUTHS_DEG.map(|azimuth_deg| {
+        approach(block, azimuth_deg).filter(|at| is_held(lattice, *at)).count() as f64 / APPROACH.len() as f64
+    });
+    (held * before.into_iter().fold(0.0, f64::max)).max(LEAST_HELD)
+}
+
+fn is_held(lattice: &Lattice, at: DVec2) -> bool {
+    lattice.cell_at(at).is_some_and(|(post, _)| !lattice.height(post).is_nan())
+}
+
+/// Places on the ground before a block, toward the eye of a camera that looks toward `azimuth_deg`.
+fn approach(block: Rect, azimuth_deg: f64) -> impl Iterator<Item = DVec2> {
+    let (center, reach, toward) = (block.center(), block.size().max_element(), heading(azimuth_deg));
+    APPROACH.map(move |step| center - toward * (reach * f64::from(step) / 16.0))
 }
 
 /// The direction toward `block`, degrees clockwise from north, from which most of it is lit and the ground before it is low;
 /// beyond the border of the data there is none, and the walls of the ground's block would be in the way.
 fn best_approach(lattice: &Lattice, block: Rect, exaggeration: f64) -> f64 {
-    let (center, reach) = (block.center(), block.size().max_element());
     let heights = || places(block).filter_map(|at| lattice.cell_at(at)).map(|(post, _)| lattice.height(post));
     let (low, high) = heights()
         .filter(|height| !height.is_nan())
         .fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), height| (low.min(height), high.max(height)));
     let cost = |azimuth_deg: f64| {
-        let toward = heading(azimuth_deg);
-        let approach = APPROACH.map(|step| {
-            let at = center - toward * (reach * f64::from(step) / 16.0);
-            lattice.cell_at(at).map_or(f32::NAN, |(post, _)| lattice.height(post))
-        });
+        let approach = approach(block, azimuth_deg)
+            .map(|at| lattice.cell_at(at).map_or(f32::NAN, |(post, _)| lattice.height(post)));
         let (beyond, highest) = approach.fold((0, low), |(beyond, highest), height| {
             (beyond + u32::from(height.is_nan()), highest.max(height))
         });
@@ -193,6 +224,20 @@ mod tests {
             30.0,
             "from the south-west, past the end of the ridge"
         );
+    }
+
+    #[test]
+    fn of_a_masked_ground_the_relief_that_has_ground_before_it_is_shown() {
+        let height = |index: u32| {
+            let (column, row) = ((index % 101) as f32, (index / 101) as f32);
+            let cone = |east: f32, north: f32, top: f32| top - 20.0 * f32::hypot(column - east, row - north);
+            let height = cone(25.0, 35.0, 300.0).max(cone(88.0, 55.0, 280.0)).max(0.0);
+            if column < 80.0 && row < 30.0 { f32::NAN } else { height }
+        };
+        let heights = (0..101 * 101).map(height).collect();
+        let lattice = Lattice::new(DVec2::ZERO, DVec2::splat(10.0), 101, heights).expect("sound");
+        let block = boldest_block(&lattice, None).expect("there are hills");
+        assert!(block.contains(DVec2::new(880.0, 550.0)), "{block:?}");
     }
 
     #[test]

@@ -7,6 +7,7 @@
 //! | TIGER/Line (United States Census Bureau) | the feature class code `MTFCC` |
 //! | OS OpenMap Local, Open Roads and Open Rivers (Ordnance Survey) | the road classification; `form` |
 //! | BD TOPO (IGN, France) | `NATURE` and the names of its layers |
+//! | osmdata; Natural Earth | `water_polygons` and `land_polygons`; `featurecla` |
 //! | CityJSON; LandXML | the types of its objects; stations |
 //!
 //! A condition names values that no other schema has, so that no two rules take the same feature, but one of them its name.
@@ -179,6 +180,12 @@ pub(super) static RULES: &[TableRule] = &[
     .named(&["wegdeel"]),
     // The sea.
     rule("coast", "Coastline", "lines", "(natural ?? fclass) = 'coastline'").named(&["coastline"]),
+    rule("coast", "The sea as polygons", "polygons", "featurecla = 'Ocean'")
+        .keys(&["inside = \"sea\""])
+        .named(&["water_polygons", "ocean"]),
+    rule("coast", "Land in the sea as polygons", "polygons", "featurecla in ('Land', 'Minor island')")
+        .keys(&["inside = \"land\""])
+        .named(&["land_polygons"]),
     rule("road", "Piers and breakwaters", "lines", "man_made in ('pier', 'breakwater', 'groyne') and not highway and not natural")
         .keys(&["width = 4", "surface = \"gravel\""]),
     // Still water.

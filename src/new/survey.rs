@@ -41,7 +41,7 @@ pub(super) struct SurveyedLayer {
     pub places: Vec<NamedPlace>,
     /// Districts with administrative boundaries.
     pub districts: Vec<NamedDistrict>,
-    /// Vertices of the coastlines of OpenStreetMap, up to [`MOST_COAST`], in its system.
+    /// Vertices of its coasts, up to [`MOST_COAST`], in its system.
     pub coast: Vec<DVec2>,
     /// Whether its features have the property `fclass` of Geofabrik's shapefiles.
     pub has_fclass: bool,
@@ -187,6 +187,7 @@ fn survey(layer: Arc<VectorLayer>, name: Option<String>, title: &str) -> Surveye
     // What the scene is about: not what no table takes, nor boundaries and coasts, which lead far away, nor distant names.
     let mut around = vec![false; layer.features.len()];
     let mut built = vec![false; layer.features.len()];
+    let mut of_coast = vec![false; layer.features.len()];
     let mut peaks = Vec::new();
     let mut matches = Vec::new();
     let mut places = Vec::new();
@@ -207,6 +208,9 @@ fn survey(layer: Arc<VectorLayer>, name: Option<String>, title: &str) -> Surveye
         if rule.table == "building" {
             indices.iter().for_each(|&index| built[index] = true);
         }
+        if rule.table == "coast" {
+            indices.iter().for_each(|&index| of_coast[index] = true);
+        }
         let leads_away = rule.what == BOUNDARIES || rule.table == "coast";
         if !leads_away && rule.label.is_none() {
             indices.iter().for_each(|&index| around[index] = true);
@@ -221,13 +225,16 @@ fn survey(layer: Arc<VectorLayer>, name: Option<String>, title: &str) -> Surveye
         if found.rule.table == "building" {
             built.clone_from(&taken);
         }
+        if found.rule.table == "coast" {
+            of_coast.clone_from(&taken);
+        }
         matches.push(found);
     }
     let left = layer.features.iter().zip(&taken).filter(|(_, taken)| !**taken).map(|(feature, _)| feature);
     let left: Vec<&Feature> = left.collect();
     let rest = ["lines", "polygons", "points"].into_iter().filter_map(|kind| left_features(&left, kind));
     let rest = rest.collect();
-    let is_around = |index: usize| around[index] || !around.contains(&true);
+    let is_around = |index: usize| around[index] || !(around.contains(&true) || of_coast[index]);
     let shown = layer.features.iter().enumerate().filter(|(index, _)| is_around(*index));
     let segments = segments(&shown.map(|(_, feature)| &feature.geometry).collect::<Vec<_>>());
     let (parks, names) = (parks(&layer), names(&layer));
@@ -235,7 +242,8 @@ fn survey(layer: Arc<VectorLayer>, name: Option<String>, title: &str) -> Surveye
     let built = || layer.features.iter().zip(&built).filter(|(_, built)| **built).map(|(feature, _)| feature);
     let buildings = built().next().map(|_| SurveyedBuildings::new(built()));
     let districts = districts(&layer);
-    let coast = coast(&layer);
+    let coast =
+        coast(layer.features.iter().zip(&of_coast).filter(|(_, of)| **of).map(|(feature, _)| feature));
     let has_fclass = layer.features.iter().any(|feature| feature.properties.contains_key("fclass"));
     let crs = layer.crs.clone();
     SurveyedLayer {
@@ -281,13 +289,9 @@ fn segments_of(shape: &Geometry) -> Box<dyn Iterator<Item = [DVec2; 2]> + '_> {
     }
 }
 
-/// Evenly chosen vertices of coastlines.
-fn coast(layer: &VectorLayer) -> Vec<DVec2> {
-    let is_coast = |feature: &&Feature| {
-        let mut kinds = ["natural", "fclass"].into_iter().filter_map(|key| feature.properties.get(key));
-        kinds.any(|kind| kind.as_str() == Some("coastline"))
-    };
-    let vertices = || layer.features.iter().filter(is_coast).flat_map(|feature| feature.geometry.vertices());
+/// Evenly chosen vertices of coasts.
+fn coast<'a>(coasts: impl Iterator<Item = &'a Feature> + Clone) -> Vec<DVec2> {
+    let vertices = || coasts.clone().flat_map(|feature| feature.geometry.vertices());
     let step = vertices().count().div_ceil(MOST_COAST).max(1);
     vertices().step_by(step).copied().collect()
 }

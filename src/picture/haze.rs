@@ -1,7 +1,8 @@
 //! The haze of a view: how much of it depends on what the view is for.
 //!
 //! Haze counts from the near edge of the scene, so that a distant camera does not veil all of it. An overview shows the
-//! far edge nearly as clear as the near one; where the horizon is in view, haze gives depth; a plan has none, and neither
+//! far edge nearly as clear as the near one; where the horizon is in view, haze gives depth, and begins at a quarter of it, so
+//! that the foreground keeps all of its contrast and the distance opens behind it; a plan has none, and neither
 //! has a picture by parallel rays, which come from no distance.
 
 use glam::Vec3;
@@ -11,13 +12,16 @@ use sandtable_draw::lighting::Haze;
 use sandtable_geom::aabb::Aabb;
 use sandtable_view::camera::Camera;
 
+/// The share of a depth, of the scene's or of the stated distance, in which the air is clear: less veils what is nearest, more
+/// leaves the middle ground no depth.
+const CLEAR_DEPTH: f32 = 0.25;
 /// Transmittance at the far edge of the scene in a view from above.
 const OVERVIEW_CLEAR: f32 = 0.94;
 /// Transmittance at the far edge of the scene where the horizon shows.
 const HORIZON_CLEAR: f32 = 0.62;
 
 /// The haze of `color` for a camera over the box of the scene. `stated_m` is the distance in
-/// meters from the near edge at which 63 % is haze, 0 for clear air; `None` fits it to the picture's `setting`.
+/// meters from the near edge at which 63 % is haze, of which the first quarter is clear, 0 for clear air; `None` fits it to the picture's `setting`.
 pub(super) fn haze(
     color: Vec3,
     stated_m: Option<f32>,
@@ -28,18 +32,21 @@ pub(super) fn haze(
     let eye = camera.eye();
     let near_m = eye.distance(scene.nearest_to(eye));
     let depth_m = eye.distance(scene.farthest_from(eye)) - near_m;
-    let distance_m = match stated_m {
-        _ if camera.parallel_frame().is_some() => f32::INFINITY,
-        Some(0.0) => f32::INFINITY,
-        Some(stated_m) => stated_m,
-        None => match setting {
-            PictureSetting::Plan => f32::INFINITY,
-            PictureSetting::Block | PictureSetting::Ground | PictureSetting::Skyline => {
-                -depth_m / libm::logf(OVERVIEW_CLEAR)
-            }
-            PictureSetting::Landscape => -depth_m / libm::logf(HORIZON_CLEAR),
-        },
+    let is_parallel = camera.parallel_frame().is_some();
+    // How deep the air is looked into, its optical depth there, and the share of it that is clear.
+    let (reach_m, depth, clear) = match (stated_m, setting) {
+        _ if is_parallel => (0.0, 1.0, 0.0),
+        (Some(stated_m), _) => (stated_m, 1.0, CLEAR_DEPTH),
+        (None, PictureSetting::Plan) => (0.0, 1.0, 0.0),
+        (None, PictureSetting::Landscape) => (depth_m, -libm::logf(HORIZON_CLEAR), CLEAR_DEPTH),
+        // So little haze veils nothing.
+        (None, _) => (depth_m, -libm::logf(OVERVIEW_CLEAR), 0.0),
     };
+    if reach_m <= 0.0 {
+        return Haze { color, near_m, distance_m: f32::INFINITY };
+    }
+    let near_m = near_m + clear * reach_m;
+    let distance_m = (1.0 - clear) * reach_m / depth;
     Haze { color, near_m, distance_m }
 }
 
@@ -71,10 +78,23 @@ mod tests {
     }
 
     #[test]
+    fn the_foreground_is_clear_and_haze_begins_at_a_quarter_of_the_depth() {
+        let (eye, bounds) = (Vec3::new(5000.0, -2000.0, 900.0), Aabb { min: MIN, max: MAX });
+        let camera = Camera::new(eye, MAX / 2.0, 0.5, (160, 90), (1.0, 1e6)).expect("sound");
+        let near_m = eye.distance(bounds.nearest_to(eye));
+        let depth_m = eye.distance(bounds.farthest_from(eye)) - near_m;
+        for (stated_m, reach_m) in [(None, depth_m), (Some(4000.0), 4000.0)] {
+            let haze = haze(Vec3::ONE, stated_m, &camera, bounds, PictureSetting::Landscape);
+            assert!((haze.near_m - near_m - 0.25 * reach_m).abs() < 1.0, "{haze:?}");
+        }
+    }
+
+    #[test]
     fn a_stated_distance_counts_from_the_near_edge() {
         let eye = Vec3::new(-50_000.0, 4000.0, 0.0);
-        let stated = clear(eye, MAX / 2.0, Some(20_000.0));
-        assert!((0.55..0.65).contains(&stated), "{stated}");
+        // As far beyond the near edge as the farthest corner lies.
+        let stated = clear(eye, MAX / 2.0, Some(10_133.0));
+        assert!((0.36..0.38).contains(&stated), "{stated}");
         assert_eq!(clear(eye, MAX / 2.0, Some(0.0)), 1.0);
     }
 }

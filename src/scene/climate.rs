@@ -106,10 +106,10 @@ impl Climate {
         let woods = color([104, 122, 84], 0.64)
             .lerp(&color([88, 122, 76], 0.60), self.tropical as f32)
             .lerp(&color([102, 116, 94], 0.70), self.polar as f32)
-            .lerp(&color([124, 126, 92], 0.70), dry);
-        let meadow = color([168, 178, 118], 0.97)
+            .lerp(&color([124, 126, 92], 0.76), dry);
+        let meadow = color([168, 178, 118], 1.02)
             .lerp(&color([166, 166, 134], 0.95), self.polar as f32)
-            .lerp(&color([188, 178, 126], 0.97), dry);
+            .lerp(&color([188, 178, 126], 1.02), dry);
         let scree = color([184, 173, 150], 0.97).lerp(&color([202, 172, 138], 0.98), hot);
         let rock = color([160, 148, 128], 0.80).lerp(&color([180, 128, 98], 0.80), hot);
         [woods, meadow, scree, rock, color([238, 243, 250], 1.2)]

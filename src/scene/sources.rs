@@ -103,6 +103,30 @@ impl<'a> Sources<'a> {
         self.place_all(source, lines, |line, place| line.into_iter().map(place).collect())
     }
 
+    /// The lines and polygons of a source, each feature's as they are; inline points are a line.
+    ///
+    /// # Errors
+    /// As for [`Sources::lines`].
+    pub fn lines_and_polygons(&self, source: &FeatureSource) -> Result<Vec<Sourced<Geometry>>, Diagnostic> {
+        let shapes = self.shapes(source, |geometry| match geometry {
+            Geometry::Lines(_) | Geometry::Polygons(_) => vec![geometry.clone()],
+            Geometry::Points(_) => Vec::new(),
+        })?;
+        self.place_all(source, shapes, |shape, place| {
+            let course = |line: Vec<DVec2>| line.into_iter().map(place).collect::<Result<Vec<_>, _>>();
+            Ok(match shape {
+                Geometry::Polygons(polygons) => {
+                    let placed = polygons.into_iter().map(|polygon| placed_polygon(polygon, place));
+                    Geometry::Polygons(placed.collect::<Result<_, _>>()?)
+                }
+                Geometry::Lines(lines) => {
+                    Geometry::Lines(lines.into_iter().map(course).collect::<Result<_, _>>()?)
+                }
+                Geometry::Points(points) => Geometry::Points(course(points)?),
+            })
+        })
+    }
+
     /// The polygons of a source; inline points are an outer ring.
     ///
     /// # Errors
@@ -113,11 +137,7 @@ impl<'a> Sources<'a> {
             Geometry::Lines(lines) => lines.iter().cloned().filter_map(closed).collect(),
             Geometry::Points(_) => Vec::new(),
         })?;
-        let placed = self.place_all(source, polygons, |polygon, place| {
-            let ring = |ring: Vec<DVec2>| ring.into_iter().map(place).collect::<Result<Vec<_>, _>>();
-            let holes = polygon.holes.into_iter().map(ring).collect::<Result<_, _>>()?;
-            Ok(Polygon { exterior: ring(polygon.exterior)?, holes })
-        })?;
+        let placed = self.place_all(source, polygons, placed_polygon)?;
         let counted = |polygon: Sourced<Polygon>| {
             let crossings = self.crossings(source, &polygon)?;
             Ok(Sourced { crossings, ..polygon })
@@ -493,6 +513,16 @@ impl<'a> Sources<'a> {
     pub fn reaches(&self) -> Vec<SourceReach> {
         self.reaches.borrow().values().cloned().collect()
     }
+}
+
+/// A polygon whose vertices are transformed by `place`.
+fn placed_polygon(
+    polygon: Polygon,
+    place: &dyn Fn(DVec2) -> Result<DVec2, CrsError>,
+) -> Result<Polygon, CrsError> {
+    let ring = |ring: Vec<DVec2>| ring.into_iter().map(place).collect::<Result<Vec<_>, _>>();
+    let holes = polygon.holes.into_iter().map(ring).collect::<Result<_, _>>()?;
+    Ok(Polygon { exterior: ring(polygon.exterior)?, holes })
 }
 
 fn layer_key(file: &Stated<String>, source: &FeatureSource) -> LayerKey {

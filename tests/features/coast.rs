@@ -6,13 +6,18 @@ use sandtable_terrain::query::{Interpolation, ground_height};
 
 use crate::common::data::data;
 use crate::common::scratch::Scratch;
-use crate::water::over_grid;
+use crate::water::over_grid_in;
 
 /// A scene over 31 × 31 posts 90 m apart that rise northward from a sea of zeros, from `text` after its `dem` and `crs`.
 fn shore(text: &str) -> Result<SceneModel, String> {
+    shore_in(&Scratch::new(), text)
+}
+
+/// The same, beside the files of a folder.
+fn shore_in(folder: &Scratch, text: &str) -> Result<SceneModel, String> {
     let height = |index: u32| ((20 - (index / 31) as i32).max(0) * 6).to_string();
     let heights: Vec<String> = (0..31 * 31).map(height).collect();
-    over_grid("xllcorner -45\nyllcorner -45\ncellsize 90", &heights, text)
+    over_grid_in(folder, "xllcorner -45\nyllcorner -45\ncellsize 90", &heights, text)
 }
 
 /// A coast from east to west, land in the north, with a mole 30 m wide that reaches 400 m out to sea.
@@ -61,6 +66,45 @@ fn a_coast_the_wrong_way_round_is_an_error_at_its_table() {
     assert!(refused.contains("scene.toml:5:"), "{refused}");
     assert!(refused.contains("a coastline has the land on its left"), "{refused}");
     assert!(refused.contains("reverse the lines"), "{refused}");
+}
+
+/// The heights of the ground of [`shore`] with the coast of a GeoJSON geometry and these keys, or the error, and the notes.
+fn along_file(geometry: &str, keys: &str) -> Result<(Vec<f32>, Vec<String>), String> {
+    let folder = Scratch::new();
+    let feature = format!(r#"{{"type": "Feature", "properties": {{}}, "geometry": {geometry}}}"#);
+    folder.write("coast.geojson", &feature);
+    let text = format!("[[coast]]\nfile = \"coast.geojson\"\ncrs = \"EPSG:32633\"\n{keys}");
+    let scene = shore_in(&folder, &text)?;
+    Ok((scene.lattice.heights().to_vec(), scene.notes().into_iter().map(str::to_owned).collect()))
+}
+
+#[test]
+fn a_coast_is_the_same_as_a_line_as_polygons_of_the_sea_and_as_one_of_land() {
+    const COURSE: &str = "[-300, 1003], [997, 1001], [1001, 604], [1033, 601], [1029, 1002], [3300, 1004]";
+    let line = format!(r#"{{"type": "LineString", "coordinates": [{COURSE}]}}"#);
+    let (by_line, _) = along_file(&line, "").expect("sound");
+    // Two tiles that share an edge, as those of osmdata do.
+    let sea = r#"{"type": "MultiPolygon", "coordinates": [
+        [[[-300, 1003], [-300, -500], [500, -500], [500, 1001.766384], [-300, 1003]]],
+        [[[500, 1001.766384], [500, -500], [3300, -500], [3300, 1004], [1029, 1002], [1033, 601], [1001, 604],
+        [997, 1001], [500, 1001.766384]]]]}"#;
+    let (by_sea, notes) = along_file(sea, "").expect("sound");
+    assert!(by_sea == by_line);
+    let told = notes.iter().find(|note| note.contains("the sea ends at 2 polygons of the sea: "));
+    assert!(told.is_some_and(|note| note.contains("of land are raised to 0.5 m")), "{notes:?}");
+    let land = format!(
+        r#"{{"type": "Polygon", "coordinates": [[{COURSE}, [3300, 4000], [-300, 4000], [-300, 1003]]]}}"#
+    );
+    assert!(along_file(&land, "inside = \"land\"\n").expect("sound").0 == by_line);
+    let refused = along_file(&land, "").expect_err("the sea would lie on the hills");
+    assert!(refused.contains("the ground of the sea that the polygons tell lies"), "{refused}");
+    assert!(refused.contains("state `inside = \"land\"`"), "{refused}");
+}
+
+#[test]
+fn what_lies_inside_a_line_is_refused() {
+    let refused = shore(&format!("{MOLE}inside = \"land\"\n")).err().expect("there is no inside");
+    assert!(refused.contains("`inside` has no effect on a line"), "{refused}");
 }
 
 #[test]

@@ -313,7 +313,16 @@ fn ramp(text: &str) -> Result<SceneModel, String> {
 
 /// A scene over 31 × 31 posts whose place is that of `grid`, from `text` after its `dem` and `crs`.
 pub(crate) fn over_grid(grid: &str, heights: &[String], text: &str) -> Result<SceneModel, String> {
-    let folder = Scratch::new();
+    over_grid_in(&Scratch::new(), grid, heights, text)
+}
+
+/// The same, beside the files of a folder.
+pub(crate) fn over_grid_in(
+    folder: &Scratch,
+    grid: &str,
+    heights: &[String],
+    text: &str,
+) -> Result<SceneModel, String> {
     folder.write("grid.asc", format!("ncols 31\nnrows 31\n{grid}\n{}", heights.join(" ")));
     let text = format!("[terrain]\ndem = \"grid.asc\"\ncrs = \"EPSG:32633\"\n{text}");
     let path = folder.write("scene.toml", &text);

@@ -20,8 +20,6 @@ struct Choices {
     dem: &'static str,
     vectors: &'static [&'static str],
     title: &'static str,
-    /// The least share of the picture that is filled.
-    filled: f64,
     /// Lines of its scene file.
     holds: &'static [&'static str],
 }
@@ -31,10 +29,9 @@ const PLACES: [Choices; 5] = [
         dem: "monaco/N43E007.hgt.zip",
         vectors: &["monaco/monaco.osm.gz"],
         title: "Monaco",
-        filled: 0.6,
         holds: &["[[coast]]", "base = \"mean\"", "height = 15", "# The boldest relief among the features"],
     },
-    // The model is a strip aslant in its box: seen whole it fills no more from any direction near north.
+    // The model is a strip aslant in its box: its ends are past the borders of the picture.
     Choices {
         dem: "redbutte_us/red_butte_dem.tif",
         vectors: &[
@@ -43,31 +40,29 @@ const PLACES: [Choices; 5] = [
             "redbutte_us/red_butte_rna.geojson",
         ],
         title: "Red Butte Canyon",
-        filled: 0.42,
-        holds: &["[[overlay]]\nname = \"Red Butte Canyon\"", "classes = true"],
+        holds: &[
+            "so that it is filled; without `shows`",
+            "[[overlay]]\nname = \"Red Butte Canyon\"",
+            "classes = true",
+        ],
     },
     Choices {
         dem: "taunton_uk/dtm.tif",
         vectors: &["taunton_uk/buildings.shp", "taunton_uk/trees.shp", "taunton_uk/lines.shp"],
         title: "51.06° N 3.12° W",
-        filled: 0.6,
         holds: &["[[model]]\nfile = \"broadleaf\"", "[[overlay]]\nname = \"Lines\""],
     },
-    Choices {
-        dem: "crater_lake_bt/crater.bt",
-        vectors: &[],
-        title: "42.9° N 122.2° W",
-        filled: 0.6,
-        holds: &[],
-    },
+    Choices { dem: "crater_lake_bt/crater.bt", vectors: &[], title: "42.9° N 122.2° W", holds: &[] },
     Choices {
         dem: "swellendam_za/dem_srtm_utm33s_i16.tif",
         vectors: &["swellendam_za/rivers.shp", "swellendam_za/water.shp", "swellendam_za/places.shp"],
         title: "Swellendam",
-        filled: 0.6,
         holds: &["[[label]]"],
     },
 ];
+
+/// The least share of a first picture that is filled.
+const FILLED: f64 = 0.6;
 
 /// A first picture looks at most this far from north, as the dot product with north of its direction on the plan: 45°.
 const LEAST_NORTH: f32 = 0.7;
@@ -89,7 +84,7 @@ fn a_new_scene_looks_north_fills_its_picture_and_is_named_after_its_place() {
         let drawn = draw_view(&scene, view, size, RenderBackend::Cpu, &|_| ()).expect("sound");
         let filled = PictureStatistics::new(&drawn.picture).filled;
         println!("{}: filled {filled:.3}", place.dem);
-        assert!(filled >= place.filled, "{}: {filled}", place.dem);
+        assert!(filled >= FILLED, "{}: {filled}", place.dem);
     }
 }
 

@@ -39,7 +39,7 @@ pub struct GroundPoint {
     water_gradient: Vec2,
     /// The picture over the map.
     pub draped: DrapedColor,
-    /// The noise of the place, where the map has a cover.
+    /// The noise of the place, where the map has a cover that shows.
     noise: CoverNoise,
 }
 
@@ -113,7 +113,8 @@ impl<'a> GroundShader<'a> {
         if let Some((imagery, texture)) = &self.draped {
             point.draped = draped(imagery, texture, hit, most_taps);
         }
-        if self.map.cover.is_some() {
+        // Open water hides all that the noise is for.
+        if self.map.cover.is_some() && !self.shore(&point, hit).is_open() {
             let cell_m = self.map.cell.max_element();
             let at = hit.world.truncate() + self.noise_origin;
             point.noise = CoverNoise::new(at, hit.mean_pixel_m(), cell_m);
@@ -162,7 +163,11 @@ impl<'a> GroundShader<'a> {
 
     /// The share of a pixel that is under water.
     pub fn water_cover(&self, point: &GroundPoint, hit: &FacePoint) -> f32 {
-        ShorePixel::new(point.post.water, change(point.water_gradient, hit)).cover
+        self.shore(point, hit).cover
+    }
+
+    fn shore(&self, point: &GroundPoint, hit: &FacePoint) -> ShorePixel {
+        ShorePixel::new(point.post.water, change(point.water_gradient, hit))
     }
 
     /// The cell of a level around world position `at`.

@@ -72,7 +72,7 @@ pub fn fitted_aim(scene: &SceneModel, view: &FittedView, fov_y_rad: f32, size: (
         let eye = fitted_eye(&points, &axes, &frame);
         let corners = projected(&points, &axes, eye).map(|corner| corner.as_dvec2());
         let filled = if lacks_data {
-            covered(corners, half)
+            covered_share(corners, half)
         } else {
             doubled_area(&hull(&corners.collect::<Vec<DVec2>>())) / 2.0 / f64::from(4.0 * half.x * half.y)
         };
@@ -111,7 +111,7 @@ fn fullest(views: impl IntoIterator<Item = Aimed>) -> Aimed {
 }
 
 /// The share of the cells of a picture that hold one of `points`, as tangents of angles from the axis of view.
-fn covered(points: impl Iterator<Item = DVec2>, half: Vec2) -> f64 {
+pub(super) fn covered_share(points: impl Iterator<Item = DVec2>, half: Vec2) -> f64 {
     let [columns, rows] = COVER_CELLS;
     let mut is_covered = vec![false; columns * rows];
     for point in points {
@@ -123,10 +123,10 @@ fn covered(points: impl Iterator<Item = DVec2>, half: Vec2) -> f64 {
 }
 
 /// Whether posts lack data within `shown`.
-fn lacks_data(lattice: &Lattice, shown: Option<Rect>) -> bool {
+pub(super) fn lacks_data(lattice: &Lattice, shown: Option<Rect>) -> bool {
     let [low, high] = shown_posts(lattice, shown);
-    spread(low.y, high.y)
-        .any(|row| spread(low.x, high.x).any(|column| lattice.height(Post { column, row }).is_nan()))
+    spread(low.y, high.y, POSTS)
+        .any(|row| spread(low.x, high.x, POSTS).any(|column| lattice.height(Post { column, row }).is_nan()))
 }
 
 /// Half of a picture of `size` pixels, as tangents of angles from the axis of view: across and down.
@@ -153,12 +153,17 @@ struct Aimed {
 /// Points of the drawn ground within `shown`, its border among them; of the whole ground also the foot of the block.
 /// Where all posts shown lack data, the corners of its box.
 pub(super) fn silhouette(scene: &SceneModel, shown: Option<Rect>) -> Vec<Vec3> {
+    silhouette_of(scene, shown, POSTS)
+}
+
+/// [`silhouette`] by about `posts` along each side.
+pub(super) fn silhouette_of(scene: &SceneModel, shown: Option<Rect>, posts: u32) -> Vec<Vec3> {
     let lattice = &scene.lattice;
     let [low, high] = shown_posts(lattice, shown);
     let base_z = base_z(scene.bounds);
     let mut points = Vec::new();
-    for row in spread(low.y, high.y) {
-        for column in spread(low.x, high.x) {
+    for row in spread(low.y, high.y, posts) {
+        for column in spread(low.x, high.x, posts) {
             let post = Post { column, row };
             let height_m = lattice.height(post);
             if height_m.is_nan() {
@@ -187,8 +192,8 @@ fn shown_posts(lattice: &Lattice, shown: Option<Rect>) -> [UVec2; 2] {
     [post((within.min / cell).floor()), post((within.max / cell).ceil())]
 }
 
-/// About [`POSTS`] numbers from `low` to `high`, both among them.
-fn spread(low: u32, high: u32) -> impl Iterator<Item = u32> {
-    let step = ((high - low) / POSTS).max(1) as usize;
+/// About `count` numbers from `low` to `high`, both among them.
+fn spread(low: u32, high: u32, count: u32) -> impl Iterator<Item = u32> {
+    let step = ((high - low) / count).max(1) as usize;
     (low..high).step_by(step).chain([high])
 }

@@ -2,6 +2,7 @@
 
 pub mod fit;
 pub mod fitted_view;
+pub mod main_part;
 pub mod panorama_frame;
 pub mod parallel_view;
 pub mod shaped_page;

@@ -260,3 +260,36 @@ fn a_coastline_through_ground_with_the_depths_of_the_sea_states_its_level() {
         std::fs::remove_dir_all(scratch.at("project/scene")).expect("removed");
     }
 }
+
+#[test]
+fn layers_of_the_sea_and_of_land_as_polygons_are_coasts() {
+    let scratch = Scratch::new();
+    let row = |row: u32| format!("{} ", (30.0 - f64::from(row)).max(0.0)).repeat(49);
+    let rows: Vec<String> = (0..49).map(row).collect();
+    let grid = "ncols 49\nnrows 49\nxllcorner 500000\nyllcorner 4000000\ncellsize 10\n";
+    scratch.write("project/data/bay.asc", format!("{grid}{}", rows.join("\n")));
+    let polygon = |properties: &str, south: f64, north: f64| {
+        format!(
+            r#"{{"type":"FeatureCollection","crs":{{"type":"name","properties":{{"name":"urn:ogc:def:crs:EPSG::32616"}}}},
+            "features":[{{"type":"Feature","properties":{properties},"geometry":{{"type":"Polygon","coordinates":
+            [[[499000,{south}],[501000,{south}],[501000,{north}],[499000,{north}],[499000,{south}]]]}}}}]}}"#
+        )
+    };
+    for (file, properties, inside) in [
+        ("water_polygons", r#"{"x": 3, "y": 7}"#, "sea"),
+        ("ne_10m_ocean", r#"{"featurecla": "Ocean"}"#, "sea"),
+        ("land_polygons", r#"{"FID": 7}"#, "land"),
+        ("land", r#"{"featurecla": "Land"}"#, "land"),
+    ] {
+        let [south, north] = if inside == "sea" { [3.999e6, 4.000_203e6] } else { [4.000_203e6, 4.001e6] };
+        let vectors = format!("data/{file}.geojson");
+        scratch.write(&format!("project/{vectors}"), polygon(properties, south, north));
+        let arguments = ["new", "scene", "--dem", "data/bay.asc", "--crs", "EPSG:32616", "--vectors"];
+        run_in(&scratch.at("project"), &[&arguments[..], &[&vectors]].concat()).ok();
+        let text = text_of(&scratch);
+        assert!(text.contains("[[coast]]") && text.contains(&format!("inside = \"{inside}\"\n")), "{text}");
+        let check = run_in(&scratch.at("project"), &["check", "scene/scene.toml"]);
+        assert_eq!(check.code, 0, "{file}: {check:?}");
+        std::fs::remove_dir_all(scratch.at("project/scene")).expect("removed");
+    }
+}

@@ -10,6 +10,9 @@ const SYMBOL_LINES = 1080;
 // stands high beside the eye.
 const NEAR_SHARE = 0.1;
 
+// The share of a depth in which the air is clear: CLEAR_DEPTH of picture/haze.rs.
+const CLEAR_DEPTH = 0.25;
+
 class Renderer {
   constructor(gl, data, ground) {
     this.gl = gl;
@@ -75,13 +78,15 @@ class Renderer {
     return [clamp(Math.max(near, Math.min(above, 2000)) * NEAR_SHARE, 0.2, far / 4), far * 1.5 + 1000];
   }
 
+  // The distance at which haze begins, and its rate: haze() of picture/haze.rs.
   haze(camera, setting) {
     const stated = this.data.description.haze;
     const [near, far] = this.reach(camera);
-    if (camera.isParallel || stated === 0) return [near, 0];
-    if (stated !== null) return [near, 1 / stated];
     const clear = { plan: 1, landscape: 0.62 }[setting] ?? 0.94;
-    return [near, -Math.log(clear) / (far - near)];
+    const [reach, depth] = stated === null ? [far - near, -Math.log(clear)] : [stated, 1];
+    if (camera.isParallel || depth === 0 || reach <= 0) return [near, 0];
+    const start = stated !== null || setting === "landscape" ? CLEAR_DEPTH : 0;
+    return [near + start * reach, depth / ((1 - start) * reach)];
   }
 
   // The values that do not differ between batches.

@@ -450,7 +450,8 @@ void main() {
     vec3 land = texture(ramp, vec2((reading.height - ramp_range.x) * ramp_range.y, 0.5)).rgb;
     if (cover.z > 0.0) land = with_cover(land, reading.height, per_pixel, post.xy, sky_share, here);
     land = mix(land, undergrowth.rgb, clamp(-post.w, 0.0, 1.0) * undergrowth.w) * grain;
-    vec3 bare = mix(land, blue, water) * shore;
+    float wet = clamp(4.0 * post.w - 1.0, 0.0, 1.0);
+    vec3 bare = mix(land * (1.0 - WATER_WET * wet * wet), blue, water) * shore;
     vec2 part_of = (world.xy - imagery.xy) * imagery.zw;
     vec4 draped = texture(imagery_texture,
       clamp(vec2(part_of.x, 1.0 - part_of.y), imagery_size.xy * 0.5, 1.0 - imagery_size.xy * 0.5));

@@ -907,6 +907,7 @@ class SceneTables:
         *,
         columns: Mapping[str, Any] | None = None,
         crs: Crs | None = None,
+        inside: Literal["sea", "land"] | None = None,
         layer: str | None = None,
         phases: str | Sequence[str] | None = None,
         style: str | None = None,
@@ -925,6 +926,10 @@ class SceneTables:
         crs
             Coordinate system of `points`, or of a file that names none or a wrong one. Default: the scene's
             `points_crs`, or what the file names.
+        inside
+            Of polygons: what lies inside of them. `sea`: the area inside of polygons is sea, such as osmdata's
+            `water_polygons`, and the rest is land; `land`: the area inside of polygons is land, such as osmdata's
+            `land_polygons`, and the rest is sea. Default: "sea".
         layer
             With `file`: the layer of a file that holds several. Default: the file's only layer.
         phases
@@ -938,7 +943,8 @@ class SceneTables:
         """
         return self._with(
             "coast", "[[coast]]", source,
-            {"columns": columns, "crs": crs, "layer": layer, "phases": phases, "style": style, "where": where},
+            {"columns": columns, "crs": crs, "inside": inside, "layer": layer, "phases": phases, "style": style,
+             "where": where},
         )
 
     def earthworks(
@@ -1982,9 +1988,9 @@ class SceneTables:
         contours
             Contour lines. Default: no contour lines.
         haze : number, from 0 to 1e+09
-            Distance from the near edge of the scene at which 63 % of what is seen is haze; 0 for clear air. Fitted to
-            the view where it is not stated: faint in an overview, more where the horizon shows, none in plan. Unit:
-            m. Default: fitted to the view.
+            Distance from the near edge of the scene at which 63 % of what is seen is haze, which begins at a quarter
+            of it; 0 for clear air. Fitted to the view where it is not stated: faint in an overview, more where the
+            horizon shows, none in plan. Unit: m. Default: fitted to the view.
         imagery
             A picture of the ground over the colors by height, such as an aerial photograph. Default: no picture.
         land_cover
