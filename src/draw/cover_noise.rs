@@ -79,7 +79,7 @@ impl CoverNoise {
 }
 
 /// Two value noises, -1..=1, and the rise of the first.
-fn pair(at: Vec2) -> (Vec2, Vec2) {
+pub(crate) fn pair(at: Vec2) -> (Vec2, Vec2) {
     let cell = at.floor();
     let part = at - cell;
     let smooth = part * part * (Vec2::splat(3.0) - 2.0 * part);
@@ -96,7 +96,7 @@ fn pair(at: Vec2) -> (Vec2, Vec2) {
 /// Two numbers from -1 to 1 for a lattice point.
 ///
 /// A weighted sum of the coordinates, mixed: it takes half the products of the hash of the grain.
-fn values(at: UVec2) -> Vec2 {
+pub(crate) fn values(at: UVec2) -> Vec2 {
     let bits = lowbias32(at.x.wrapping_mul(0x8da6_b343).wrapping_add(at.y.wrapping_mul(0xd816_3841)));
     // 16 bits are exact in an f32.
     Vec2::new((bits & 0xffff) as f32, (bits >> 16) as f32) / 32_768.0 - 1.0
