@@ -37,7 +37,9 @@ pub(crate) const FIGURE_SALT: u32 = 0x51ed;
 pub(crate) const PARCEL_SALT: u32 = 0x2c1b;
 /// The distance from a border where there are no parcels, meters.
 pub(crate) const ALONE_M: f32 = 1e9;
-/// The wavelength of the noise that moves the strip in which an area fades, meters, and by how much.
+/// The width of the strip in which an area fades, meters: it is half of the cover throughout where pixels are too wide to show it.
+pub(crate) const FADE_WIDE_M: f32 = 24.0;
+/// The wavelength of the noise that moves that strip, meters, and by how much.
 pub(crate) const FADE_M: f32 = 7.0;
 pub(crate) const FADE_MOVED: f32 = 0.45;
 
@@ -185,7 +187,8 @@ impl AreaTexture {
             let octave = |wave_m: f32| wave_shown(wave_m, pixel.mean_m) * pair(pixel.at / wave_m).0.x;
             let moved = FADE_MOVED * (octave(FADE_M) + 0.5 * octave(FADE_M * FINER));
             let within = pixel.inward * (1.0 - pixel.inward) * 4.0;
-            alpha *= (pixel.inward + moved * within).smoothstep(0.0, 1.0);
+            let fade = (pixel.inward + moved * within).smoothstep(0.0, 1.0);
+            alpha *= 0.5.lerp(fade, shown(FADE_WIDE_M, pixel.longest_m));
         }
         (color.truncate() * light).max(Vec3::ZERO).extend(alpha)
     }

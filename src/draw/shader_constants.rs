@@ -102,6 +102,7 @@ pub fn shader_constants() -> Vec<(&'static str, Vec<f32>)> {
         ("AREA_STRIP_BORDER", area_texture::STRIP_BORDER.to_vec()),
         ("AREA_FIGURE_MARGIN", vec![area_texture::FIGURE_MARGIN]),
         ("AREA_FADE_M", vec![area_texture::FADE_M]),
+        ("AREA_FADE_WIDE_M", vec![area_texture::FADE_WIDE_M]),
         ("AREA_FADE_MOVED", vec![area_texture::FADE_MOVED]),
         ("AREA_ALONE_M", vec![area_texture::ALONE_M]),
         ("AREA_SALTS", vec![area_texture::PARCEL_SALT as f32, area_texture::FIGURE_SALT as f32]),

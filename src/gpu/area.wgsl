@@ -197,7 +197,8 @@ fn area_color(index: u32, at: vec2f, mean_m: f32, longest_m: f32, inward: f32) -
         let moved = AREA_FADE_MOVED
             * (area_wave(at, AREA_FADE_M, mean_m) + 0.5 * area_wave(at, AREA_FADE_M * NOISE_FINER, mean_m));
         let within = inward * (1.0 - inward) * 4.0;
-        color.a *= smoothstep(0.0, 1.0, inward + moved * within);
+        let fade = smoothstep(0.0, 1.0, inward + moved * within);
+        color.a *= mix(0.5, fade, area_shown(AREA_FADE_WIDE_M, longest_m));
     }
     return vec4f(max(color.rgb * max(light, 0.2), vec3f(0.0)), color.a);
 }

@@ -8,7 +8,7 @@ float area_shown(float wide_m, float pixel_m) {
   return clamp(2.0 * wide_m / (AREA_PART_PX * pixel_m) - 1.0, 0.0, 1.0);
 }
 
-// A place by axes of which the first runs along `axis`.
+// A place by axes of which the first runs along axis.
 vec2 area_turned(vec2 at, vec2 axis) {
   return vec2(axis.x * at.x + axis.y * at.y, axis.x * at.y - axis.y * at.x);
 }
@@ -116,7 +116,7 @@ vec2 area_strip(vec2 place, float strip_m, float border_m, float pixel_m, uvec2 
   return vec2(shown * tone, mix(mean_line, lined * line, shown));
 }
 
-// The share of the nearest figure and how far it turns to the north-west. `figures` and `radii` are those of AreaTexture.
+// The share of the nearest figure and how far it turns to the north-west. figures and radii are those of AreaTexture.
 vec2 area_figure(vec2 place, float noise, float pixel_m, uvec2 own, vec4 figures, vec4 radii) {
   vec2 lattice = place / figures.xy;
   vec2 corner = floor(lattice - 0.5);
@@ -192,7 +192,8 @@ vec4 area_color(vec2 at, float mean_m, float longest_m, float inward) {
     float moved = AREA_FADE_MOVED
       * (area_wave(at, AREA_FADE_M, mean_m) + 0.5 * area_wave(at, AREA_FADE_M * NOISE_FINER, mean_m));
     float within = inward * (1.0 - inward) * 4.0;
-    color.a *= smoothstep(0.0, 1.0, inward + moved * within);
+    float fade = smoothstep(0.0, 1.0, inward + moved * within);
+    color.a *= mix(0.5, fade, area_shown(AREA_FADE_WIDE_M, longest_m));
   }
   return vec4(max(color.rgb * max(light, 0.2), vec3(0.0)), color.a);
 }
