@@ -68,7 +68,7 @@ impl CoverNoise {
             let shown = (wave_m * per_pixel - 1.0).clamp(0.0, 1.0);
             if shown > 0.0 {
                 let turned = Vec2::new(turn.x * at.x - turn.y * at.y, turn.y * at.x + turn.x * at.y);
-                let (value, rise) = pair(turned * wave_m.recip(), cell);
+                let (value, rise) = pair_near(turned * wave_m.recip(), cell);
                 sum.uneven += SHARE * shown * value.x;
                 if index < FIRST_FINE as usize {
                     sum.patch += SHARE * shown * value.y;
@@ -137,8 +137,13 @@ thread_local! {
         const { [const { Cell::new(LatticeCell::NONE) }; OCTAVES as usize] };
 }
 
-/// Two value noises, -1..=1, and the rise of the first; `last` is the cell of the place before.
-fn pair(at: Vec2, last: &Cell<LatticeCell>) -> (Vec2, Vec2) {
+/// Two value noises, -1..=1, and the rise of the first.
+pub(crate) fn pair(at: Vec2) -> (Vec2, Vec2) {
+    pair_near(at, &Cell::new(LatticeCell::NONE))
+}
+
+/// The same where `last` is the cell of the place before.
+fn pair_near(at: Vec2, last: &Cell<LatticeCell>) -> (Vec2, Vec2) {
     let corner = Vec2::new(floor(at.x), floor(at.y));
     let part = at - corner;
     let smooth = part * part * (Vec2::splat(3.0) - 2.0 * part);
@@ -168,7 +173,7 @@ fn floor(value: f32) -> f32 {
 /// Two numbers from -1 to 1 for a lattice point.
 ///
 /// A weighted sum of the coordinates, mixed: it takes half the products of the hash of the grain.
-fn values(at: UVec2) -> Vec2 {
+pub(crate) fn values(at: UVec2) -> Vec2 {
     let bits = lowbias32(at.x.wrapping_mul(0x8da6_b343).wrapping_add(at.y.wrapping_mul(0xd816_3841)));
     // 16 bits are exact in an f32.
     Vec2::new((bits & 0xffff) as f32, (bits >> 16) as f32) / 32_768.0 - 1.0
@@ -177,11 +182,6 @@ fn values(at: UVec2) -> Vec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// The noise where no cell is known.
-    fn pair(at: Vec2) -> (Vec2, Vec2) {
-        super::pair(at, &Cell::new(LatticeCell::NONE))
-    }
 
     #[test]
     fn floors_are_those_of_the_standard_library() {

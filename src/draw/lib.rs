@@ -1,6 +1,7 @@
 //! Draw lists: the contract between scenes and renderers. They state the content of a picture, not the method of
 //! drawing.
 
+pub mod area_texture;
 pub mod backdrop;
 pub mod bathymetry;
 pub mod border;

@@ -1,5 +1,6 @@
 //! Materials of surfaces.
 
+use crate::area_texture::AreaTexture;
 use crate::color::Srgba;
 
 /// The index of a texture in a [`crate::list::DrawList`] or a model.
@@ -79,6 +80,9 @@ pub struct Material {
     pub base_color: Srgba,
     /// The base color texture, filtered bilinearly with mip levels.
     pub texture: Option<TextureId>,
+    /// In place of the texture, for renderers that can: the cover of an area, at the place in the world. Along U its strip fades
+    /// toward 0.5, where it has one.
+    pub area: Option<AreaTexture>,
     /// What the texture shows beyond its borders, along U and along V.
     pub texture_wrap: [TextureWrap; 2],
     /// The meaning of alpha.
@@ -113,6 +117,7 @@ impl Default for Material {
             name: String::new(),
             base_color: Srgba::WHITE,
             texture: None,
+            area: None,
             texture_wrap: [TextureWrap::Repeat; 2],
             alpha: AlphaMode::Opaque,
             two_sided: false,

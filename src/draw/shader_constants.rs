@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use crate::lighting::ReliefShading;
 use crate::water::WaterColor;
-use crate::{cover_noise, ground_cover, ground_grain, hatching, lighting, water, wireframe};
+use crate::{area_texture, cover_noise, ground_cover, ground_grain, hatching, lighting, water, wireframe};
 
 /// A language that shaders are written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,6 +94,18 @@ pub fn shader_constants() -> Vec<(&'static str, Vec<f32>)> {
         ("COVER_FORM_LEVEL", vec![ground_cover::FORM_LEVEL]),
         ("COVER_RIDGES", vec![ground_cover::RIDGES]),
         ("COVER_FORM_RISE", vec![ground_cover::FORM_RISE]),
+        ("AREA_OCTAVES", vec![area_texture::OCTAVES as f32]),
+        ("AREA_PART_PX", vec![area_texture::PART_PX]),
+        ("AREA_PARCEL_JITTER", vec![area_texture::PARCEL_JITTER]),
+        ("AREA_PARCEL_TONE", vec![area_texture::PARCEL_TONE]),
+        ("AREA_STRIP_LENGTH", vec![area_texture::STRIP_LENGTH]),
+        ("AREA_STRIP_BORDER", area_texture::STRIP_BORDER.to_vec()),
+        ("AREA_FIGURE_MARGIN", vec![area_texture::FIGURE_MARGIN]),
+        ("AREA_FADE_M", vec![area_texture::FADE_M]),
+        ("AREA_FADE_WIDE_M", vec![area_texture::FADE_WIDE_M]),
+        ("AREA_FADE_MOVED", vec![area_texture::FADE_MOVED]),
+        ("AREA_ALONE_M", vec![area_texture::ALONE_M]),
+        ("AREA_SALTS", vec![area_texture::PARCEL_SALT as f32, area_texture::FIGURE_SALT as f32]),
         ("RIPPLE_WAVES_M", lengths(&water::RIPPLES)),
         ("RIPPLE_STEEPNESS", shares(&water::RIPPLES)),
         ("RIPPLE_WAVE_PX", vec![water::RIPPLE_PX]),

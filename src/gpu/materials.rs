@@ -25,8 +25,8 @@ use sandtable_draw::pixels::Pixels;
 use sandtable_render::mip_levels::smaller_levels;
 
 /// Materials in a row of the table, and texels of each; the shader's constants of the same names.
-const TABLE_MATERIALS: usize = 256;
-const MATERIAL_TEXELS: u32 = 3;
+const TABLE_MATERIALS: usize = 64;
+const MATERIAL_TEXELS: u32 = 12;
 
 /// The textures of one size that are bound together; 0 has none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -95,7 +95,9 @@ impl TexturePlaces {
         let mut known: BTreeMap<(TextureForm, ArrayKind), (ArrayId, u32)> = BTreeMap::new();
         let mut open: BTreeMap<ArrayKind, usize> = BTreeMap::new();
         for (index, material) in list.materials.iter().enumerate() {
-            let Some(id) = material.texture.filter(|_| used[index]) else { continue };
+            let Some(id) = material.texture.filter(|_| used[index] && material.area.is_none()) else {
+                continue;
+            };
             let pixels = &list.textures[id.0 as usize];
             let Some(&sides) = level_sides(pixels, largest).first() else { continue };
             let kind = ArrayKind { sides, wrap: material.texture_wrap };

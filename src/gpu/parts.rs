@@ -36,6 +36,8 @@ impl ShaderParts {
     const MAP_WATER: Self = Self(8192);
     /// The edges of triangles.
     const EDGES: Self = Self(16_384);
+    /// The covers of areas.
+    const AREA: Self = Self(65_536);
     /// Windows of finer posts.
     pub const WINDOWS: Self = Self(32_768);
 
@@ -71,6 +73,7 @@ impl ShaderParts {
             .with(Self::WATER.when(material.is_water))
             .with(Self::NATURAL.when(material.is_natural))
             .with(Self::EDGES.when(material.shows_edges))
+            .with(Self::AREA.when(material.area.is_some()))
     }
 
     /// The parts for a picture of a checked map and a light, with these shadow maps of the sun and of the sky.
@@ -103,8 +106,15 @@ impl ShaderParts {
             .with(Self::GRAIN.when(colored || self.has(Self::NATURAL)))
             .with(Self::WINDOWS.when(self.has(Self::GROUND)))
             .with(all(&shadows).when(lit));
-        let of_material =
-            all(&[Self::GROUND, Self::OWN_LIGHT, Self::HATCHING, Self::WATER, Self::NATURAL, Self::EDGES]);
+        let of_material = all(&[
+            Self::GROUND,
+            Self::OWN_LIGHT,
+            Self::HATCHING,
+            Self::WATER,
+            Self::NATURAL,
+            Self::EDGES,
+            Self::AREA,
+        ]);
         Self(wanted.0 & picture.with(of_material).0)
     }
 }

@@ -33,6 +33,8 @@ pub fn shader_text() -> String {
 const SHADER: &str = concat!(
     include_str!("shader.wgsl"),
     "\n",
+    include_str!("area.wgsl"),
+    "\n",
     include_str!("ground_windows.wgsl"),
     "\n",
     include_str!("ground_pixels.wgsl"),
@@ -320,6 +322,8 @@ mod tests {
             }
         };
         assert_eq!(size_of_struct("Frame"), size_of::<FrameUniforms>());
-        assert_eq!(size_of_struct("Surface"), size_of::<SurfaceConstants>());
+        // The numbers of an area's texture lie behind it.
+        let area = size_of::<[[f32; 4]; 9]>();
+        assert_eq!(size_of_struct("Surface") + area, size_of::<SurfaceConstants>());
     }
 }

@@ -73,10 +73,11 @@ const HATCHING = 64u;
 const NATURAL = 128u;
 const TEXTURED = 256u;
 const EDGES = 512u;
+const AREA = 1024u;
 
 // Materials in a row of their table, and texels of each.
-const TABLE_MATERIALS = 256u;
-const MATERIAL_TEXELS = 3u;
+const TABLE_MATERIALS = 64u;
+const MATERIAL_TEXELS = 12u;
 
 // The most readings of the ground along the longer side of a pixel seen at a grazing angle.
 const MOST_TAPS = 8.0;
@@ -102,8 +103,9 @@ const MASK_LEVEL_BIAS = -1.0;
 @group(1) @binding(1) var base_texture: texture_2d_array<f32>;
 @group(1) @binding(2) var base_sampler: sampler;
 
-// The material of the fragment that is drawn.
+// The material of the fragment that is drawn, and the texel it shows.
 var<private> material: Surface;
+var<private> texel: vec4f;
 
 // The part of `nearer − 1` that counts with parallel rays: that of the CPU renderer's tolerances.
 const PARALLEL_NEARER = 0.05;
@@ -135,6 +137,7 @@ const HAZE_PART = 4096u;
 const MAP_WATER_PART = 8192u;
 const EDGES_PART = 16384u;
 const WINDOWS_PART = 32768u;
+const AREA_PART = 65536u;
 
 struct Corner {
     @location(0) position: vec3f,
@@ -862,17 +865,29 @@ fn texture_at(uv: vec2f) -> vec4f {
     if !textured {
         return vec4f(1.0);
     }
-    let texel = textureSample(base_texture, base_sampler, uv, material.flags.y);
-    return select(vec4f(1.0), texel, (material.flags.x & TEXTURED) != 0u);
+    let filtered = textureSample(base_texture, base_sampler, uv, material.flags.y);
+    return select(vec4f(1.0), filtered, (material.flags.x & TEXTURED) != 0u);
+}
+
+// Reads the material of a fragment and the texel that it shows.
+fn read_material(in: Varying) {
+    material = material_of(in.material);
+    texel = texture_at(in.uv);
+    if !is_opaque() {
+        texel = vec4f(texel.rgb / max(texel.a, 1e-4), texel.a);
+    }
+    if has(AREA_PART) {
+        let right = length(dpdx(in.world.xy));
+        let down = length(dpdy(in.world.xy));
+        if (material.flags.x & AREA) != 0u {
+            texel = area_color(in.material, in.world.xy, sqrt(right * down), max(right, down), abs(2.0 * in.uv.x - 1.0));
+        }
+    }
 }
 
 fn surface(in: Varying) -> vec4f {
-    var texel = texture_at(in.uv);
     if (material.flags.x & HATCHING) != 0u {
         return vec4f(material.base_color.rgb, material.base_color.a * hatching_cover(in.clip.xy + frame.tile_first.xy));
-    }
-    if !is_opaque() {
-        texel = vec4f(texel.rgb / max(texel.a, 1e-4), texel.a);
     }
     return material.base_color * in.color * texel;
 }
@@ -1067,7 +1082,7 @@ fn reversed_depth(in: Varying) -> f32 {
 }
 
 fn shade_or_discard(in: Varying, front: bool) -> vec4f {
-    material = material_of(in.material);
+    read_material(in);
     let shaded = shade(in, front);
     let alpha = surface(in).a;
     if (material.flags.x & MASK) != 0u && alpha < material.cutoff.x {
@@ -1105,7 +1120,7 @@ fn is_solid_at(in: Varying, offset: vec2f) -> bool {
 // A masked item with its alpha tested at each of the four standard sample places, for smooth borders.
 @fragment
 fn masked_color(in: Varying, @builtin(front_facing) front: bool) -> ColorAndSamples {
-    material = material_of(in.material);
+    read_material(in);
     let shaded = shade(in, front);
     let solid = vec4<bool>(
         is_solid_at(in, vec2f(-0.125, -0.375)),
@@ -1136,7 +1151,7 @@ struct FeatureAndDepth {
 
 @fragment
 fn feature(in: Varying) -> FeatureAndDepth {
-    material = material_of(in.material);
+    read_material(in);
     let depth = reversed_depth(in);
     let alpha = surface(in).a;
     if !is_opaque() && alpha < material.cutoff.x {

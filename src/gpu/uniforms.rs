@@ -33,6 +33,7 @@ const HATCHING: u32 = 64;
 const NATURAL: u32 = 128;
 const TEXTURED: u32 = 256;
 const EDGES: u32 = 512;
+const AREA: u32 = 1024;
 
 /// The constants of a picture: `Frame` in the shader.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -82,6 +83,8 @@ pub struct SurfaceConstants {
     base_color: [f32; 4],
     flags: [u32; 4],
     cutoff: [f32; 4],
+    /// Of an [`AreaTexture`](sandtable_draw::area_texture::AreaTexture), read one by one where a material has one.
+    area: [[f32; 4]; 9],
 }
 
 /// The constants of an item: `Owner` and `Place` in the shader.
@@ -240,6 +243,7 @@ impl SurfaceConstants {
         let textured = if layer.is_some() { TEXTURED } else { 0 };
         let natural = if material.is_natural { NATURAL } else { 0 };
         let edges = if material.shows_edges { EDGES } else { 0 };
+        let area = if material.area.is_some() { AREA } else { 0 };
         let (alpha, cutoff) = match material.alpha {
             AlphaMode::Opaque => (0, 0.0),
             AlphaMode::Mask(cutoff) => (MASK, cutoff),
@@ -248,12 +252,13 @@ impl SurfaceConstants {
         Self {
             base_color: with(material.base_color.linear(), material.base_color.alpha()),
             flags: [
-                normal | albedo | alpha | water | light | natural | textured | edges,
+                normal | albedo | alpha | water | light | natural | textured | edges | area,
                 layer.unwrap_or(0),
                 0,
                 0,
             ],
             cutoff: [cutoff, 0.0, 0.0, 0.0],
+            area: material.area.map_or([[0.0; 4]; 9], |area| area.uniform()),
         }
     }
 }

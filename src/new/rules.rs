@@ -109,8 +109,8 @@ const PLACE_SIZES: &str = "size = \"match(place ?? fclass, 'national_capital', 1
 /// The letters of peaks by how far they stand above the saddle to higher ground.
 const PEAK_SIZES: &str = "size = \"if(prominence >= 500, 1.15, if(prominence >= 100, 1, 0.87))\"";
 
-/// Pavement as an area: a light gray, laid on a texture of fine grain.
-const PAVED: &[&str] = &["cover = \"sand\"", "color = \"#bccdf8\""];
+/// Pavement as an area.
+const PAVED: &[&str] = &["cover = \"paved\""];
 
 /// The rules in the order in which tables are written: what lies lower first. Of rules that a name fits the first counts.
 pub(super) static RULES: &[TableRule] = &[
@@ -120,16 +120,19 @@ pub(super) static RULES: &[TableRule] = &[
         "Land cover",
         "polygons",
         "((landuse ?? fclass) in ('forest', 'meadow', 'grass', 'farmland', 'farm', 'orchard', 'vineyard', \
-         'residential', 'commercial', 'retail', 'industrial', 'military', 'village_green', 'recreation_ground') or \
-         (natural ?? fclass) in ('wood', 'scrub', 'heath', 'grassland', 'wetland', 'sand', 'beach', 'bare_rock', \
-         'scree') or (leisure ?? fclass) in ('park', 'garden', 'pitch', 'golf_course', 'nature_reserve')) and \
+         'plant_nursery', 'allotments', 'residential', 'commercial', 'retail', 'education', 'religious', 'cemetery', \
+         'industrial', 'railway', 'quarry', 'landfill', 'military', 'village_green', 'recreation_ground') or \
+         (natural ?? fclass) in ('wood', 'scrub', 'heath', 'fell', 'grassland', 'wetland', 'sand', 'dune', 'beach', 'shingle', \
+         'bare_rock', 'scree', 'glacier') or (leisure ?? fclass) in ('park', 'garden', 'pitch', 'golf_course', 'nature_reserve')) and \
          not building",
     )
     .keys(&["cover = \"match(landuse ?? natural ?? leisure ?? fclass, 'forest', 'forest', 'wood', 'forest', \
-             'scrub', 'scrub', 'heath', 'scrub', 'farmland', 'field', 'farm', 'field', 'orchard', 'orchard', \
-             'vineyard', 'orchard', 'residential', 'built-up', 'commercial', 'built-up', 'retail', 'built-up', \
-             'industrial', 'industry', 'military', 'restricted', 'wetland', 'wetland', 'sand', 'sand', \
-             'beach', 'sand', 'bare_rock', 'rock', 'scree', 'rock', 'meadow')\""]),
+             'scrub', 'scrub', 'heath', 'heath', 'fell', 'heath', 'farmland', 'field', 'farm', 'field', \
+             'allotments', 'field', 'orchard', 'orchard', 'plant_nursery', 'orchard', 'vineyard', 'vineyard', \
+             'residential', 'built-up', 'commercial', 'built-up', 'retail', 'built-up', 'education', 'built-up', \
+             'religious', 'built-up', 'industrial', 'industry', 'railway', 'industry', 'quarry', 'quarry', \
+             'landfill', 'quarry', 'military', 'restricted', 'wetland', 'wetland', 'sand', 'sand', 'dune', 'sand', \
+             'beach', 'sand', 'shingle', 'scree', 'bare_rock', 'rock', 'scree', 'scree', 'glacier', 'glacier', 'meadow')\""]),
     rule(
         "area",
         "Bare ground (BGT)",
@@ -150,7 +153,7 @@ pub(super) static RULES: &[TableRule] = &[
          'grasland agrarisch', 'grasland overig', 'groenvoorziening') and not has(bgt_functie ?? functie)",
     )
     .keys(&["cover = \"match(bgt_fysiekvoorkomen ?? fysiek_voorkomen ?? class, 'loofbos', 'forest', 'naaldbos', \
-             'forest', 'gemengd bos', 'forest', 'houtwal', 'forest', 'heide', 'scrub', 'struiken', 'scrub', \
+             'forest', 'gemengd bos', 'forest', 'houtwal', 'forest', 'heide', 'heath', 'struiken', 'scrub', \
              'duin', 'sand', 'moeras', 'wetland', 'rietland', 'wetland', 'kwelder', 'wetland', 'fruitteelt', \
              'orchard', 'boomteelt', 'orchard', 'bouwland', 'field', 'meadow')\""])
     .named(&["begroeidterreindeel"]),
@@ -163,7 +166,7 @@ pub(super) static RULES: &[TableRule] = &[
          'Lande herbacée', 'Verger', 'Vigne')",
     )
     .keys(&["cover = \"match(nature ?? NATURE, 'Lande ligneuse', 'scrub', 'Haie', 'scrub', 'Lande herbacée', \
-             'meadow', 'Verger', 'orchard', 'Vigne', 'orchard', 'forest')\""])
+             'meadow', 'Verger', 'orchard', 'Vigne', 'vineyard', 'forest')\""])
     .named(&["zone_de_vegetation"]),
     rule("area", "Woods", "polygons", NEVER)
         .keys(&["cover = \"forest\""])

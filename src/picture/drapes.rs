@@ -23,6 +23,7 @@ use sandtable_ribbon::drape::drape;
 use sandtable_ribbon::partition;
 use sandtable_ribbon::plan::PlanMesh;
 use sandtable_ribbon::stroke::{StrokeOptions, StrokePath, stroke};
+use sandtable_ribbon::texture::area::area_texture;
 use sandtable_ribbon::texture::{RibbonSurface, markings, texture};
 use sandtable_scene::feature_meshes::Ribbon;
 use sandtable_scene::scene_model::SceneModel;
@@ -269,6 +270,7 @@ fn raised(material: Material) -> Material {
 fn draped_material(list: &mut DrawList, surface: RibbonSurface, tint: Srgba) -> Material {
     let texture = list.add_texture(texture(surface));
     Material {
+        area: area_texture(surface),
         name: format!("{surface:?}").to_lowercase(),
         base_color: tint,
         texture: Some(texture),

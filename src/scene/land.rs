@@ -139,13 +139,14 @@ fn covers(scene: &SceneModel) -> Option<Vec<land::LandCover>> {
 fn land_cover(cover: Cover) -> Option<land::LandCover> {
     Some(match cover {
         Cover::Forest => land::LandCover::Wood,
-        Cover::Scrub => land::LandCover::Scrub,
+        Cover::Scrub | Cover::Heath => land::LandCover::Scrub,
         Cover::Meadow => land::LandCover::Open,
         Cover::Field => land::LandCover::Crops,
-        Cover::Orchard => land::LandCover::Orchard,
+        Cover::Orchard | Cover::Vineyard => land::LandCover::Orchard,
         Cover::Wetland => land::LandCover::Wetland,
         Cover::Sand => land::LandCover::Sand,
-        Cover::Rock => land::LandCover::Rock,
+        Cover::Rock | Cover::Scree | Cover::Glacier | Cover::Quarry => land::LandCover::Rock,
+        Cover::Paved => land::LandCover::Paved,
         Cover::BuiltUp | Cover::Industry => land::LandCover::BuiltUp,
         _ => return None,
     })

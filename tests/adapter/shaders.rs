@@ -12,7 +12,14 @@ const FOLDER: &str = concat!(env!("SANDTABLE_ROOT"), "src/gpu");
 
 /// The modules, as files that are joined.
 const MODULES: [&[&str]; 2] = [
-    &["shader.wgsl", "ground_windows.wgsl", "ground_pixels.wgsl", "whole_picture.wgsl", "sky.wgsl"],
+    &[
+        "shader.wgsl",
+        "area.wgsl",
+        "ground_windows.wgsl",
+        "ground_pixels.wgsl",
+        "whole_picture.wgsl",
+        "sky.wgsl",
+    ],
     &["whole_picture.wgsl", "encode.wgsl"],
 ];
 

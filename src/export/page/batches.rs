@@ -209,6 +209,7 @@ pub fn material(material: &Material) -> Value {
         "hatching": material.albedo == Albedo::Hatching,
         "isWater": material.is_water,
         "isNatural": material.is_natural,
+        "area": material.area.map(|area| area.uniform().as_flattened().to_vec()),
         "shadows": material.receives_shadows,
     })
 }

@@ -174,9 +174,10 @@ pub fn page(scene: &PageScene<'_>, watch: &StopFlag) -> Result<Vec<u8>, PageTooL
 
 /// The parts of a page, in the order of their marks in `page.html`.
 fn assemble(title: &str, description: &str, numbers: &str) -> String {
-    const SCRIPTS: [&str; 9] = [
+    const SCRIPTS: [&str; 10] = [
         include_str!("script/numbers.js"),
         include_str!("script/camera.js"),
+        include_str!("script/areas.js"),
         include_str!("script/shaders.js"),
         include_str!("script/scene.js"),
         include_str!("script/draw.js"),

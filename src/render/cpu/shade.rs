@@ -13,6 +13,7 @@ use crate::cpu::screen::Screen;
 use crate::cpu::texture::{Reading, Texel, TexelFootprint, Texture, Weighting};
 use crate::shadow::Shadows;
 use crate::shadow::filter::ShadowReceiver;
+use sandtable_draw::area_texture::{AreaPixel, AreaTexture};
 use sandtable_draw::ground_inset::GroundInset;
 use sandtable_draw::hatching::hatching_cover;
 use sandtable_draw::lighting::ReceivedLight;
@@ -93,12 +94,13 @@ impl<'a> Shader<'a> {
             weights: Barycentric::new(face, at),
         });
         let has_surface = !matches!(material.albedo, Albedo::GroundMap | Albedo::Hatching);
-        let surface = has_surface.then(|| self.surface_color(material, &vertices));
+        let hit = LazyCell::new(|| FacePoint::new(face, self.screen, at));
+        let surface = has_surface.then(|| self.surface_color(material, &vertices, &hit));
         if let Some((_, 0.0)) = surface {
             // Nothing shows of it: most of a tint of the ground that has none there.
             return Shaded { color: Vec3::ZERO, alpha: 0.0 };
         }
-        let hit = FacePoint::new(face, self.screen, at);
+        let hit = *hit;
         let outer = self.ground.as_ref().filter(|_| material.reads_ground_map());
         let (finest, map_hit) = outer.map_or((None, hit), |outer| self.finest_ground(outer, hit));
         let ground = finest.map(|ground| (ground, ground.at(&map_hit, self.most_taps)));
@@ -108,7 +110,7 @@ impl<'a> Shader<'a> {
                 let Material { base_color, .. } = material;
                 (base_color.linear(), base_color.alpha() * hatching_cover(at))
             }
-            _ => surface.unwrap_or_else(|| self.surface_color(material, &vertices)),
+            _ => surface.unwrap_or_else(|| self.surface_color(material, &vertices, &hit)),
         };
         if let (true, Some((ground, point))) = (material.is_natural, &ground) {
             albedo *= ground.grain(point, &map_hit);
@@ -222,8 +224,16 @@ impl<'a> Shader<'a> {
     }
 
     /// Base color × vertex color × texture in linear light, and alpha.
-    fn surface_color(&self, material: &Material, vertices: &FaceVertices) -> (Vec3, f32) {
-        let texel = self.texel(material, vertices);
+    fn surface_color(
+        &self,
+        material: &Material,
+        vertices: &FaceVertices<'_>,
+        hit: &FacePoint,
+    ) -> (Vec3, f32) {
+        let texel = match &material.area {
+            Some(area) => area_texel(area, vertices, hit),
+            None => self.texel(material, vertices),
+        };
         let FaceVertices { corners, weights } = vertices;
         let vertex = weights.blend(corners.map(|corner| corner.color.linear()));
         let alpha = match material.alpha {
@@ -245,6 +255,18 @@ impl<'a> Shader<'a> {
             if material.alpha == AlphaMode::Opaque { Weighting::Even } else { Weighting::ByAlpha };
         texture.sample(uv, &footprint, Reading { weighting, wrap: material.texture_wrap })
     }
+}
+
+/// The cover of an area at a point of a face.
+fn area_texel(area: &AreaTexture, vertices: &FaceVertices<'_>, hit: &FacePoint) -> Texel {
+    let [uv, _, _] = vertices.weights.blend_uv(vertices.corners.map(|corner| corner.uv));
+    let color = area.color(&AreaPixel {
+        at: hit.world.truncate(),
+        mean_m: hit.mean_pixel_m(),
+        longest_m: hit.pixel_m(),
+        inward: (2.0 * uv.x - 1.0).abs(),
+    });
+    Texel { color: color.truncate(), alpha: color.w }
 }
 
 impl<'a> InsetShader<'a> {

@@ -13,10 +13,10 @@ use sandtable_draw::color::Srgba;
 /// of two and a half, houses of twelve.
 pub fn cover_length_m(cover: Cover) -> f64 {
     match cover {
-        Cover::Forest | Cover::Orchard => 50.0,
-        Cover::Scrub | Cover::Sand => 40.0,
+        Cover::Forest | Cover::Orchard | Cover::Vineyard => 50.0,
+        Cover::Scrub | Cover::Heath | Cover::Sand | Cover::Scree => 40.0,
         Cover::Meadow | Cover::Field => 60.0,
-        Cover::Wetland | Cover::Rock => 80.0,
+        Cover::Wetland | Cover::Rock | Cover::Glacier | Cover::Quarry | Cover::Paved => 80.0,
         Cover::BuiltUp => 120.0,
         Cover::Industry => 240.0,
         Cover::Restricted => 48.0,
@@ -28,11 +28,16 @@ pub fn border_color(cover: Cover) -> Srgba {
     let [red, green, blue] = match cover {
         Cover::Forest => [52, 88, 50],
         Cover::Scrub | Cover::Orchard => [104, 124, 70],
+        Cover::Vineyard => [128, 116, 72],
+        Cover::Heath => [124, 100, 98],
         Cover::Meadow => [116, 150, 88],
         Cover::Field => [156, 134, 76],
         Cover::Wetland => [66, 122, 142],
         Cover::Sand => [186, 160, 104],
-        Cover::Rock => [116, 110, 104],
+        Cover::Rock | Cover::Scree => [116, 110, 104],
+        Cover::Glacier => [120, 156, 178],
+        Cover::Quarry => [138, 122, 100],
+        Cover::Paved => [150, 146, 142],
         Cover::BuiltUp => [142, 98, 82],
         Cover::Industry => [112, 102, 122],
         Cover::Restricted => [186, 44, 40],
@@ -44,9 +49,10 @@ pub fn border_color(cover: Cover) -> Srgba {
 /// trees to a closed wood.
 pub const EDGE_M: f64 = 12.0;
 
-/// Whether a cover grows or lies by nature; what is built or forbidden ends at a line.
+/// Whether a cover grows or lies by nature; what is built, tilled or forbidden ends at a line.
 pub fn is_natural(cover: Cover) -> bool {
-    !matches!(cover, Cover::BuiltUp | Cover::Industry | Cover::Restricted)
+    use Cover::{BuiltUp, Field, Industry, Orchard, Paved, Quarry, Restricted, Vineyard};
+    !matches!(cover, BuiltUp | Industry | Restricted | Paved | Quarry | Field | Orchard | Vineyard)
 }
 
 /// A texel of the strip in which a cover fades: nothing at `u` 0.5, where the outline is, all of the cover at 0 and 1.
@@ -66,9 +72,15 @@ pub(super) fn texel(cover: Cover, u: f32, v: f32, grain: f32) -> Srgba {
         Cover::Meadow => meadow(u, v, grain),
         Cover::Field => field(u, v, grain),
         Cover::Orchard => orchard(u, v, grain),
+        Cover::Vineyard => vineyard(v, grain),
+        Cover::Heath => heath(u, v, grain),
         Cover::Wetland => wetland(u, v, grain),
         Cover::Sand => sand(u, v, grain),
         Cover::Rock => rock(u, v, grain),
+        Cover::Scree => scree(u, v, grain),
+        Cover::Glacier => translucent([226, 238, 246], (noise(u, v, 6, 97) - 0.5) * 14.0, 0.88),
+        Cover::Quarry => quarry(u, v, grain),
+        Cover::Paved => translucent([198, 194, 188], (grain - 0.5) * 8.0, 0.8),
         Cover::BuiltUp => houses(u, v, grain, &TOWN),
         Cover::Industry => houses(u, v, grain, &WORKS),
         Cover::Restricted => hatched(u, v),
@@ -123,6 +135,38 @@ fn orchard(u: f32, v: f32, grain: f32) -> Srgba {
     } else {
         translucent([232, 208, 156], (grain - 0.5) * 10.0, 0.6)
     }
+}
+
+/// Vines in rows from west to east.
+fn vineyard(v: f32, grain: f32) -> Srgba {
+    let row = libm::cosf(v * 20.0 * std::f32::consts::TAU);
+    if row > 0.3 {
+        translucent([134, 146, 78], (grain - 0.5) * 10.0, 0.78)
+    } else {
+        translucent([216, 198, 150], (grain - 0.5) * 8.0, 0.66)
+    }
+}
+
+/// Heather in tufts on dry grass.
+fn heath(u: f32, v: f32, grain: f32) -> Srgba {
+    match crown(u, v, 11, (0.2, 0.44), 29) {
+        Some(crown) => translucent([150, 118, 122], crown.light * 16.0 + (grain - 0.5) * 10.0, 0.74),
+        None => translucent([184, 170, 128], (grain - 0.5) * 12.0, 0.66),
+    }
+}
+
+/// Stones of many sizes.
+fn scree(u: f32, v: f32, grain: f32) -> Srgba {
+    match crown(u, v, 15, (0.2, 0.5), 67) {
+        Some(crown) => translucent([172, 166, 158], crown.light * 20.0 + (crown.own - 0.5) * 20.0, 0.74),
+        None => translucent([196, 188, 176], (grain - 0.5) * 10.0, 0.7),
+    }
+}
+
+/// Benches of a pit.
+fn quarry(u: f32, v: f32, grain: f32) -> Srgba {
+    let bench = libm::cosf(v * 5.0 * std::f32::consts::TAU);
+    translucent([208, 194, 168], bench * 14.0 + (noise(u, v, 7, 79) - 0.5) * 16.0 + (grain - 0.5) * 8.0, 0.8)
 }
 
 /// The map sign of a marsh: short strokes of water in staggered rows.

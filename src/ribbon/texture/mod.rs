@@ -1,5 +1,6 @@
 //! Procedural textures for draped features; the same pixels on every machine.
 
+pub mod area;
 mod boundary;
 pub mod cover;
 mod road;

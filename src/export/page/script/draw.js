@@ -201,6 +201,8 @@ class Renderer {
     set("is_map", "uniform1f", material.groundMap ? 1 : 0);
     set("is_water", "uniform1f", material.isWater ? 1 : 0);
     set("is_natural", "uniform1f", material.isNatural ? 1 : 0);
+    set("area_share", "uniform1f", material.area ? 1 : 0);
+    if (material.area) set("area", "uniform4fv", material.area);
     set("is_hatching", "uniform1f", material.hatching ? 1 : 0);
     set("in_all_light", "uniform1f", material.shadows ? 0 : 1);
     const bands = this.data.description.bands;

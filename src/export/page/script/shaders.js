@@ -252,6 +252,7 @@ vec2 noise_values(uvec2 at) {
   return vec2(uvec2(bits & 65535u, bits >> 16)) / 32768.0 - 1.0;
 }
 
+${AREA_SHADER}
 Noise cover_noise(vec2 at, float mean_pixel_m) {
   Noise sum = Noise(0.0, 0.0, 0.0, vec2(0.0), 0.0);
   float wave_m = NOISE_FIRST_M;
@@ -416,6 +417,10 @@ void main() {
   float covered = symbol_cover();
   if (covered <= 0.0) discard;
   vec4 color = surface();
+  if (area_share > 0.5) {
+    float mean_m = sqrt(length(right_m) * length(down_m));
+    color = base_color * tint * area_color(world.xy, mean_m, pixel_m, abs(2.0 * at_texture.x - 1.0));
+  }
   float grain = 1.0;
   if ((is_map > 0.5 || is_natural > 0.5) && ramp_range.w > 0.5) {
     float sum = waves(world.xy, pixel_m, GRAIN_WAVES_M, GRAIN_SHARES);

@@ -625,7 +625,7 @@ class SceneTables:
         border_width: float | None = None,
         color: Color | None = None,
         columns: Mapping[str, Any] | None = None,
-        cover: Literal["forest", "scrub", "meadow", "field", "orchard", "wetland", "sand", "rock", "built-up", "industry", "restricted"] | Expression | None = None,
+        cover: Literal["forest", "scrub", "meadow", "field", "orchard", "vineyard", "heath", "wetland", "sand", "rock", "scree", "glacier", "quarry", "paved", "built-up", "industry", "restricted"] | Expression | None = None,
         crs: Crs | None = None,
         layer: str | None = None,
         name: str | None = None,
@@ -652,8 +652,10 @@ class SceneTables:
             names of the columns.
         cover
             What covers the area. `forest`: trees; `scrub`: bushes; `meadow`: grass; `field`: crops in rows;
-            `orchard`: fruit trees or vines in rows; `wetland`: marsh; `sand`: sand or beach; `rock`: bare rock;
-            `built-up`: houses and yards; `industry`: halls and yards; `restricted`: closed ground, hatched. Needed.
+            `orchard`: fruit trees in rows; `vineyard`: vines in rows; `heath`: heather; `wetland`: marsh; `sand`:
+            sand or beach; `rock`: bare rock; `scree`: loose stones; `glacier`: ice; `quarry`: a pit with benches;
+            `paved`: squares and yards without houses; `built-up`: houses and yards; `industry`: halls and yards;
+            `restricted`: closed ground, hatched. Needed.
         crs
             Coordinate system of `points`, or of a file that names none or a wrong one. Default: the scene's
             `points_crs`, or what the file names.
