@@ -56,6 +56,11 @@ impl ShaderParts {
         if is_there { self } else { Self::NONE }
     }
 
+    /// Those that alpha depends on: all that the buffer of features needs.
+    pub fn of_alpha(self) -> Self {
+        Self(self.0 & Self::AREA.0)
+    }
+
     /// The parts for a `material`.
     pub fn of_material(material: &Material) -> Self {
         let light = match (material.normals, material.albedo) {

@@ -102,8 +102,8 @@ impl DrawCall {
             DrawShape::Placed { .. } => VertexSource::Placed,
         };
         let Self { rule, two_sided, masked, array, .. } = *self;
-        let is_colored = self.parts != ShaderParts::NONE;
-        let parts = if is_colored { self.parts.in_picture(picture) } else { ShaderParts::NONE };
+        let is_colored = self.parts != self.parts.of_alpha();
+        let parts = if is_colored { self.parts.in_picture(picture) } else { self.parts };
         PipelineKey { source, rule, two_sided, masked, textured: array != ArrayId::NONE, parts }
     }
 
@@ -323,7 +323,7 @@ impl Plan {
         let color = DrawCall { shape, array, parts, rule, two_sided, masked, group };
         // An opaque surface hides what is behind it, whatever its texture.
         let array = if material.alpha == AlphaMode::Opaque { ArrayId::NONE } else { array };
-        let feature = DrawCall { array, parts: ShaderParts::NONE, masked: false, ..color.clone() };
+        let feature = DrawCall { array, parts: parts.of_alpha(), masked: false, ..color.clone() };
         push(&mut self.features, feature);
         if is_transparent {
             let call = DrawCall { rule: DepthRule::Blend, ..color };

@@ -1,7 +1,7 @@
 //! Areas: land cover on the ground, with lines along the outlines.
 //!
 //! Areas lie below everything else on the ground, and a later one over an earlier. Textures are laid out in world meters,
-//! aligned with north, so that areas side by side make one pattern. Natural covers fade along their outlines, as they grow;
+//! so that areas side by side make one pattern. Natural covers fade along their outlines, as they grow;
 //! what has a border, or is built, ends there.
 
 use glam::DVec2;
