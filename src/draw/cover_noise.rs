@@ -1,6 +1,6 @@
 //! The noise that natural cover and the ground's finest forms are made of: octaves of value noise in the world.
 //!
-//! Each octave is three tenths as wide as the one before and turned against it, so that no lattice shows; one hash of a
+//! Each octave is three tenths as wide as the one before, turned against it and bent by it, so that no lattice shows; one hash of a
 //! lattice point gives two values, of which the first also has its rise. An octave fades before its waves are a few pixels
 //! wide: from afar borders and patches of kilometers show, near by those of meters. A pixel that looks along the ground is
 //! long and narrow; its mean width counts, so that the ground before the eye does not turn to paint.
@@ -29,6 +29,8 @@ pub(crate) const WAVE_PX: f32 = 5.0;
 pub(crate) const TURN: Vec2 = Vec2::new(0.8, 0.6);
 /// Forms are made of octaves up to this many cells of the map wide: what is wider the map shows itself.
 pub(crate) const FORM_CELLS: f32 = 8.0;
+/// How far an octave's lattice is bent by the values of the one before, in its cells: straight, it shows as a maze on rock.
+pub(crate) const BENT: f32 = 0.6;
 /// How sharp the crests of forms are: the noise below which they are round.
 pub(crate) const CREST: f32 = 0.12;
 
@@ -62,13 +64,14 @@ impl CoverNoise {
         cell_m: f32,
         cells: &[Cell<LatticeCell>; OCTAVES as usize],
     ) -> Self {
-        let mut sum = Self::default();
+        let (mut sum, mut wider) = (Self::default(), Vec2::ZERO);
         let [per_pixel, per_cell] = [2.0 / (WAVE_PX * pixel_m), 1.0 / (0.75 * FORM_CELLS * cell_m)];
         for (index, (NoiseOctave { wave_m, turn }, cell)) in OCTAVE_TABLE.into_iter().zip(cells).enumerate() {
             let shown = (wave_m * per_pixel - 1.0).clamp(0.0, 1.0);
             if shown > 0.0 {
                 let turned = Vec2::new(turn.x * at.x - turn.y * at.y, turn.y * at.x + turn.x * at.y);
-                let (value, rise) = pair_near(turned * wave_m.recip(), cell);
+                let (value, rise) = pair_near(turned * wave_m.recip() + BENT * wider, cell);
+                wider = value;
                 sum.uneven += SHARE * shown * value.x;
                 if index < FIRST_FINE as usize {
                     sum.patch += SHARE * shown * value.y;

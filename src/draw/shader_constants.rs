@@ -67,6 +67,7 @@ pub fn shader_constants() -> Vec<(&'static str, Vec<f32>)> {
         ("NOISE_TURN", cover_noise::TURN.to_array().to_vec()),
         ("NOISE_WAVE_PX", vec![cover_noise::WAVE_PX]),
         ("NOISE_FORM_CELLS", vec![cover_noise::FORM_CELLS]),
+        ("NOISE_BENT", vec![cover_noise::BENT]),
         ("NOISE_CREST", vec![cover_noise::CREST]),
         ("NOISE_MEAN_AWAY", vec![cover_noise::MEAN_AWAY]),
         ("COVER_UNEVEN_M", vec![ground_cover::UNEVEN_M]),

@@ -484,11 +484,12 @@ fn cover_noise(at: vec2f, mean_pixel_m: f32) -> Noise {
     var sum = Noise(0.0, 0.0, 0.0, vec2f(0.0), 0.0);
     var wave_m = NOISE_FIRST_M;
     var turn = vec2f(1.0, 0.0);
+    var wider = vec2f(0.0);
     let widest = NOISE_FORM_CELLS * frame.cover_more.y;
     for (var octave = 0.0; octave < NOISE_OCTAVES; octave += 1.0) {
         let shown = clamp(2.0 * wave_m / (NOISE_WAVE_PX * mean_pixel_m) - 1.0, 0.0, 1.0);
         if shown > 0.0 {
-            let place = vec2f(turn.x * at.x - turn.y * at.y, turn.y * at.x + turn.x * at.y) / wave_m;
+            let place = vec2f(turn.x * at.x - turn.y * at.y, turn.y * at.x + turn.x * at.y) / wave_m + NOISE_BENT * wider;
             let cell = floor(place);
             let part = place - cell;
             let smoothed = part * part * (3.0 - 2.0 * part);
@@ -502,6 +503,7 @@ fn cover_noise(at: vec2f, mean_pixel_m: f32) -> Noise {
             let north = mix(nw, ne, smoothed.x);
             let value = mix(south, north, smoothed.y);
             let rise = vec2f(mix(se.x - sw.x, ne.x - nw.x, smoothed.y), north.x - south.x) * steep;
+            wider = value;
             let share = NOISE_SHARE * shown;
             sum.uneven += share * value.x;
             let is_fine = octave >= NOISE_FIRST_FINE;

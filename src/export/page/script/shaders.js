@@ -257,11 +257,12 @@ Noise cover_noise(vec2 at, float mean_pixel_m) {
   Noise sum = Noise(0.0, 0.0, 0.0, vec2(0.0), 0.0);
   float wave_m = NOISE_FIRST_M;
   vec2 turn = vec2(1.0, 0.0);
+  vec2 wider = vec2(0.0);
   float widest = NOISE_FORM_CELLS * cover_more.y;
   for (float octave = 0.0; octave < NOISE_OCTAVES; octave += 1.0) {
     float shown = clamp(2.0 * wave_m / (NOISE_WAVE_PX * mean_pixel_m) - 1.0, 0.0, 1.0);
     if (shown > 0.0) {
-      vec2 place = vec2(turn.x * at.x - turn.y * at.y, turn.y * at.x + turn.x * at.y) / wave_m;
+      vec2 place = vec2(turn.x * at.x - turn.y * at.y, turn.y * at.x + turn.x * at.y) / wave_m + NOISE_BENT * wider;
       vec2 cell = floor(place);
       vec2 part = place - cell;
       vec2 smoothed = part * part * (3.0 - 2.0 * part);
@@ -275,6 +276,7 @@ Noise cover_noise(vec2 at, float mean_pixel_m) {
       vec2 north = mix(nw, ne, smoothed.x);
       vec2 value = mix(south, north, smoothed.y);
       vec2 rise = vec2(mix(se.x - sw.x, ne.x - nw.x, smoothed.y), north.x - south.x) * steep;
+      wider = value;
       float share = NOISE_SHARE * shown;
       sum.uneven += share * value.x;
       if (octave < NOISE_FIRST_FINE) sum.patches += share * value.y; else sum.fine += share * value.y;
