@@ -12,6 +12,7 @@ use std::cell::Cell;
 
 use glam::{UVec2, Vec2};
 
+use crate::floor::floor_each;
 use crate::lowbias::lowbias32;
 
 /// The wavelength of the first octave, meters, and the factor from one to the next.
@@ -147,7 +148,7 @@ pub(crate) fn pair(at: Vec2) -> (Vec2, Vec2) {
 
 /// The same where `last` is the cell of the place before.
 fn pair_near(at: Vec2, last: &Cell<LatticeCell>) -> (Vec2, Vec2) {
-    let corner = Vec2::new(floor(at.x), floor(at.y));
+    let corner = floor_each(at);
     let part = at - corner;
     let smooth = part * part * (Vec2::splat(3.0) - 2.0 * part);
     let steep = 6.0 * part * (Vec2::ONE - part);
@@ -162,17 +163,6 @@ fn pair_near(at: Vec2, last: &Cell<LatticeCell>) -> (Vec2, Vec2) {
     (south + (north - south) * smooth.y, Vec2::new(east * steep.x, (north.x - south.x) * steep.y))
 }
 
-/// The greatest whole number not above `value`: by a conversion where that is exact, which takes a fraction of the time.
-fn floor(value: f32) -> f32 {
-    const EXACT: f32 = 8_388_608.0;
-    if value.abs() < EXACT {
-        let whole = value as i32 as f32;
-        if whole > value { whole - 1.0 } else { whole }
-    } else {
-        value.floor()
-    }
-}
-
 /// Two numbers from -1 to 1 for a lattice point.
 ///
 /// A weighted sum of the coordinates, mixed: it takes half the products of the hash of the grain.
@@ -185,14 +175,6 @@ pub(crate) fn values(at: UVec2) -> Vec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn floors_are_those_of_the_standard_library() {
-        for value in [0.0, -0.0, 0.5, -0.5, 1.0, -1.0, 7.999, -7.001, 8_388_607.5, -8_388_607.5, 1e20, -1e20]
-        {
-            assert_eq!(floor(value), value.floor(), "{value}");
-        }
-    }
 
     #[test]
     fn the_cells_that_a_thread_keeps_change_nothing() {

@@ -9,6 +9,8 @@
 
 use glam::{UVec2, Vec2};
 
+use crate::floor::floor_each;
+
 /// Wavelengths in meters with their shares of the contrast.
 pub(crate) const WAVES: [(f32, f32); 3] = [(1.7, 0.3), (6.1, 0.35), (23.0, 0.35)];
 
@@ -40,7 +42,7 @@ pub(crate) fn noise_of(waves: &[(f32, f32)], at: Vec2, pixel_m: f32) -> f32 {
 
 /// Value noise, -1..=1.
 pub(crate) fn noise(at: Vec2) -> f32 {
-    let cell = at.floor();
+    let cell = floor_each(at);
     let part = at - cell;
     let smooth = part * part * (Vec2::splat(3.0) - 2.0 * part);
     let corner = cell.as_ivec2().as_uvec2();
@@ -54,13 +56,12 @@ pub(crate) fn noise(at: Vec2) -> f32 {
 
 /// A number from -1 to 1 for a lattice point.
 fn hash(at: UVec2) -> f32 {
-    let [x, _] = mixed(at);
     // 24 bits are exact in an f32.
-    (x >> 8) as f32 / 8_388_608.0 - 1.0
+    (mixed(at) >> 8) as f32 / 8_388_608.0 - 1.0
 }
 
-/// Two numbers of which each depends on all bits of a lattice point.
-fn mixed(at: UVec2) -> [u32; 2] {
+/// A number that depends on all bits of a lattice point.
+fn mixed(at: UVec2) -> u32 {
     const FACTOR: u32 = 1_664_525;
     let step = |value: u32| value.wrapping_mul(FACTOR).wrapping_add(1_013_904_223);
     let (mut x, mut y) = (step(at.x), step(at.y));
@@ -69,10 +70,7 @@ fn mixed(at: UVec2) -> [u32; 2] {
     x ^= x >> 16;
     y ^= y >> 16;
     x = x.wrapping_add(y.wrapping_mul(FACTOR));
-    y = y.wrapping_add(x.wrapping_mul(FACTOR));
-    x ^= x >> 16;
-    y ^= y >> 16;
-    [x, y]
+    x ^ (x >> 16)
 }
 
 #[cfg(test)]
