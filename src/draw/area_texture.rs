@@ -16,6 +16,8 @@
 use glam::{FloatExt, UVec2, Vec2, Vec3, Vec4};
 
 use crate::cover_noise::{FINER, SHARE, TURN, WAVE_PX, pair, values};
+use crate::floor::{floor, floor_each};
+use crate::shown::shown;
 
 /// The number of octaves of the noise.
 pub(crate) const OCTAVES: u32 = 4;
@@ -184,11 +186,11 @@ impl AreaTexture {
         let color = ground.lerp(self.figure, figure).lerp(self.border, border);
         let mut alpha = color.w;
         if self.fades > 0.0 {
-            let octave = |wave_m: f32| wave_shown(wave_m, pixel.mean_m) * pair(pixel.at / wave_m).0.x;
+            let octave = |wave_m: f32| shown(wave_m, WAVE_PX, pixel.mean_m) * pair(pixel.at / wave_m).0.x;
             let moved = FADE_MOVED * (octave(FADE_M) + 0.5 * octave(FADE_M * FINER));
             let within = pixel.inward * (1.0 - pixel.inward) * 4.0;
             let fade = (pixel.inward + moved * within).smoothstep(0.0, 1.0);
-            alpha *= 0.5.lerp(fade, shown(FADE_WIDE_M, pixel.longest_m));
+            alpha *= 0.5.lerp(fade, part_shown(FADE_WIDE_M, pixel.longest_m));
         }
         (color.truncate() * light).max(Vec3::ZERO).extend(alpha)
     }
@@ -206,7 +208,7 @@ impl AreaTexture {
         let mut inside_m = ALONE_M;
         let mut own = UVec2::ZERO;
         if self.parcel_m > 0.0 {
-            let shown = shown(self.parcel_m, longest_m);
+            let shown = part_shown(self.parcel_m, longest_m);
             tone = 0.0;
             if shown > 0.0 {
                 let parcel = parcel(bent, self.parcel_m);
@@ -225,11 +227,11 @@ impl AreaTexture {
         }
         if self.rows_m > 0.0 {
             let across = place.y / self.rows_m;
-            let wave = 1.0 - 4.0 * ((across - across.floor()) - 0.5).abs();
-            light += self.rows * shown(self.rows_m, longest_m) * wave;
+            let wave = 1.0 - 4.0 * ((across - floor(across)) - 0.5).abs();
+            light += self.rows * part_shown(self.rows_m, longest_m) * wave;
         }
         if self.figure_m.y > 0.0 {
-            let shown = shown(self.figure_m.min_element(), longest_m);
+            let shown = part_shown(self.figure_m.min_element(), longest_m);
             if shown > 0.0 {
                 let (cover, facing) = self.figure_at(place, noise.x, longest_m, own);
                 let margin = inside_m - 0.5 * self.border_m - FIGURE_MARGIN * self.figure_m.y;
@@ -246,18 +248,18 @@ impl AreaTexture {
     /// strips covers.
     fn strip(&self, place: Vec2, pixel_m: f32, own: UVec2) -> (f32, f32) {
         let along = place.y / self.strip_m - 0.5;
-        let below = along.floor();
+        let below = floor(along);
         let piece_m = STRIP_LENGTH * self.strip_m;
         let number = |row: f32, column: f32| {
             values(UVec2::new(row as i32 as u32, column as i32 as u32).wrapping_add(own))
         };
         let tone = |row: f32| {
             let along = place.x / piece_m + number(row, 0.0).x - 0.5;
-            let before = along.floor();
+            let before = floor(along);
             let part = ((along - before - 0.5) * piece_m / pixel_m + 0.5).clamp(0.0, 1.0);
             number(row, before).y.lerp(number(row, before + 1.0).y, part)
         };
-        let shown = shown(self.strip_m, pixel_m);
+        let shown = part_shown(self.strip_m, pixel_m);
         let [from, wide] = STRIP_BORDER;
         let wide_m = wide * self.border_m;
         let mean_line = 0.5 * (1.0 - from) * wide_m / self.strip_m;
@@ -274,7 +276,7 @@ impl AreaTexture {
     /// The share of a pixel that the nearest figure covers, and how far it turns to the north-west, -1..=1.
     fn figure_at(&self, place: Vec2, noise: f32, pixel_m: f32, own: UVec2) -> (f32, f32) {
         let lattice = place / self.figure_m;
-        let corner = (lattice - 0.5).floor();
+        let corner = floor_each(lattice - 0.5);
         let mut nearest = f32::INFINITY;
         let (mut facing, mut radius) = (0.0, 1.0);
         for (east, north) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
@@ -302,7 +304,7 @@ impl AreaTexture {
 
 /// A place by axes of which the first runs along `axis`, of length 1.
 fn turned(at: Vec2, axis: Vec2) -> Vec2 {
-    Vec2::new(axis.x * at.x + axis.y * at.y, axis.x * at.y - axis.y * at.x)
+    Vec2::new(axis.x, -axis.y).rotate(at)
 }
 
 /// The share of a pixel that a line covers whose middle is so far away.
@@ -312,13 +314,8 @@ fn line_cover(wide_m: f32, away_m: f32, pixel_m: f32) -> f32 {
 }
 
 /// How far a part of this width shows in pixels that wide, 0..=1.
-fn shown(wide_m: f32, pixel_m: f32) -> f32 {
-    (2.0 * wide_m / (PART_PX * pixel_m) - 1.0).clamp(0.0, 1.0)
-}
-
-/// How far a wave shows in pixels that wide, 0..=1.
-fn wave_shown(wave_m: f32, pixel_m: f32) -> f32 {
-    (2.0 * wave_m / (WAVE_PX * pixel_m) - 1.0).clamp(0.0, 1.0)
+fn part_shown(wide_m: f32, pixel_m: f32) -> f32 {
+    shown(wide_m, PART_PX, pixel_m)
 }
 
 /// The noise of a place.
@@ -333,16 +330,16 @@ fn octaves(at: Vec2, first_m: f32, pixel_m: f32) -> AreaNoise {
     let (mut sum, mut bend, mut height) = (Vec2::ZERO, Vec2::ZERO, 1.0);
     let (mut wave_m, mut turn) = (first_m, Vec2::X);
     for _ in 0..OCTAVES {
-        let shown = wave_shown(wave_m, pixel_m);
+        let shown = shown(wave_m, WAVE_PX, pixel_m);
         if shown > 0.0 {
-            let place = Vec2::new(turn.x * at.x - turn.y * at.y, turn.y * at.x + turn.x * at.y) / wave_m;
+            let place = turn.rotate(at) / wave_m;
             let value = pair(place).0 * (SHARE * shown);
             sum += value;
             bend += value * height;
         }
         height *= FINER;
         wave_m *= FINER;
-        turn = Vec2::new(TURN.x * turn.x - TURN.y * turn.y, TURN.y * turn.x + TURN.x * turn.y);
+        turn = TURN.rotate(turn);
     }
     AreaNoise { sum, bend }
 }
@@ -350,7 +347,7 @@ fn octaves(at: Vec2, first_m: f32, pixel_m: f32) -> AreaNoise {
 /// The parcel around a place.
 fn parcel(at: Vec2, parcel_m: f32) -> Parcel {
     let grid = at / parcel_m;
-    let corner = grid.floor();
+    let corner = floor_each(grid);
     let (mut first, mut second) = ((f32::INFINITY, Vec2::ZERO), (f32::INFINITY, Vec2::ZERO));
     let (mut found, mut own) = (UVec2::ZERO, Vec2::ZERO);
     for index in 0..9 {

@@ -70,8 +70,8 @@ impl CoverNoise {
         for (index, (NoiseOctave { wave_m, turn }, cell)) in OCTAVE_TABLE.into_iter().zip(cells).enumerate() {
             let shown = (wave_m * per_pixel - 1.0).clamp(0.0, 1.0);
             if shown > 0.0 {
-                let turned = Vec2::new(turn.x * at.x - turn.y * at.y, turn.y * at.x + turn.x * at.y);
-                let (value, rise) = pair_near(turned * wave_m.recip() + BENT * wider, cell);
+                let place = turn.rotate(at) * wave_m.recip() + BENT * wider;
+                let (value, rise) = pair_near(place, cell);
                 wider = value;
                 sum.uneven += SHARE * shown * value.x;
                 if index < FIRST_FINE as usize {
@@ -133,6 +133,17 @@ impl LatticeCell {
             |east: u32, north: u32| values(UVec2::new(at.x.wrapping_add(east), at.y.wrapping_add(north)));
         Self { corner, values: [value(0, 0), value(1, 0), value(0, 1), value(1, 1)] }
     }
+
+    /// The noises at a place in it.
+    fn pair(&self, at: Vec2) -> (Vec2, Vec2) {
+        let part = at - self.corner;
+        let smooth = part * part * (Vec2::splat(3.0) - 2.0 * part);
+        let steep = 6.0 * part * (Vec2::ONE - part);
+        let [sw, se, nw, ne] = self.values;
+        let (south, north) = (sw + (se - sw) * smooth.x, nw + (ne - nw) * smooth.x);
+        let east = (se.x - sw.x) + ((ne.x - nw.x) - (se.x - sw.x)) * smooth.y;
+        (south + (north - south) * smooth.y, Vec2::new(east * steep.x, (north.x - south.x) * steep.y))
+    }
 }
 
 thread_local! {
@@ -143,24 +154,16 @@ thread_local! {
 
 /// Two value noises, -1..=1, and the rise of the first.
 pub(crate) fn pair(at: Vec2) -> (Vec2, Vec2) {
-    pair_near(at, &Cell::new(LatticeCell::NONE))
+    LatticeCell::new(floor_each(at)).pair(at)
 }
 
 /// The same where `last` is the cell of the place before.
 fn pair_near(at: Vec2, last: &Cell<LatticeCell>) -> (Vec2, Vec2) {
     let corner = floor_each(at);
-    let part = at - corner;
-    let smooth = part * part * (Vec2::splat(3.0) - 2.0 * part);
-    let steep = 6.0 * part * (Vec2::ONE - part);
-    let mut cell = last.get();
-    if cell.corner != corner {
-        cell = LatticeCell::new(corner);
-        last.set(cell);
+    if last.get().corner != corner {
+        last.set(LatticeCell::new(corner));
     }
-    let [sw, se, nw, ne] = cell.values;
-    let (south, north) = (sw + (se - sw) * smooth.x, nw + (ne - nw) * smooth.x);
-    let east = (se.x - sw.x) + ((ne.x - nw.x) - (se.x - sw.x)) * smooth.y;
-    (south + (north - south) * smooth.y, Vec2::new(east * steep.x, (north.x - south.x) * steep.y))
+    last.get().pair(at)
 }
 
 /// Two numbers from -1 to 1 for a lattice point.

@@ -16,6 +16,7 @@ use crate::color::{Srgba, luminance};
 use crate::cover_noise::CoverNoise;
 use crate::ground::GroundPost;
 use crate::ground_grain::{WIDE_PX, noise};
+use crate::shown::shown;
 
 /// How far the noise moves the borders between covers, in meters of elevation and in rise.
 pub(crate) const UNEVEN_M: f32 = 130.0;
@@ -170,8 +171,7 @@ impl GroundCover {
 /// Layers of rock at a height that changes by `change_m` across a pixel, -1..=1; `uneven` bends them.
 fn strata(height_m: f32, change_m: f32, uneven: f32) -> f32 {
     let layers = |wave_m: f32| {
-        let shown = (2.0 * wave_m / (WIDE_PX * change_m.max(1e-6)) - 1.0).clamp(0.0, 1.0);
-        shown * noise(Vec2::new(height_m / wave_m + 2.0 * uneven, 0.5))
+        shown(wave_m, WIDE_PX, change_m.max(1e-6)) * noise(Vec2::new(height_m / wave_m + 2.0 * uneven, 0.5))
     };
     STRATA_M.into_iter().map(layers).sum()
 }

@@ -10,6 +10,7 @@
 use glam::{UVec2, Vec2};
 
 use crate::floor::floor_each;
+use crate::shown::shown;
 
 /// Wavelengths in meters with their shares of the contrast.
 pub(crate) const WAVES: [(f32, f32); 3] = [(1.7, 0.3), (6.1, 0.35), (23.0, 0.35)];
@@ -32,7 +33,7 @@ pub fn ground_grain(at: Vec2, pixel_m: f32, rise: f32) -> f32 {
 pub(crate) fn noise_of(waves: &[(f32, f32)], at: Vec2, pixel_m: f32) -> f32 {
     let mut sum = 0.0;
     for &(wave_m, share) in waves {
-        let shown = (2.0 * wave_m / (WIDE_PX * pixel_m) - 1.0).clamp(0.0, 1.0);
+        let shown = shown(wave_m, WIDE_PX, pixel_m);
         if shown > 0.0 {
             sum += share * shown * noise(at / wave_m);
         }

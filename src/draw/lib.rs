@@ -26,6 +26,7 @@ pub mod patches;
 pub mod pixels;
 pub mod print_pattern;
 pub mod shader_constants;
+mod shown;
 pub mod undergrowth;
 pub mod water;
 pub mod wireframe;

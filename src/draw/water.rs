@@ -11,6 +11,7 @@ use crate::bathymetry::bathymetry;
 use crate::color::Srgba;
 use crate::ground_grain::noise;
 use crate::lighting::Lighting;
+use crate::shown::shown;
 
 /// The colors of water.
 ///
@@ -115,7 +116,7 @@ pub fn ripples(at: Vec2, pixel_m: f32, ray: Vec3) -> Vec2 {
     let low = ((1.0 + ray.z - none) / (all - none)).clamp(0.0, 1.0);
     let mut slope = Vec2::ZERO;
     for (wave_m, steepness) in RIPPLES {
-        let shown = low * (2.0 * wave_m / (RIPPLE_PX * pixel_m) - 1.0).clamp(0.0, 1.0);
+        let shown = low * shown(wave_m, RIPPLE_PX, pixel_m);
         if shown > 0.0 {
             let place = at / wave_m;
             slope += Vec2::new(noise(place), noise(place + Vec2::new(37.5, 17.25))) * (shown * steepness);

@@ -21,7 +21,8 @@ const OVERVIEW_CLEAR: f32 = 0.94;
 const HORIZON_CLEAR: f32 = 0.62;
 
 /// The haze of `color` for a camera over the box of the scene. `stated_m` is the distance in
-/// meters from the near edge at which 63 % is haze, of which the first quarter is clear, 0 for clear air; `None` fits it to the picture's `setting`.
+/// meters from the near edge at which 63 % is haze, of which the first quarter is clear, 0 for clear air; `None` fits it to the
+/// picture's `setting`.
 pub(super) fn haze(
     color: Vec3,
     stated_m: Option<f32>,

@@ -3,9 +3,12 @@
 //! Figures have the size of what they stand for: crowns of six meters, roofs of twelve, fields of a few hectares in strips of
 //! sixty meters. From afar each has the mean color of the cover's tile, so that overviews, legends and models agree.
 
+use std::sync::OnceLock;
+
 use glam::{Vec2, Vec3, Vec4};
 
 use crate::texture::{RibbonSurface, texture};
+use sandtable_base::message::choice::Choice;
 use sandtable_description::words::Cover;
 use sandtable_draw::area_texture::AreaTexture;
 use sandtable_draw::color::Srgba;
@@ -17,8 +20,15 @@ pub fn area_texture(surface: RibbonSurface) -> Option<AreaTexture> {
         RibbonSurface::CoverEdge(cover) => (cover, 1.0),
         _ => return None,
     };
-    let area = drawn(cover)?.measured();
-    Some(AreaTexture { fades, ..with_mean(area, tile_mean(cover)) })
+    Some(AreaTexture { fades, ..whole(cover)? })
+}
+
+/// The texture of a cover within its outline: the same for every picture, and made for the first that shows it.
+fn whole(cover: Cover) -> Option<AreaTexture> {
+    static WHOLE: [OnceLock<Option<AreaTexture>>; Cover::CHOICES.len()] =
+        [const { OnceLock::new() }; Cover::CHOICES.len()];
+    let made = || Some(with_mean(drawn(cover)?.measured(), tile_mean(cover)));
+    *WHOLE[cover as usize].get_or_init(made)
 }
 
 /// The texture with the colors scaled so that its mean is this.
@@ -260,7 +270,6 @@ fn drawn(cover: Cover) -> Option<AreaTexture> {
 mod tests {
     use super::*;
 
-    use sandtable_base::message::choice::Choice;
     use sandtable_draw::area_texture::AreaPixel;
 
     #[test]
