@@ -85,6 +85,7 @@ pub fn shader_constants() -> Vec<(&'static str, Vec<f32>)> {
         ("COVER_WILD_WOODS", vec![ground_cover::WILD_WOODS]),
         ("COVER_FIELD_MEADOW", vec![ground_cover::FIELD_MEADOW]),
         ("COVER_MOST", vec![ground_cover::MOST]),
+        ("COVER_HUE", vec![ground_cover::HUE]),
         ("COVER_PATCHES", vec![ground_cover::PATCHES]),
         ("COVER_CROWNS", vec![ground_cover::CROWNS]),
         ("COVER_TUFTS", vec![ground_cover::TUFTS]),

@@ -523,8 +523,8 @@ fn cover_noise(at: vec2f, mean_pixel_m: f32) -> Noise {
 }
 
 // The functions of src/draw/ground_cover.rs.
-fn covered_by(color: vec3f, own: f32, cover: vec4f, share: f32) -> vec3f {
-    return mix(color, cover.rgb * (own * cover.w), COVER_MOST * share);
+fn covered_by(color: vec3f, tint: vec3f, own: f32, cover: vec4f, share: f32) -> vec3f {
+    return mix(color, mix(tint, cover.rgb * own, COVER_HUE) * cover.w, COVER_MOST * share);
 }
 
 fn strata_wave(height: f32, change: f32, uneven: f32, wave_m: f32) -> f32 {
@@ -554,11 +554,11 @@ fn with_cover(tint: vec3f, post: Post, change: f32, noise: Noise) -> vec3f {
     let half = COVER_MEADOW_M.z;
     let snow = smoothstep(frame.cover.y - half, frame.cover.y + half, height) * (1.0 - rock);
     let own = dot(tint, vec3f(0.2126, 0.7152, 0.0722));
-    var color = covered_by(tint, own, frame.cover_colors[1], meadow);
-    color = covered_by(color, own, frame.cover_colors[0], woods);
-    color = covered_by(color, own, frame.cover_colors[2], scree);
-    color = covered_by(color, own, frame.cover_colors[3], rock);
-    color = covered_by(color, own, frame.cover_colors[4], snow);
+    var color = covered_by(tint, tint, own, frame.cover_colors[1], meadow);
+    color = covered_by(color, tint, own, frame.cover_colors[0], woods);
+    color = covered_by(color, tint, own, frame.cover_colors[2], scree);
+    color = covered_by(color, tint, own, frame.cover_colors[3], rock);
+    color = covered_by(color, frame.cover_colors[4].rgb * own, own, frame.cover_colors[4], snow);
     let open = max(1.0 - snow, 0.0);
     let wooded = woods * (1.0 - rock) * open;
     let strata = strata_wave(post.height, change, noise.uneven, COVER_STRATA_M.x)

@@ -184,7 +184,7 @@ struct DrapedRibbon {
 /// A river's ribbon or banks without what its source is drawn narrower; `None` where that is nothing of it.
 pub(super) fn tapered(ribbon: &Ribbon, symbol: &LineSymbol) -> Option<PlanMesh> {
     let more_m = match ribbon.surface {
-        RibbonSurface::River => 0.0,
+        RibbonSurface::River | RibbonSurface::Rapids | RibbonSurface::Falls | RibbonSurface::Bar => 0.0,
         RibbonSurface::Bank => symbol.bank_m,
         _ => return None,
     };

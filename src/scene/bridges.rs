@@ -139,7 +139,7 @@ fn water(collected: &SceneBuilder) -> Result<Deck, DeckError> {
     let of_water = collected
         .ribbons
         .iter()
-        .filter(|ribbon| matches!(ribbon.surface, RibbonSurface::River | RibbonSurface::Lake));
+        .filter(|ribbon| ribbon.surface.is_channel() || ribbon.surface == RibbonSurface::Lake);
     let corners = of_water.flat_map(|ribbon| ribbon.plan.corners());
     let facets: Vec<SurfaceTriangle> =
         corners.map(|corners| corners.map(|corner| corner.at.as_vec2().extend(0.0))).collect();

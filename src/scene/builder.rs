@@ -136,7 +136,11 @@ fn layer_of(surface: RibbonSurface) -> u8 {
     match surface {
         RibbonSurface::Cover(_) | RibbonSurface::CoverEdge(_) | RibbonSurface::Border => 0,
         RibbonSurface::Bank | RibbonSurface::ShoreLine => 1,
-        RibbonSurface::River | RibbonSurface::Confluence => 2,
+        RibbonSurface::River
+        | RibbonSurface::Confluence
+        | RibbonSurface::Rapids
+        | RibbonSurface::Falls
+        | RibbonSurface::Bar => 2,
         RibbonSurface::Lake => 3,
         // Shoulders are laid before tracks and so lie below them.
         RibbonSurface::Shoulder | RibbonSurface::Track | RibbonSurface::TrackJunction => 4,

@@ -38,6 +38,12 @@ const MODERATE: f64 = 1.0 / 9.0;
 /// The moisture of the air at sea level where it rains all year, and what the driest place lacks of it.
 const MOISTURE: [f64; 2] = [0.95, 0.85];
 
+/// From and to which dryness mountains lie far from the sea, and by how many meters trees and snow lie higher there: 3400 m
+/// and 2200 m are the tree lines of the Front Range and of the Alps, 6° apart (Körner 1998: that of a continent's middle is
+/// some hundred meters above that of its coasts).
+const INLAND: [f64; 2] = [0.25, 0.75];
+const INLAND_M: f64 = 550.0;
+
 /// The latitudes from and to which the tropics give way to middle latitudes, and these to the polar regions.
 const TROPICS_DEG: [f64; 2] = [12.0, 28.0];
 const POLAR_DEG: [f64; 2] = [54.0, 68.0];
@@ -77,7 +83,9 @@ impl Climate {
 
     /// The elevations at which land cover changes.
     pub fn lines(&self) -> CoverLines {
-        CoverLines::at(self.latitude_deg)
+        let higher_m = INLAND_M * part(self.dryness, INLAND);
+        let CoverLines { tree_m, snow_m } = CoverLines::at(self.latitude_deg);
+        CoverLines { tree_m: tree_m + higher_m, snow_m: snow_m + higher_m }
     }
 
     /// The covers of ground whose drawn slopes are `true_rise` times as steep in truth.
@@ -103,15 +111,15 @@ impl Climate {
         let hot = (part(self.dryness, [0.6, 0.85]) * warmth) as f32;
         let color =
             |[red, green, blue]: [u8; 3], light: f32| CoverColor::new(Srgba::opaque(red, green, blue), light);
-        let woods = color([104, 122, 84], 0.64)
-            .lerp(&color([88, 122, 76], 0.60), self.tropical as f32)
-            .lerp(&color([102, 116, 94], 0.70), self.polar as f32)
-            .lerp(&color([124, 126, 92], 0.76), dry);
+        let woods = color([88, 116, 76], 0.55)
+            .lerp(&color([72, 118, 64], 0.52), self.tropical as f32)
+            .lerp(&color([92, 114, 86], 0.62), self.polar as f32)
+            .lerp(&color([90, 114, 74], 0.56), dry);
         let meadow = color([168, 178, 118], 1.02)
             .lerp(&color([166, 166, 134], 0.95), self.polar as f32)
             .lerp(&color([188, 178, 126], 1.02), dry);
         let scree = color([184, 173, 150], 0.97).lerp(&color([202, 172, 138], 0.98), hot);
-        let rock = color([160, 148, 128], 0.80).lerp(&color([180, 128, 98], 0.80), hot);
+        let rock = color([156, 149, 128], 0.80).lerp(&color([180, 128, 98], 0.80), hot);
         [woods, meadow, scree, rock, color([238, 243, 250], 1.2)]
     }
 }
@@ -194,5 +202,20 @@ mod tests {
         assert_eq!(nowhere, Climate::at(Some(DVec2::NAN)));
         assert!(nowhere.cover(1.0).moisture > 0.8 && nowhere.lines() == CoverLines::at(Some(45.0)));
         assert_eq!(at(20.0, -34.0).cover(1.0).shady_north, -1.0);
+    }
+
+    #[test]
+    fn trees_grow_higher_far_from_the_sea() {
+        for (place, climate, seen_m) in [
+            ("Front Range", at(-105.5, 40.2), 3400.0),
+            ("Wasatch Range", at(-111.7, 40.7), 3200.0),
+            ("Tien Shan", at(78.0, 42.0), 2900.0),
+            ("Alps", at(8.0, 46.5), 2200.0),
+            ("Cascade Range", at(-121.7, 45.4), 2000.0),
+            ("Pyrenees", at(0.7, 42.6), 2400.0),
+        ] {
+            let tree_m = climate.lines().tree_m;
+            assert!((tree_m - seen_m).abs() < 300.0, "{place}: {tree_m} m");
+        }
     }
 }

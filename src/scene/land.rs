@@ -163,7 +163,7 @@ fn waters(scene: &SceneModel) -> Vec<WaterPost> {
     }
     for ribbon in &scene.ribbons {
         let kind = match ribbon.surface {
-            RibbonSurface::River | RibbonSurface::Confluence => WaterKind::River,
+            surface if surface.is_channel() => WaterKind::River,
             RibbonSurface::Lake => WaterKind::Lake,
             _ => continue,
         };

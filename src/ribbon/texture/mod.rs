@@ -41,6 +41,12 @@ pub enum RibbonSurface {
     River,
     /// Where running waters meet: the stream without its sides.
     Confluence,
+    /// Water white with falling over stones.
+    Rapids,
+    /// Water that drops.
+    Falls,
+    /// A bar of sand and gravel in a river's bend.
+    Bar,
     /// The banks on either side of running water.
     Bank,
     /// Still water.
@@ -84,7 +90,12 @@ impl RibbonSurface {
 
     /// Whether it is open water.
     pub fn is_water(self) -> bool {
-        matches!(self, Self::River | Self::Confluence | Self::Lake)
+        matches!(self, Self::River | Self::Confluence | Self::Rapids | Self::Lake)
+    }
+
+    /// Whether it lies between the banks of running water.
+    pub fn is_channel(self) -> bool {
+        matches!(self, Self::River | Self::Confluence | Self::Rapids | Self::Falls | Self::Bar)
     }
 
     /// Whether it grows or lies by nature, so that the ground's grain goes through it.
@@ -124,6 +135,9 @@ pub fn texture(surface: RibbonSurface) -> Pixels {
             RibbonSurface::Trench => boundary::trench(u, grain),
             RibbonSurface::Boundary => boundary::boundary(u, grain),
             RibbonSurface::Confluence => water::stream(grain),
+            RibbonSurface::Rapids => water::rapids(u, self::grain(x, y / water::STREAK)),
+            RibbonSurface::Falls => water::falls(u, self::grain(x, y / water::STREAK)),
+            RibbonSurface::Bar => water::bar(u, grain),
             RibbonSurface::Bank => water::bank(u, grain),
             RibbonSurface::Cover(cover) => cover::texel(cover, u, v, grain),
             RibbonSurface::CoverEdge(cover) => cover::edge_texel(cover, u, v, grain),

@@ -8,4 +8,5 @@ pub mod lake_level;
 pub mod lakes;
 pub mod network;
 pub mod order;
+pub mod reaches;
 pub mod rivers;

@@ -18,6 +18,7 @@ use crate::sources::Sources;
 use crate::symbols::LineSymbol;
 use crate::water::culvert::Culvert;
 use crate::water::network::{self, Stream};
+use crate::water::reaches::reaches;
 use sandtable_base::message::numbers::{counted, fixed};
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
@@ -32,7 +33,7 @@ use sandtable_geom::rect::Rect;
 use sandtable_mesh::sink::MeshSink;
 use sandtable_ribbon::junction::{self, Street};
 use sandtable_ribbon::plan::{PlanMesh, PlanVertex};
-use sandtable_ribbon::stroke::{StrokePath, stroke};
+use sandtable_ribbon::stroke::{StrokeOptions, StrokePath, stroke};
 use sandtable_ribbon::texture::RibbonSurface;
 use sandtable_terrain::lattice::Lattice;
 
@@ -64,7 +65,7 @@ pub fn lay(
     })?;
     report_cuts(&falling, &cuts, collected);
     report_climbs(&falling, &cuts, lattice.origin(), collected);
-    ribbons(&streams, &lattice.extent(), collected);
+    ribbons(&streams, lattice, collected);
     let symbol =
         |stream: &Stream| LineSymbol::of_river(&stream.street, stream.bank_m, &stream.order, stream.feature);
     collected.symbols.extend(streams.iter().map(symbol));
@@ -150,8 +151,9 @@ fn row(stream: &Stream, cut: &Cut) -> RiverRow {
     }
 }
 
-/// Lays water, banks and confluences; narrower water over wider, so that a mouth shows in the river that it flows into.
-fn ribbons(streams: &[Stream], extent: &Rect, collected: &mut SceneBuilder) {
+/// Lays water with its white reaches and bars, banks and confluences; narrower water over wider, so that a mouth shows in the river that it flows into.
+fn ribbons(streams: &[Stream], lattice: &Lattice, collected: &mut SceneBuilder) {
+    let extent = &lattice.extent();
     let streets: Vec<&Street> = streams.iter().map(|stream| &stream.street).collect();
     let network = junction::connect(&streets);
     let widest_m = |index: usize| streams[index].street.width_m;
@@ -167,6 +169,18 @@ fn ribbons(streams: &[Stream], extent: &Rect, collected: &mut SceneBuilder) {
             collected.lay(ribbon.plan, street.surface, stream.feature);
         };
         lay(&stream.street);
+        if stream.water == Water::Falls && !stream.is_culvert {
+            for (alignment, surface) in reaches(&stream.street.alignment, lattice) {
+                let width_m = alignment.width.widest_m();
+                lay(&Street {
+                    alignment,
+                    width_m,
+                    options: StrokeOptions::of(surface, width_m),
+                    surface,
+                    ..stream.street
+                });
+            }
+        }
         if stream.bank_m > 0.0 {
             lay(&stream.street.with_more(2.0 * stream.bank_m, RibbonSurface::Bank));
         }

@@ -293,8 +293,8 @@ Noise cover_noise(vec2 at, float mean_pixel_m) {
   return sum;
 }
 
-vec3 covered_by(vec3 color, float own, vec4 cover, float share) {
-  return mix(color, cover.rgb * (own * cover.w), COVER_MOST * share);
+vec3 covered_by(vec3 color, vec3 tint, float own, vec4 cover, float share) {
+  return mix(color, mix(tint, cover.rgb * own, COVER_HUE) * cover.w, COVER_MOST * share);
 }
 
 float strata_wave(float height, float change, float uneven, float wave_m) {
@@ -323,11 +323,11 @@ vec3 with_cover(vec3 tint, float height_m, float change, vec2 slope, float sky_s
   float rock = smoothstep(COVER_ROCK_RISE.x * bare, COVER_ROCK_RISE.y * bare, rise);
   float snow = smoothstep(cover.y - COVER_MEADOW_M.z, cover.y + COVER_MEADOW_M.z, height) * (1.0 - rock);
   float own = dot(tint, vec3(0.2126, 0.7152, 0.0722));
-  vec3 color = covered_by(tint, own, cover_colors[1], meadow);
-  color = covered_by(color, own, cover_colors[0], woods);
-  color = covered_by(color, own, cover_colors[2], scree);
-  color = covered_by(color, own, cover_colors[3], rock);
-  color = covered_by(color, own, cover_colors[4], snow);
+  vec3 color = covered_by(tint, tint, own, cover_colors[1], meadow);
+  color = covered_by(color, tint, own, cover_colors[0], woods);
+  color = covered_by(color, tint, own, cover_colors[2], scree);
+  color = covered_by(color, tint, own, cover_colors[3], rock);
+  color = covered_by(color, cover_colors[4].rgb * own, own, cover_colors[4], snow);
   float open = max(1.0 - snow, 0.0);
   float wooded = woods * (1.0 - rock) * open;
   float strata = strata_wave(height_m, change, here.uneven, COVER_STRATA_M.x)
