@@ -211,7 +211,7 @@ words! {
 
     /// Where a river's water lies.
     enum Water {
-        Falls = "falls": "its level never rises downstream, and the ground is cut to it",
+        Falls = "falls": "its level never rises downstream, and the ground is cut to it; it is white where it falls by more than 4 %, and bars lie in its bends on level ground",
         Drape = "drape": "on the ground as it is",
     }
 

@@ -32,7 +32,10 @@ const BEND_WIDTHS: f64 = 1.5;
 /// Bars begin where a bend is as wide as one over this, in widths, and are at their widest from one over that.
 const BENT: [f64; 2] = [1.0 / 7.0, 1.0 / 2.5];
 /// The widest bar, and the narrowest that is one, as shares of the river's width.
-const BAR_SHARES: [f64; 2] = [0.36, 0.05];
+const BAR_SHARES: [f64; 2] = [0.42, 0.02];
+/// The distance between places along a bar in widths, and how many of them to either side its width is a mean of.
+const BAR_STEP: f64 = 0.4;
+const TAPER: usize = 4;
 /// The most places that are looked at along a river; on longer ones they lie farther apart.
 const MOST_PLACES: f64 = 20_000.0;
 /// Vertices nearer than this to one another are one, in meters.
@@ -106,17 +109,23 @@ fn bar_share(line: &Polyline, station: f64, width_m: f64) -> f64 {
 
 fn bars(water: &Alignment, lattice: &Lattice) -> Vec<(Alignment, RibbonSurface)> {
     let line = &water.line;
-    let stations = places(line, 0.4 * water.width.widest_m());
+    let stations = places(line, BAR_STEP * water.width.widest_m());
     let heights = heights(line, &stations, lattice);
     let share = |index: usize| {
         let width_m = water.width.at(stations[index]);
         // Over several places: the ground of a channel has steps of its own.
-        let [before, after] = [index.saturating_sub(4), (index + 4).min(stations.len() - 1)];
+        let [before, after] = [index.saturating_sub(TAPER), (index + TAPER).min(stations.len() - 1)];
         let fall = (heights[before] - heights[after]) / (stations[after] - stations[before]).max(MERGE_M);
-        let bar = if fall < BARS_FALL { bar_share(line, stations[index], width_m) } else { 0.0 };
-        if bar.abs() < BAR_SHARES[1] { 0.0 } else { bar }
+        if fall < BARS_FALL { bar_share(line, stations[index], width_m) } else { 0.0 }
     };
-    let shares: Vec<f64> = (0..stations.len()).map(share).collect();
+    let bends: Vec<f64> = (0..stations.len()).map(share).collect();
+    // A bar begins and ends in a point, however sharp the vertices of the bend are.
+    let smooth = |index: usize| {
+        let around = &bends[index.saturating_sub(TAPER)..(index + TAPER + 1).min(bends.len())];
+        let share = around.iter().sum::<f64>() / around.len() as f64;
+        if share.abs() < BAR_SHARES[1] { 0.0 } else { share }
+    };
+    let shares: Vec<f64> = (0..bends.len()).map(smooth).collect();
     let all: Vec<usize> = (0..stations.len()).collect();
     let side = |index: usize| if shares[index] == 0.0 { 0.0 } else { shares[index].signum() };
     let runs = all.chunk_by(|&a, &b| side(a) == side(b)).filter(|run| run.len() > 1 && side(run[0]) != 0.0);
