@@ -25,6 +25,7 @@ pub mod buildings;
 mod cause_code;
 mod city_buildings;
 mod city_paint;
+pub mod class_raster;
 pub mod climate;
 pub mod crossed_shapes;
 mod decoded_whole;

@@ -9,6 +9,7 @@ use glam::DVec2;
 
 use crate::assets::Assets;
 use crate::attributes::Attributes;
+use crate::class_raster::{ClassRaster, ClassRasterError};
 use crate::scene_findings::SceneFindings;
 use crate::source_reach::SourceReach;
 use crate::world_frame::WorldFrame;
@@ -44,6 +45,8 @@ pub struct Sources<'a> {
     layered: RefCell<BTreeMap<String, LayeredFile>>,
     /// The surfaces of CityJSON files.
     city_models: RefCell<BTreeMap<LayerKey, Arc<CityModel>>>,
+    /// The files that are rasters of land cover: what is taken of them is what lies on the ground, which may be nothing.
+    class_rasters: RefCell<BTreeSet<String>>,
     /// The systems that files state and the scene overrides.
     overridden: RefCell<BTreeMap<LayerKey, Crs>>,
     /// How many crossings more the scene's polygons may have with themselves.
@@ -83,6 +86,7 @@ impl<'a> Sources<'a> {
             layers: RefCell::default(),
             layered: RefCell::default(),
             city_models: RefCell::default(),
+            class_rasters: RefCell::default(),
             overridden: RefCell::default(),
             crossings_left,
             reaches: RefCell::default(),
@@ -255,7 +259,7 @@ impl<'a> Sources<'a> {
             let sourced = |shape| Sourced { attributes: attributes.clone(), shape, crossings: 0 };
             shapes.extend(picked.into_iter().map(sourced));
         }
-        if shapes.is_empty() {
+        if shapes.is_empty() && !self.class_rasters.borrow().contains(file.as_str()) {
             return Err(self.nothing_found(source, file, &filter, &layer));
         }
         self.note_other_shapes(file, &of_other_shape);
@@ -324,8 +328,14 @@ impl<'a> Sources<'a> {
             return Ok(Arc::clone(layer));
         }
         if let Some(given) = self.assets.given().layer(file) {
-            self.check_given(file, source)?;
+            self.check_only_layer(file, source, "features in memory")?;
             let layer = self.given_layer(given, &key, stated);
+            self.note_reading(file, &layer);
+            self.layers.borrow_mut().insert(key, Arc::clone(&layer));
+            return Ok(layer);
+        }
+        if let Some(layer) = self.class_layer(file, source, &key)? {
+            let layer = Arc::new(layer);
             self.note_reading(file, &layer);
             self.layers.borrow_mut().insert(key, Arc::clone(&layer));
             return Ok(layer);
@@ -349,11 +359,32 @@ impl<'a> Sources<'a> {
         Ok(layer)
     }
 
-    /// Refuses keys that say where features are in a file, of features in memory.
-    fn check_given(&self, file: &Stated<String>, source: &FeatureSource) -> Result<(), Diagnostic> {
+    /// The polygons of a raster of land cover over the ground; `None` of another file.
+    fn class_layer(
+        &self,
+        file: &Stated<String>,
+        source: &FeatureSource,
+        key: &LayerKey,
+    ) -> Result<Option<VectorLayer>, Diagnostic> {
+        let overridden = |own: &Crs| drop(self.overridden.borrow_mut().insert(key.clone(), own.clone()));
+        let failed = |error: ClassRasterError| self.frame.document.error(file, error);
+        let opened = ClassRaster::open(file, self.assets, source.crs.as_ref(), &overridden);
+        let Some(raster) = opened.map_err(failed)? else { return Ok(None) };
+        self.check_only_layer(file, source, "a raster of land cover")?;
+        self.class_rasters.borrow_mut().insert(file.to_string());
+        raster.layer(&self.frame.extent, self.frame.crs).map(Some).map_err(failed)
+    }
+
+    /// Refuses keys that say where features are in a file, of what holds one layer and no columns.
+    fn check_only_layer(
+        &self,
+        file: &Stated<String>,
+        source: &FeatureSource,
+        what: &str,
+    ) -> Result<(), Diagnostic> {
         let key = source.layer.as_ref().map(|_| "layer").or(source.columns.as_ref().map(|_| "columns"));
         let Some(key) = key else { return Ok(()) };
-        let message = format!("`{key}` has no effect on '{}', which is features in memory", quoted(file));
+        let message = format!("`{key}` has no effect on '{}', which is {what}", quoted(file));
         let error = self.frame.document.error(file, message).with_code(FindingCode::NoEffect);
         Err(error.with_help("leave it out: it says what is read of a file"))
     }
