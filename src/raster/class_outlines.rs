@@ -53,6 +53,12 @@ const PASSES: usize = 24;
 /// The distance in cells within which vertices are left out: less than what the moving leaves between two borders.
 const TOLERANCE: f64 = 0.06;
 
+/// That distance in grids of up to [`FEW_CELLS`] a side, of which a picture shows each cell: corners would show, too.
+const FINE_TOLERANCE: f64 = 0.02;
+
+/// Cells of a side that take several pixels of a picture each.
+const FEW_CELLS: u32 = 400;
+
 /// The outlines of all patches of a grid, those of [`NO_CLASS`](crate::class_grid::NO_CLASS) too, in the order of their first cells.
 pub fn outlines(grid: &ClassGrid, course: OutlineCourse) -> Vec<PatchOutline> {
     let patches = ClassPatches::of(grid);
@@ -298,14 +304,16 @@ impl PatchBorders<'_> {
                 let middles: Vec<DVec2> =
                     arc.corners.windows(2).map(|ends| (ends[0] + ends[1]).as_dvec2() / 2.0).collect();
                 let is_frame = |at: DVec2| at.cmpeq(DVec2::ZERO).any() || at.cmpeq(size).any();
+                let side = self.grid.width().max(self.grid.height());
+                let slack = if side <= FEW_CELLS { FINE_TOLERANCE } else { TOLERANCE };
                 let moved = smoothed(&middles, &arc.corners, arc.is_closed(), is_frame);
                 if arc.is_closed() {
-                    return thinned_ring(&moved);
+                    return thinned_ring(&moved, slack);
                 }
                 let ends = [arc.corners[0], arc.corners[arc.corners.len() - 1]].map(|end| end.as_dvec2());
                 let mut line = vec![ends[0]];
                 // Next to a node, where borders are near each other, no vertex is left out.
-                thinned(&moved, &mut line);
+                thinned(&moved, slack, &mut line);
                 line.push(ends[1]);
                 line
             }
@@ -357,23 +365,23 @@ fn smoothed(
     moved
 }
 
-/// Adds a line to `out`, without the vertices that lie within the tolerance of what is left (Douglas and Peucker 1973).
-fn thinned(line: &[DVec2], out: &mut Vec<DVec2>) {
+/// Adds a line to `out`, without the vertices that lie within `slack` of what is left (Douglas and Peucker 1973).
+fn thinned(line: &[DVec2], slack: f64, out: &mut Vec<DVec2>) {
     let apart = |first: usize, last: usize, index: usize| {
         segment::distance_squared((line[first], line[last]), line[index]).sqrt()
     };
-    out.extend(simplified(line.len(), TOLERANCE, apart).into_iter().map(|index| line[index]));
+    out.extend(simplified(line.len(), slack, apart).into_iter().map(|index| line[index]));
 }
 
 /// A ring without such vertices, of at least three. It has at least four.
-fn thinned_ring(ring: &[DVec2]) -> Vec<DVec2> {
+fn thinned_ring(ring: &[DVec2], slack: f64) -> Vec<DVec2> {
     let far = |index: &usize| ring[*index].distance_squared(ring[0]);
     let farthest = (1..ring.len()).max_by(|one, other| far(one).total_cmp(&far(other))).unwrap_or(0);
     let mut out = Vec::new();
-    thinned(&ring[..=farthest], &mut out);
+    thinned(&ring[..=farthest], slack, &mut out);
     out.pop();
     let back: Vec<DVec2> = ring[farthest..].iter().chain(&ring[..1]).copied().collect();
-    thinned(&back, &mut out);
+    thinned(&back, slack, &mut out);
     out.pop();
     if out.len() < 3 { ring.to_vec() } else { out }
 }

@@ -223,6 +223,11 @@ impl<'a> Sources<'a> {
         Ok(self.city_models.borrow().get(&key).cloned())
     }
 
+    /// Whether the polygons of a source that was read are those of a raster of land cover, which adjoin each other.
+    pub fn is_class_raster(&self, source: &FeatureSource) -> bool {
+        source.file.as_ref().is_some_and(|file| self.class_rasters.borrow().contains(file.as_str()))
+    }
+
     /// The shapes that `pick` takes from every feature that matches, unplaced.
     fn shapes<T>(
         &self,
@@ -515,7 +520,10 @@ impl<'a> Sources<'a> {
             })
             .collect::<Result<_, _>>()
             .map_err(|error| self.frame.document.error_at(source.span(), error))?;
-        self.reaches.borrow_mut().insert(source.span().start, reach.into_inner());
+        // Of a raster the part around the ground is read: that it reaches beyond says nothing.
+        if !self.is_class_raster(source) {
+            self.reaches.borrow_mut().insert(source.span().start, reach.into_inner());
+        }
         Ok(placed)
     }
 
