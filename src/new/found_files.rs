@@ -118,7 +118,9 @@ mod tests {
 
     #[test]
     fn rasters_of_land_cover_are_no_elevation_by_their_names() {
-        for name in ["ESA_WorldCover_10m_2021_v200_N42E006_Map.tif", "a/U2018_CLC2018_V2020_20u1.tif", "corine.TIFF"] {
+        for name in
+            ["ESA_WorldCover_10m_2021_v200_N42E006_Map.tif", "a/U2018_CLC2018_V2020_20u1.tif", "corine.TIFF"]
+        {
             assert_eq!(kind_of_name(Path::new(name)), Some(FoundKind::Vector), "{name}");
         }
         for name in ["dem.tif", "clc/dem.tif", "cyclcross.tif"] {

@@ -120,8 +120,11 @@ pub fn write(
         return Err(NewSceneError::NoElevation(options.dem.clone()));
     }
     let dem = elevation.iter().map(|file| folder.name_of(file)).collect::<Result<Vec<_>, _>>()?;
-    let mut vectors =
-        covers.into_iter().chain(&options.vectors).map(|file| survey_file(file, &folder)).collect::<Result<Vec<_>, _>>()?;
+    let mut vectors = covers
+        .into_iter()
+        .chain(&options.vectors)
+        .map(|file| survey_file(file, &folder))
+        .collect::<Result<Vec<_>, _>>()?;
     let overlays =
         options.overlays.iter().map(|file| overlays::survey(file, &folder)).collect::<Result<Vec<_>, _>>()?;
     let on_disk = options

@@ -66,7 +66,9 @@ pub(super) fn scene(draft: &SceneDraft, vectors: &[VectorDraft], overlays: &[Ove
     out.push_str(&style(draft));
     let sources: Vec<LayerSource<'_>> = vectors
         .iter()
-        .flat_map(|VectorDraft { file, layers, .. }| layers.iter().map(move |layer| LayerSource { file, layer }))
+        .flat_map(|VectorDraft { file, layers, .. }| {
+            layers.iter().map(move |layer| LayerSource { file, layer })
+        })
         .collect();
     for VectorDraft { file, land_cover, .. } in vectors {
         if let Some(legend) = land_cover {

@@ -170,7 +170,8 @@ impl PatchBorders<'_> {
 
     fn patch(&self, cell: IVec2) -> Option<u32> {
         let is_within = cell.cmpge(IVec2::ZERO).all() && cell.cmplt(self.size()).all();
-        is_within.then(|| self.patches.patch_of[cell.y as usize * self.grid.width() as usize + cell.x as usize])
+        is_within
+            .then(|| self.patches.patch_of[cell.y as usize * self.grid.width() as usize + cell.x as usize])
     }
 
     /// The patches on the right and on the left of the side that leaves a corner.
@@ -353,7 +354,13 @@ fn smoothed(
                 _ => moved[index - 1],
             };
             let after = match index + 1 {
-                end if end == count => if is_closed { moved[0] } else { ends[1] },
+                end if end == count => {
+                    if is_closed {
+                        moved[0]
+                    } else {
+                        ends[1]
+                    }
+                }
                 after => moved[after],
             };
             let by = (before + 2.0 * moved[index] + after) / 4.0 - middles[index];
@@ -414,14 +421,13 @@ mod tests {
         let area: f64 = smooth.iter().map(PatchOutline::doubled_area).sum();
         let cells = grid.cells().len() as f64;
         assert!((area - 2.0 * cells).abs() < 1e-9 * cells, "{area} of {}", 2.0 * cells);
-        let rings = || smooth.iter().flat_map(|outline| std::iter::once(&outline.exterior).chain(&outline.holes));
+        let rings =
+            || smooth.iter().flat_map(|outline| std::iter::once(&outline.exterior).chain(&outline.holes));
         assert!(rings().all(|ring| ring.len() >= 3));
         // Borders are shared: each edge is once in one ring and once, the other way, in another, but for those of the frame.
         let edges = |ring: &Vec<DVec2>| sandtable_geom::polygon::edges(ring).collect::<Vec<_>>();
-        let mut directed: Vec<[u64; 4]> = rings()
-            .flat_map(edges)
-            .map(|(a, b)| [a.x, a.y, b.x, b.y].map(f64::to_bits))
-            .collect();
+        let mut directed: Vec<[u64; 4]> =
+            rings().flat_map(edges).map(|(a, b)| [a.x, a.y, b.x, b.y].map(f64::to_bits)).collect();
         directed.sort_unstable();
         let size = DVec2::new(grid.width().into(), grid.height().into());
         for &[ax, ay, bx, by] in &directed {

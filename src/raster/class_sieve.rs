@@ -128,9 +128,9 @@ impl PatchMerging {
 
     fn longest_neighbor(&mut self, patch: u32) -> Option<u32> {
         let borders = self.current_borders(patch);
-        let longest = borders.iter().max_by_key(|(other, length)| {
-            (**length, self.size[**other as usize], Reverse(**other))
-        });
+        let longest = borders
+            .iter()
+            .max_by_key(|(other, length)| (**length, self.size[**other as usize], Reverse(**other)));
         let longest = longest.map(|(other, _)| *other);
         self.borders[patch as usize] = borders;
         longest

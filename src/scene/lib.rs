@@ -87,6 +87,7 @@ pub mod seen_ground;
 mod shape_place;
 mod shaped_ground;
 pub mod sight_layers;
+mod source_filter;
 pub mod source_reach;
 pub mod sources;
 mod spot_heights;

@@ -11,15 +11,14 @@ use crate::assets::Assets;
 use crate::attributes::Attributes;
 use crate::class_raster::{ClassRaster, ClassRasterError};
 use crate::scene_findings::SceneFindings;
+use crate::source_filter::{filter_of, values_of};
 use crate::source_reach::SourceReach;
 use crate::world_frame::WorldFrame;
 use sandtable_base::limits::{ASSET_BYTES, RING_CROSSINGS};
 use sandtable_base::message::suggest::quoted;
 use sandtable_description::diagnostic::Diagnostic;
-use sandtable_description::expression::Expression;
 use sandtable_description::feature_source::FeatureSource;
 use sandtable_description::finding_code::FindingCode;
-use sandtable_description::scalar::Scalar;
 use sandtable_description::selection::Selection;
 use sandtable_description::stated::Stated;
 use sandtable_geom::crs::{Crs, CrsError};
@@ -27,7 +26,7 @@ use sandtable_geom::self_crossing::count_crossings;
 use sandtable_vector::cityjson::CityModel;
 use sandtable_vector::error::{VectorError, did_you_mean, list};
 use sandtable_vector::feature::{Geometry, Polygon, VectorLayer};
-use sandtable_vector::filter::{Condition, Filter};
+use sandtable_vector::filter::Filter;
 use sandtable_vector::hints::VectorHints;
 use sandtable_vector::read::{self, LayeredFile, VectorFile};
 
@@ -580,28 +579,4 @@ fn closed(mut ring: Vec<DVec2>) -> Option<Polygon> {
         ring.pop();
     }
     (ring.len() >= 3).then_some(Polygon { exterior: ring, holes: Vec::new() })
-}
-
-/// A filter that no feature matches, so that it explains which values the properties of an expression have.
-fn values_of(condition: &Expression) -> Filter {
-    let properties = condition.properties().into_iter();
-    let none = |property: &str| Condition { property: property.to_owned(), any_of: Vec::new() };
-    Filter { conditions: properties.map(none).collect() }
-}
-
-fn filter_of(source: &FeatureSource) -> Filter {
-    let value = |scalar: &Scalar| match scalar {
-        Scalar::Bool(value) => serde_json::Value::from(*value),
-        Scalar::Number(value) => serde_json::Value::from(*value),
-        Scalar::Text(value) => serde_json::Value::from(value.as_str()),
-    };
-    let condition = |(property, wanted): (&String, &Vec<Scalar>)| Condition {
-        property: property.clone(),
-        any_of: wanted.iter().map(value).collect(),
-    };
-    let conditions = match source.selection.as_deref() {
-        Some(Selection::Matching(wanted)) => wanted.iter().map(condition).collect(),
-        _ => Vec::new(),
-    };
-    Filter { conditions }
 }

@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use glam::{DAffine2, DVec2};
 use sandtable_analysis::land::LandCover;
 use sandtable_base::message::choice::Choice;
+use sandtable_catalog::kind::LandPart;
 use sandtable_dem::dem_format::DemFormat;
 use sandtable_dem::write::write;
 use sandtable_description::diagnostic::Diagnostic;
@@ -21,7 +22,6 @@ use sandtable_ribbon::partition::overlap_m2;
 use sandtable_ribbon::texture::RibbonSurface;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
-use sandtable_catalog::kind::LandPart;
 use sandtable_scene::land::land_of;
 use sandtable_scene::scene_model::SceneModel;
 
@@ -122,7 +122,12 @@ fn classes_are_selected_by_number_and_water_makes_a_lake() {
                 [[lake]]\nfile = \"cover.tif\"\nwhere = { class = 80 }\n";
     let scene = built(WORLD_COVER, &NEAR, text).expect("a raster of classes");
     let area = |wanted: RibbonSurface| -> f64 {
-        scene.ribbons.iter().filter(|ribbon| ribbon.surface == wanted).map(|ribbon| ribbon.plan.area_m2()).sum()
+        scene
+            .ribbons
+            .iter()
+            .filter(|ribbon| ribbon.surface == wanted)
+            .map(|ribbon| ribbon.plan.area_m2())
+            .sum()
     };
     assert!((area(RibbonSurface::Cover(Cover::Forest)) / 9e4 - 0.4123).abs() < 0.005);
     assert!((area(RibbonSurface::Lake) / 9e4 - 0.0982).abs() < 0.005);
@@ -131,7 +136,8 @@ fn classes_are_selected_by_number_and_water_makes_a_lake() {
 #[test]
 fn a_raster_beside_the_ground_is_a_note_and_no_error() {
     let folder = folder(CORINE, &Square { side_m: 300, corner: [300_000.0, 4_982_800.0] }, ALL);
-    let (scene, findings) = open_linted(&folder.at("scene.toml"), &[], &|_| ()).expect("ground without areas");
+    let (scene, findings) =
+        open_linted(&folder.at("scene.toml"), &[], &|_| ()).expect("ground without areas");
     assert!(scene.ribbons.is_empty());
     let notes: Vec<String> = findings.into_iter().map(|finding| finding.message).collect();
     assert!(notes.iter().any(|note| note.contains("covers none of the ground")), "{notes:?}");
@@ -140,7 +146,7 @@ fn a_raster_beside_the_ground_is_a_note_and_no_error() {
 #[test]
 fn other_rasters_are_refused_with_what_was_found() {
     let message = |bytes: &[u8], text: &str| {
-        let error = built(bytes, &NEAR, text).expect_err("refused");
+        let error = built(bytes, &NEAR, text).map(drop).expect_err("refused");
         format!("{} {}", error.message(), error.help().unwrap_or_default())
     };
     let elevation = message(&elevation(), ALL);
@@ -154,14 +160,20 @@ fn other_rasters_are_refused_with_what_was_found() {
 
 /// A GeoTIFF of heights over the ground.
 fn elevation() -> Vec<u8> {
-    let place = DAffine2::from_scale_angle_translation(DVec2::new(10.0, -10.0), 0.0, DVec2::new(499_800.0, 4_983_200.0));
+    let place = DAffine2::from_scale_angle_translation(
+        DVec2::new(10.0, -10.0),
+        0.0,
+        DVec2::new(499_800.0, 4_983_200.0),
+    );
     let raster = Raster {
         map_from_grid: place,
         georeferenced: true,
         crs: Crs::from_epsg(32633).ok(),
         ..Raster::new(50, Samples::F32(vec![417.25; 2500]))
     };
-    write(&raster, DemFormat::to_write("tif").expect("a GeoTIFF"), "cover.tif").expect("it can be written").bytes
+    write(&raster, DemFormat::to_write("tif").expect("a GeoTIFF"), "cover.tif")
+        .expect("it can be written")
+        .bytes
 }
 
 #[test]

@@ -53,7 +53,10 @@ pub const EDGE_M: f64 = 12.0;
 /// Whether a cover grows or lies by nature; what is built, tilled or forbidden ends at a line.
 pub fn is_natural(cover: Cover) -> bool {
     use Cover::{BuiltUp, DenseBuiltUp, Field, Industry, Orchard, Paved, Quarry, Restricted, Vineyard};
-    !matches!(cover, BuiltUp | DenseBuiltUp | Industry | Restricted | Paved | Quarry | Field | Orchard | Vineyard)
+    !matches!(
+        cover,
+        BuiltUp | DenseBuiltUp | Industry | Restricted | Paved | Quarry | Field | Orchard | Vineyard
+    )
 }
 
 /// A texel of the strip in which a cover fades: nothing at `u` 0.5, where the outline is, all of the cover at 0 and 1.

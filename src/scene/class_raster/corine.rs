@@ -36,7 +36,11 @@ pub(super) static CLASSES: [LandClass; 44] = [
     class(231, "Pastures", Cover::Meadow),
     class(241, "Annual crops associated with permanent crops", Cover::Field),
     class(242, "Complex cultivation patterns", Cover::Field),
-    class(243, "Land principally occupied by agriculture, with significant areas of natural vegetation", Cover::Field),
+    class(
+        243,
+        "Land principally occupied by agriculture, with significant areas of natural vegetation",
+        Cover::Field,
+    ),
     class(244, "Agro-forestry areas", Cover::Orchard),
     class(311, "Broad-leaved forest", Cover::Forest),
     class(312, "Coniferous forest", Cover::Forest),

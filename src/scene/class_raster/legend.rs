@@ -87,9 +87,10 @@ impl ClassLegend {
         let mut fitting = all.iter().filter(fits).filter(|legend| holds(legend));
         // Of tens alone the size of cells decides.
         let found = if numbers_fit { fitting.next_back() } else { fitting.next() };
-        let likeliest = all.iter().filter(fits).max_by_key(|legend| {
-            bytes.iter().filter(|byte| legend.holds(**byte)).count()
-        });
+        let likeliest = all
+            .iter()
+            .filter(fits)
+            .max_by_key(|legend| bytes.iter().filter(|byte| legend.holds(**byte)).count());
         let stranger = bytes.iter().find(|byte| likeliest.is_none_or(|legend| !legend.holds(**byte)));
         found.copied().ok_or(UnknownClass(stranger.map_or(f64::NAN, |byte| value_of(*byte))))
     }
@@ -151,9 +152,10 @@ mod tests {
 
     #[test]
     fn every_class_has_a_byte_of_its_own_and_water_no_cover() {
-        for (legend, classes) in
-            [(ClassLegend::Corine, &corine::CLASSES[..]), (ClassLegend::WorldCover, &world_cover::CLASSES[..])]
-        {
+        for (legend, classes) in [
+            (ClassLegend::Corine, &corine::CLASSES[..]),
+            (ClassLegend::WorldCover, &world_cover::CLASSES[..]),
+        ] {
             assert!(classes.is_sorted_by_key(|class| class.code));
             for class in classes {
                 let byte = byte_of(class.code.into()).expect("a class");

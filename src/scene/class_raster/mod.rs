@@ -135,7 +135,9 @@ impl ClassRaster {
         if !raster.georeferenced {
             return Err(ClassRasterError::NoPlace { name: quoted(&name) });
         }
-        let Some(crs) = raster.crs.clone() else { return Err(ClassRasterError::NoCrs { name: quoted(&name) }) };
+        let Some(crs) = raster.crs.clone() else {
+            return Err(ClassRasterError::NoCrs { name: quoted(&name) });
+        };
         Ok(Self { name, windows, crs })
     }
 
@@ -145,8 +147,12 @@ impl ClassRaster {
     /// # Errors
     /// The raster is broken, or holds other values than classes.
     pub fn layer(mut self, ground: &Rect, ground_crs: &Crs) -> Result<VectorLayer, ClassRasterError> {
-        let mut layer =
-            VectorLayer { features: Vec::new(), crs: self.crs.clone(), notes: Vec::new(), faults: Vec::new() };
+        let mut layer = VectorLayer {
+            features: Vec::new(),
+            crs: self.crs.clone(),
+            notes: Vec::new(),
+            faults: Vec::new(),
+        };
         let Some(window) = self.window(ground, ground_crs) else {
             layer.notes.push(self.beside());
             return Ok(layer);
@@ -231,7 +237,11 @@ impl ClassRaster {
             bytes.iter().for_each(|byte| is_present[usize::from(*byte)] = true);
         }
         is_present[usize::from(NO_CLASS)] = false;
-        if is_present.contains(&true) { self.legend(&is_present) } else { Err(self.unknown(UnknownClass(f64::NAN))) }
+        if is_present.contains(&true) {
+            self.legend(&is_present)
+        } else {
+            Err(self.unknown(UnknownClass(f64::NAN)))
+        }
     }
 
     /// The side of a cell from row to row, meters.
