@@ -50,6 +50,10 @@ const MOST_MOVED: f64 = 0.4;
 /// stairs may be several cells long, shows none of them.
 const PASSES: usize = 24;
 
+/// The square of the sides around a patch for each such pass: each takes a share of the area of a small patch, all of them together
+/// about three percent.
+const SQUARED_SIDES_PER_PASS: usize = 640;
+
 /// The distance in cells within which vertices are left out: less than what the moving leaves between two borders.
 const TOLERANCE: f64 = 0.06;
 
@@ -346,7 +350,8 @@ fn smoothed(
     let ends = [corners[0].as_dvec2(), corners[corners.len() - 1].as_dvec2()];
     let mut moved = middles.to_vec();
     let mut next = moved.clone();
-    for _ in 0..PASSES {
+    let passes = if is_closed { (count * count / SQUARED_SIDES_PER_PASS).clamp(2, PASSES) } else { PASSES };
+    for _ in 0..passes {
         for index in (0..count).filter(|index| !is_fixed(middles[*index])) {
             let before = match index {
                 0 if is_closed => moved[count - 1],

@@ -16,9 +16,11 @@ use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::parse::parse_bytes;
 use sandtable_description::words::Cover;
 use sandtable_geom::crs::Crs;
+use sandtable_geom::polygon;
 use sandtable_lint::opened::open_linted;
 use sandtable_raster::raster::{Raster, Samples};
 use sandtable_ribbon::partition::overlap_m2;
+use sandtable_ribbon::plan::{PlanMesh, PlanVertex};
 use sandtable_ribbon::texture::RibbonSurface;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
@@ -66,13 +68,25 @@ fn built(bytes: &[u8], square: &Square, text: &str) -> Result<SceneModel, Diagno
     build(&document, &assets, &|_| ()).map_err(|errors| errors.into_first())
 }
 
+/// The area of what a plan covers of the ground, square meters.
+fn area_on(plan: &PlanMesh, square: &Square) -> f64 {
+    let side = f64::from(square.side_m);
+    let ground = [DVec2::ZERO, DVec2::new(side, 0.0), DVec2::splat(side), DVec2::new(0.0, side)];
+    let area = |corners: [PlanVertex; 3]| {
+        let mut part: Vec<DVec2> = polygon::counter_clockwise(&corners.map(|corner| corner.at));
+        polygon::clip_convex(&mut part, &mut Vec::new(), &ground);
+        polygon::doubled_area(&part).abs() / 2.0
+    };
+    plan.corners().map(area).sum()
+}
+
 /// The share of the ground that each cover has.
 fn shares(scene: &SceneModel, square: &Square) -> BTreeMap<&'static str, f64> {
     let mut shares = BTreeMap::new();
     for ribbon in &scene.ribbons {
         let RibbonSurface::Cover(cover) = ribbon.surface else { panic!("{:?}", ribbon.surface) };
         let word = cover.word();
-        *shares.entry(word).or_default() += ribbon.plan.area_m2() / f64::from(square.side_m).powi(2);
+        *shares.entry(word).or_default() += area_on(&ribbon.plan, square) / f64::from(square.side_m).powi(2);
     }
     shares
 }
