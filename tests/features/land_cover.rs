@@ -140,7 +140,7 @@ fn classes_are_selected_by_number_and_water_makes_a_lake() {
             .ribbons
             .iter()
             .filter(|ribbon| ribbon.surface == wanted)
-            .map(|ribbon| ribbon.plan.area_m2())
+            .map(|ribbon| area_on(&ribbon.plan, &NEAR))
             .sum()
     };
     assert!((area(RibbonSurface::Cover(Cover::Forest)) / 9e4 - 0.4123).abs() < 0.005);
