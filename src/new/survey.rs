@@ -117,7 +117,7 @@ pub enum SurveyError {
     Vector(#[from] FileError<VectorError>),
     /// The file is a raster, but none of land cover.
     #[error(transparent)]
-    LandCover(#[from] ClassRasterError),
+    LandCover(#[from] Box<ClassRasterError>),
 }
 
 /// The classification of a raster of land cover, or of that at an address; `None` of a file that is no TIFF.
@@ -133,7 +133,8 @@ pub(super) fn land_cover(file: &Path) -> Result<Option<ClassLegend>, SurveyError
     let hints = DemHints { companions: &|name| companions.get(name), ..DemHints::default() };
     let raster = ClassRaster::of_content(&disk::file_name(file), content, &hints);
     companions.check()?;
-    Ok(Some(raster?.sampled_legend()?))
+    let legend = raster.and_then(|mut raster| raster.sampled_legend());
+    Ok(Some(legend.map_err(Box::new)?))
 }
 
 /// Surveys each layer of a vector file, or of that at an address.
