@@ -32,7 +32,7 @@ pub struct NewArguments {
     /// The elevation file, or its address; several are tiles of one raster
     #[arg(long, value_name = "FILE", num_args = 1.., required = true)]
     pub dem: Vec<PathBuf>,
-    /// Vector files for the features on the ground, or their addresses
+    /// Vector files for the features on the ground and rasters of land cover (ESA WorldCover, CORINE), or their addresses
     #[arg(long, value_name = "FILE", num_args = 1..)]
     pub vectors: Vec<PathBuf>,
     /// Files of units and graphics, or their addresses: ORBAT Mapper, MSDL, NVG, MilX, Cursor on Target, KML, tables; those of

@@ -18,7 +18,8 @@ table! {
         /// Inline coordinates, each in ±10⁹. The last point of a ring may repeat its first.
         points: Option<Stated<Vec<Position>>> = key::points(LEAST), otherwise "by `file`", unless ["file"];
         /// A vector file, or its address: GeoJSON, shapefile, GeoPackage, FlatGeobuf, GPX, KML, CityJSON, LandXML, DXF or OpenStreetMap,
-        /// or a table: CSV, TSV, xlsx or ods.
+        /// or a table: CSV, TSV, xlsx or ods; or a GeoTIFF of land cover, ESA WorldCover or CORINE, of which each patch is a polygon with
+        /// the properties `class`, `name` and, but water, `cover`.
         file: Option<Stated<String>> = key::file(), otherwise "by `points`", unless ["points"];
         /// With `file`: the layer of a file that holds several.
         layer: Option<Stated<String>> = key::filled_text(), otherwise "the file's only layer", unless ["points"];

@@ -189,7 +189,7 @@ table! {
         name: Option<String> = key::text(), otherwise "the property `name`";
         /// The outline.
         source: FeatureSource = table_key::source::<RING>(), inline;
-        /// What covers the area.
+        /// What covers the area; of a raster of land cover "(cover)", the cover of each patch.
         cover: FeatureValue<Cover> = key::feature_word::<Cover>(), required;
         /// Color that multiplies the texture; its alpha lets the ground through.
         color: Option<Color> = key::color(), otherwise "the cover's own";

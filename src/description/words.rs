@@ -245,6 +245,7 @@ words! {
         Quarry = "quarry": "a pit with benches",
         Paved = "paved": "squares and yards without houses",
         BuiltUp = "built-up": "houses and yards",
+        DenseBuiltUp = "dense-built-up": "houses wall to wall, streets and courts",
         Industry = "industry": "halls and yards",
         Restricted = "restricted": "closed ground, hatched",
     }

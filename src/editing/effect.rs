@@ -147,7 +147,7 @@ fn added_works(
     assets: &Assets,
     scene: &SceneModel,
 ) -> Result<Vec<Earthwork>, Diagnostic> {
-    let frame = WorldFrame::new(after, &scene.crs, &scene.stated_crs, scene.lattice.origin());
+    let frame = WorldFrame::new(after, &scene.crs, &scene.stated_crs, scene.lattice.map_extent());
     let sources = Sources::new(&frame, assets);
     let mut works = Vec::new();
     for table in after.earthworks.iter().skip(before.earthworks.len()) {
@@ -197,7 +197,7 @@ fn moved([before, after]: [&Document; 2], scene: &SceneModel) -> Option<EffectOf
 
 /// Where a model at one place stands, as the scene builds it.
 fn pose(document: &Document, table: &ModelPlacement, scene: &SceneModel) -> Option<MovedModel> {
-    let frame = WorldFrame::new(document, &scene.crs, &scene.stated_crs, scene.lattice.origin());
+    let frame = WorldFrame::new(document, &scene.crs, &scene.stated_crs, scene.lattice.map_extent());
     let at: DVec2 = frame.point(table.at.as_ref()?, table.crs.as_ref()).ok()?;
     let heading_rad = (heading_deg(table) as f32).to_radians();
     Some(MovedModel { placement: 0, at: at.as_vec2(), heading_rad })
@@ -252,7 +252,7 @@ pub(super) fn place_of_label(
     scene: &SceneModel,
 ) -> Option<EditPlace> {
     let wanted = scene.labels.get(label)?.ground.truncate();
-    let frame = WorldFrame::new(document, &scene.crs, &scene.stated_crs, scene.lattice.origin());
+    let frame = WorldFrame::new(document, &scene.crs, &scene.stated_crs, scene.lattice.map_extent());
     let stands_there = |table: &&LabelTable| {
         let at = table.at.as_ref().and_then(|at| frame.point(at, table.crs.as_ref()).ok());
         at.is_some_and(|at| at.as_vec2() == wanted)

@@ -77,7 +77,7 @@ const CHECKS: &[(&str, LintCheck)] = &[
 /// The findings about `scene`, which was built of `document` and `assets`, in the order of output: those of building it, and
 /// those of every check.
 pub fn lint(document: &Document, assets: &Assets, scene: &SceneModel) -> Vec<Finding> {
-    let frame = WorldFrame::new(document, &scene.crs, &scene.stated_crs, scene.lattice.origin());
+    let frame = WorldFrame::new(document, &scene.crs, &scene.stated_crs, scene.lattice.map_extent());
     let sources = Sources::new(&frame, assets);
     let context = LintContext { document, scene, sources: &sources };
     let mut sink = FindingSink::default();

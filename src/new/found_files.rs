@@ -30,7 +30,7 @@ const VECTOR_EXTENSIONS: [&str; 12] =
 pub enum FoundKind {
     /// A file of elevation.
     Elevation,
-    /// A file of lines, polygons or points.
+    /// A file of lines, polygons or points, or a raster of land cover.
     Vector,
 }
 
@@ -41,7 +41,7 @@ pub struct FoundFiles {
     pub scenes: Vec<PathBuf>,
     /// Files of elevation.
     pub elevation: Vec<PathBuf>,
-    /// Vector files.
+    /// Vector files and rasters of land cover.
     pub vectors: Vec<PathBuf>,
     /// Whether the folder has more names than were read.
     pub has_more: bool,
@@ -50,10 +50,22 @@ pub struct FoundFiles {
 /// What the file called `name` is; `None` where the name says neither.
 pub fn kind_of_name(name: &Path) -> Option<FoundKind> {
     let extension = name.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-    if VECTOR_EXTENSIONS.iter().any(|known| known.eq_ignore_ascii_case(extension)) {
+    let is_vector = VECTOR_EXTENSIONS.iter().any(|known| known.eq_ignore_ascii_case(extension));
+    if is_vector || is_land_cover_name(name) {
         return Some(FoundKind::Vector);
     }
     is_tile_name(&disk::file_name(name)).then_some(FoundKind::Elevation)
+}
+
+/// Whether a TIFF is called as the rasters of ESA WorldCover and CORINE are: `ESA_WorldCover_10m_2021_v200_N42E006_Map.tif`,
+/// `U2018_CLC2018_V2020_20u1.tif`.
+fn is_land_cover_name(name: &Path) -> bool {
+    let name = disk::file_name(name).to_ascii_lowercase();
+    let is_tiff = name.ends_with(".tif") || name.ends_with(".tiff");
+    let has_year = |(_, after): (&str, &str)| after.starts_with(|letter: char| letter.is_ascii_digit());
+    is_tiff
+        && (["worldcover", "corine"].iter().any(|product| name.contains(product))
+            || name.split_once("clc").is_some_and(has_year))
 }
 
 /// The files of `folder` that are of use; none where it cannot be read.
@@ -103,6 +115,19 @@ fn has_terrain(path: &Path) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rasters_of_land_cover_are_no_elevation_by_their_names() {
+        for name in
+            ["ESA_WorldCover_10m_2021_v200_N42E006_Map.tif", "a/U2018_CLC2018_V2020_20u1.tif", "corine.TIFF"]
+        {
+            assert_eq!(kind_of_name(Path::new(name)), Some(FoundKind::Vector), "{name}");
+        }
+        for name in ["dem.tif", "clc/dem.tif", "cyclcross.tif"] {
+            assert_eq!(kind_of_name(Path::new(name)), Some(FoundKind::Elevation), "{name}");
+        }
+        assert_eq!(kind_of_name(Path::new("worldcover.png")), None);
+    }
 
     #[test]
     fn scenes_elevation_and_vectors_are_told_apart() {

@@ -42,6 +42,7 @@ use sandtable_raster::undeclared::undeclared_nodata;
 use sandtable_remote::address::is_address_path;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build_with;
+use sandtable_scene::class_raster::legend::ClassLegend;
 use sandtable_scene::planned_pictures::{ElevationNeed, PlannedPictures};
 use sandtable_scene::scene_file::OpenSceneError;
 use sandtable_scene::scene_model::SceneModel;
@@ -54,9 +55,10 @@ const CONTOURS: f64 = 12.0;
 pub struct NewSceneOptions {
     /// The folder for the scene file; it is made where it does not exist.
     pub folder: PathBuf,
-    /// Elevation files, tiles of one raster, or their addresses; at least one.
+    /// Elevation files, tiles of one raster, or their addresses; at least one. Rasters of land cover among them count as
+    /// `vectors`.
     pub dem: Vec<PathBuf>,
-    /// Vector files, or their addresses.
+    /// Vector files and rasters of land cover, or their addresses.
     pub vectors: Vec<PathBuf>,
     /// Files of units and graphics, or their addresses.
     pub overlays: Vec<PathBuf>,
@@ -83,6 +85,8 @@ pub struct WrittenScene {
 pub enum NewSceneError {
     #[error("{}: this file exists already; remove it, or name another folder", .0.display())]
     Exists(PathBuf),
+    #[error("{}: this is land cover and no elevation; name an elevation file, too", file_list(.0))]
+    NoElevation(Vec<PathBuf>),
     #[error(transparent)]
     Folder(#[from] FolderError),
     #[error(transparent)]
@@ -91,6 +95,10 @@ pub enum NewSceneError {
     Ground(#[from] OpenSceneError),
     #[error(transparent)]
     Write(#[from] WriteFileError),
+}
+
+fn file_list(files: &[PathBuf]) -> String {
+    files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>().join(", ")
 }
 
 /// Writes a scene file. `progress` is called with the name of each step as it begins.
@@ -107,9 +115,16 @@ pub fn write(
         return Err(NewSceneError::Exists(path));
     }
     let folder = SceneFolder::new(&options.folder)?;
-    let dem = options.dem.iter().map(|file| folder.name_of(file)).collect::<Result<Vec<_>, _>>()?;
-    let mut vectors =
-        options.vectors.iter().map(|file| survey_file(file, &folder)).collect::<Result<Vec<_>, _>>()?;
+    let (elevation, covers) = elevation_and_covers(&options.dem);
+    if elevation.is_empty() {
+        return Err(NewSceneError::NoElevation(options.dem.clone()));
+    }
+    let dem = elevation.iter().map(|file| folder.name_of(file)).collect::<Result<Vec<_>, _>>()?;
+    let mut vectors = covers
+        .into_iter()
+        .chain(&options.vectors)
+        .map(|file| survey_file(file, &folder))
+        .collect::<Result<Vec<_>, _>>()?;
     let overlays =
         options.overlays.iter().map(|file| overlays::survey(file, &folder)).collect::<Result<Vec<_>, _>>()?;
     let on_disk = options
@@ -125,7 +140,7 @@ pub fn write(
     let is_new = !options.folder.exists();
     let system = |error: io::Error| WriteFileError::new(&path, SystemError::from(error));
     fs::create_dir_all(&options.folder).map_err(system)?;
-    let mut draft = complete(&path, draft, &mut vectors, &allowed, &options.dem[0]).inspect_err(|_| {
+    let mut draft = complete(&path, draft, &mut vectors, &allowed, elevation[0]).inspect_err(|_| {
         if is_new {
             // Does nothing where the folder is no longer empty.
             let _ = fs::remove_dir(&options.folder);
@@ -139,7 +154,22 @@ pub fn write(
 }
 
 fn survey_file(file: &Path, folder: &SceneFolder) -> Result<VectorDraft, NewSceneError> {
-    Ok(VectorDraft { file: folder.name_of(file)?, layers: survey::layers(file)? })
+    let name = folder.name_of(file)?;
+    Ok(match survey::land_cover(file)? {
+        Some(legend) => VectorDraft { file: name, layers: Vec::new(), land_cover: Some(legend) },
+        None => VectorDraft { file: name, layers: survey::layers(file)?, land_cover: None },
+    })
+}
+
+/// Those of the files named as elevation that are, and those that are rasters of land cover. CORINE's numbers from 1 to 44 are
+/// taken for elevation, which may have these values.
+fn elevation_and_covers(files: &[PathBuf]) -> (Vec<&PathBuf>, Vec<&PathBuf>) {
+    let is_cover = |file: &&PathBuf| {
+        let legend = survey::land_cover(file).ok().flatten();
+        legend.is_some_and(|legend| legend != ClassLegend::CorineNumbers)
+    };
+    let (covers, elevation) = files.iter().partition(is_cover);
+    (elevation, covers)
 }
 
 /// Completes the draft from the elevation, whose first file is `dem`: heights, extent, cameras and title.

@@ -16,7 +16,9 @@ use serde_json::Value;
 use crate::buildings::SurveyedBuildings;
 use crate::named::{NamedArea, NamedDistrict, NamedPlace, districts, named_place, names, only_area, parks};
 use crate::rules::{BOUNDARIES, NAMES, PEAKS, RULES, TableRule};
-use sandtable_base::limits::ASSET_BYTES;
+use sandtable_base::limits::{ASSET_BYTES, COMPANION_BYTES};
+use sandtable_dem::hints::DemHints;
+use sandtable_dem::tiff::windows::is_tiff;
 use sandtable_description::expression::Expression;
 use sandtable_files::addressed;
 use sandtable_files::disk::{self, ReadFileError};
@@ -24,6 +26,8 @@ use sandtable_files::error::FileError;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::polygon;
 use sandtable_scene::attributes::Attributes;
+use sandtable_scene::class_raster::legend::ClassLegend;
+use sandtable_scene::class_raster::{ClassRaster, ClassRasterError};
 use sandtable_vector::error::VectorError;
 use sandtable_vector::feature::{Feature, Geometry, VectorLayer};
 use sandtable_vector::hints::VectorHints;
@@ -111,6 +115,26 @@ pub enum SurveyError {
     /// The file is not one that is read.
     #[error(transparent)]
     Vector(#[from] FileError<VectorError>),
+    /// The file is a raster, but none of land cover.
+    #[error(transparent)]
+    LandCover(#[from] Box<ClassRasterError>),
+}
+
+/// The classification of a raster of land cover, or of that at an address; `None` of a file that is no TIFF.
+///
+/// # Errors
+/// See [`SurveyError`]: the file holds other values than classes, too.
+pub(super) fn land_cover(file: &Path) -> Result<Option<ClassLegend>, SurveyError> {
+    let (head, content) = addressed::open(file)?;
+    if !is_tiff(&head) {
+        return Ok(None);
+    }
+    let companions = addressed::companions(file, COMPANION_BYTES.get());
+    let hints = DemHints { companions: &|name| companions.get(name), ..DemHints::default() };
+    let raster = ClassRaster::of_content(&disk::file_name(file), content, &hints);
+    companions.check()?;
+    let legend = raster.and_then(|mut raster| raster.sampled_legend());
+    Ok(Some(legend.map_err(Box::new)?))
 }
 
 /// Surveys each layer of a vector file, or of that at an address.

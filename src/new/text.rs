@@ -15,6 +15,7 @@ use crate::title;
 use sandtable_base::limits::SCENE_GRAPHICS;
 use sandtable_geom::rect::Rect;
 use sandtable_raster::undeclared::UndeclaredNodata;
+use sandtable_scene::class_raster::legend::ClassLegend;
 
 /// The properties of the scene; zero and empty before they are determined.
 #[derive(Default)]
@@ -47,6 +48,8 @@ pub(super) struct VectorDraft {
     /// The file as the scene file names it.
     pub file: String,
     pub layers: Vec<SurveyedLayer>,
+    /// The classification of a raster of land cover, which has no layers.
+    pub land_cover: Option<ClassLegend>,
 }
 
 /// A file and one of its layers.
@@ -63,8 +66,20 @@ pub(super) fn scene(draft: &SceneDraft, vectors: &[VectorDraft], overlays: &[Ove
     out.push_str(&style(draft));
     let sources: Vec<LayerSource<'_>> = vectors
         .iter()
-        .flat_map(|VectorDraft { file, layers }| layers.iter().map(move |layer| LayerSource { file, layer }))
+        .flat_map(|VectorDraft { file, layers, .. }| {
+            layers.iter().map(move |layer| LayerSource { file, layer })
+        })
         .collect();
+    for VectorDraft { file, land_cover, .. } in vectors {
+        if let Some(legend) = land_cover {
+            let (file, name) = (quoted(file), legend.name());
+            let _ = writeln!(
+                out,
+                "\n# Land cover by {name}. Its water has no cover: lakes, rivers and coasts draw it.\n[[area]]\nfile = {file}\n\
+                 where = \"cover\"\ncover = \"(cover)\""
+            );
+        }
+    }
     for rule in RULES {
         for &source in &sources {
             for found in source.layer.matches.iter().filter(|found| ptr::eq(found.rule, rule)) {

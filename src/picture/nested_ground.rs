@@ -86,7 +86,7 @@ fn nested_ground(
     finer: &FinerElevation,
     plan: &NestedPlan,
 ) -> Result<NestedGround, Diagnostic> {
-    let frame = WorldFrame::new(&finer.document, &outer.crs, &outer.stated_crs, outer.lattice.origin());
+    let frame = WorldFrame::new(&finer.document, &outer.crs, &outer.stated_crs, outer.lattice.map_extent());
     let document = part_document(&frame, &plan.rect)?;
     let need = ElevationNeed::Nested { step: plan.step };
     let scene = build_with(&document, &finer.assets, need, &|_| ());

@@ -4,6 +4,9 @@
 pub mod answer;
 pub mod cache;
 pub mod cell_grid;
+pub mod class_grid;
+pub mod class_outlines;
+pub mod class_sieve;
 pub mod content;
 pub mod crop;
 pub mod error;

@@ -2,7 +2,7 @@
 //!
 //! Areas lie below everything else on the ground, and a later one over an earlier. Textures are laid out in world meters,
 //! so that areas side by side make one pattern. Natural covers fade along their outlines, as they grow;
-//! what has a border, or is built, ends there.
+//! what has a border, or is built, ends there, and so do the patches of a raster of land cover, which adjoin each other.
 
 use glam::DVec2;
 
@@ -42,12 +42,17 @@ pub fn lay(
     for table in &document.areas {
         let (mut bare, mut off, mut empty) = (0, 0, 0);
         let mut crossed = CrossedShapes::default();
-        for Sourced { attributes, shape, crossings } in sources.polygons(&table.source)? {
+        let polygons = sources.polygons(&table.source)?;
+        let outline = match sources.is_class_raster(&table.source) {
+            true => AreaOutline::Shared,
+            false => AreaOutline::Own,
+        };
+        for Sourced { attributes, shape, crossings } in polygons {
             let Some(cover) = attributes.value(Some(&table.cover)) else {
                 bare += 1;
                 continue;
             };
-            let Some(patch) = AreaPatch::of(table, cover, (&shape, crossings), extent) else {
+            let Some(patch) = AreaPatch::of((table, outline), cover, (&shape, crossings), extent) else {
                 let is_empty = crossings == 0 && polygon::doubled_area(&shape.exterior).abs() < LEAST_M2;
                 *if is_empty { &mut empty } else { &mut off } += 1;
                 continue;
@@ -61,7 +66,9 @@ pub fn lay(
         crossed.report(("area", outcome), table.source.span(), sources.frame, &mut collected.findings);
         let named =
             FeatureTable { kind: FeatureKind::Area, name: table.name.as_deref(), source: &table.source };
-        collected.findings.left_out(off, &named, "off the elevation model");
+        if outline == AreaOutline::Own {
+            collected.findings.left_out(off, &named, "off the elevation model");
+        }
         collected.findings.without_extent(empty, &named, "their outlines enclose no area");
         collected.findings.left_out(bare, &named, "their properties name no cover");
     }
@@ -77,6 +84,15 @@ fn without_crossings(shape: &Polygon, crossings: usize) -> Vec<PolygonRings> {
         0 => vec![shape.rings().cloned().collect()],
         _ => region::even_odd(shape.rings().map(Vec::as_slice)),
     }
+}
+
+/// Whether what is beside an area is known.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum AreaOutline {
+    /// Natural covers fade toward bare ground.
+    Own,
+    /// Its neighbors begin where it ends: ground would show between covers that fade.
+    Shared,
 }
 
 /// One area, ready to be laid.
@@ -95,7 +111,7 @@ impl AreaPatch {
     /// Where it is several polygons, each has the line and the edge along its own outline, cut to itself: what does not
     /// depend on the others need not be held against them.
     fn of(
-        table: &AreaTable,
+        (table, outline): (&AreaTable, AreaOutline),
         cover: Cover,
         (shape, crossings): (&Polygon, usize),
         extent: &Rect,
@@ -109,18 +125,25 @@ impl AreaPatch {
         let parts = without_crossings(shape, crossings);
         let corners: usize = parts.iter().flatten().map(Vec::len).sum();
         for part in &parts {
-            patch.add(table, part, corners, extent);
+            patch.add((table, outline), part, corners, extent);
         }
         (!patch.fill.triangles.is_empty()).then_some(patch)
     }
 
     /// Adds one of its polygons, which have so many `corners` in all.
-    fn add(&mut self, table: &AreaTable, rings: &[Vec<DVec2>], corners: usize, extent: &Rect) {
+    fn add(
+        &mut self,
+        (table, outline): (&AreaTable, AreaOutline),
+        rings: &[Vec<DVec2>],
+        corners: usize,
+        extent: &Rect,
+    ) {
         let (cover, width_m) = (self.cover, table.border_width);
         let mut fill = Clipped { plan: PlanMesh::default(), extent };
         area::fill(&rings[0], &rings[1..], texture_m(cover, width_m), &mut fill);
         let rings: Vec<&[DVec2]> = rings.iter().map(Vec::as_slice).collect();
-        if is_natural(cover) && border_of(table, cover) == Border::None && corners <= MOST_FADED {
+        let fades = outline == AreaOutline::Own && is_natural(cover);
+        if fades && border_of(table, cover) == Border::None && corners <= MOST_FADED {
             let faded_m = EDGE_M.min(fill.plan.area_m2().sqrt() * FADED);
             self.edge.append(&edge(&rings, &fill.plan, faded_m, cover_length_m(cover)));
         }

@@ -131,7 +131,7 @@ pub fn build_with(
     };
     let loaded = ground::load(document, assets, need)?;
     let (crs, stated_crs, mut lattice) = (loaded.crs, loaded.stated_crs, loaded.lattice);
-    let frame = WorldFrame::new(document, &crs, &stated_crs, lattice.origin());
+    let frame = WorldFrame::new(document, &crs, &stated_crs, lattice.map_extent());
 
     progress("laying features");
     let sources = Sources::new(&frame, assets);

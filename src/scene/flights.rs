@@ -66,7 +66,7 @@ pub fn flight(
     scene: &SceneModel,
 ) -> Result<SceneFlight, Diagnostic> {
     let lattice = &scene.lattice;
-    let frame = &WorldFrame::new(document, &scene.crs, &scene.stated_crs, lattice.origin());
+    let frame = &WorldFrame::new(document, &scene.crs, &scene.stated_crs, lattice.map_extent());
     let sources = Sources::new(frame, assets);
     let lines = sources.lines(&table.source)?;
     let mut findings = SceneFindings::new(document);

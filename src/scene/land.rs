@@ -147,7 +147,7 @@ fn land_cover(cover: Cover) -> Option<land::LandCover> {
         Cover::Sand => land::LandCover::Sand,
         Cover::Rock | Cover::Scree | Cover::Glacier | Cover::Quarry => land::LandCover::Rock,
         Cover::Paved => land::LandCover::Paved,
-        Cover::BuiltUp | Cover::Industry => land::LandCover::BuiltUp,
+        Cover::BuiltUp | Cover::DenseBuiltUp | Cover::Industry => land::LandCover::BuiltUp,
         _ => return None,
     })
 }

@@ -42,7 +42,7 @@ pub(super) fn shape_loaded(
     assets: &Assets,
     loaded: &mut LoadedGround,
 ) -> Result<Vec<SurfaceTriangle>, Diagnostic> {
-    let frame = WorldFrame::new(document, &loaded.crs, &loaded.stated_crs, loaded.lattice.origin());
+    let frame = WorldFrame::new(document, &loaded.crs, &loaded.stated_crs, loaded.lattice.map_extent());
     let sources = Sources::new(&frame, assets);
     let mut collected = SceneBuilder::new(loaded.findings.clone());
     shape(document, &sources, &mut loaded.lattice, &mut collected);

@@ -9,16 +9,16 @@ use glam::DVec2;
 
 use crate::assets::Assets;
 use crate::attributes::Attributes;
+use crate::class_raster::{ClassRaster, ClassRasterError};
 use crate::scene_findings::SceneFindings;
+use crate::source_filter::{filter_of, values_of};
 use crate::source_reach::SourceReach;
 use crate::world_frame::WorldFrame;
 use sandtable_base::limits::{ASSET_BYTES, RING_CROSSINGS};
 use sandtable_base::message::suggest::quoted;
 use sandtable_description::diagnostic::Diagnostic;
-use sandtable_description::expression::Expression;
 use sandtable_description::feature_source::FeatureSource;
 use sandtable_description::finding_code::FindingCode;
-use sandtable_description::scalar::Scalar;
 use sandtable_description::selection::Selection;
 use sandtable_description::stated::Stated;
 use sandtable_geom::crs::{Crs, CrsError};
@@ -26,7 +26,7 @@ use sandtable_geom::self_crossing::count_crossings;
 use sandtable_vector::cityjson::CityModel;
 use sandtable_vector::error::{VectorError, did_you_mean, list};
 use sandtable_vector::feature::{Geometry, Polygon, VectorLayer};
-use sandtable_vector::filter::{Condition, Filter};
+use sandtable_vector::filter::Filter;
 use sandtable_vector::hints::VectorHints;
 use sandtable_vector::read::{self, LayeredFile, VectorFile};
 
@@ -44,6 +44,8 @@ pub struct Sources<'a> {
     layered: RefCell<BTreeMap<String, LayeredFile>>,
     /// The surfaces of CityJSON files.
     city_models: RefCell<BTreeMap<LayerKey, Arc<CityModel>>>,
+    /// The files that are rasters of land cover: what is taken of them is what lies on the ground, which may be nothing.
+    class_rasters: RefCell<BTreeSet<String>>,
     /// The systems that files state and the scene overrides.
     overridden: RefCell<BTreeMap<LayerKey, Crs>>,
     /// How many crossings more the scene's polygons may have with themselves.
@@ -83,6 +85,7 @@ impl<'a> Sources<'a> {
             layers: RefCell::default(),
             layered: RefCell::default(),
             city_models: RefCell::default(),
+            class_rasters: RefCell::default(),
             overridden: RefCell::default(),
             crossings_left,
             reaches: RefCell::default(),
@@ -219,6 +222,11 @@ impl<'a> Sources<'a> {
         Ok(self.city_models.borrow().get(&key).cloned())
     }
 
+    /// Whether the polygons of a source that was read are those of a raster of land cover, which adjoin each other.
+    pub fn is_class_raster(&self, source: &FeatureSource) -> bool {
+        source.file.as_ref().is_some_and(|file| self.class_rasters.borrow().contains(file.as_str()))
+    }
+
     /// The shapes that `pick` takes from every feature that matches, unplaced.
     fn shapes<T>(
         &self,
@@ -255,7 +263,7 @@ impl<'a> Sources<'a> {
             let sourced = |shape| Sourced { attributes: attributes.clone(), shape, crossings: 0 };
             shapes.extend(picked.into_iter().map(sourced));
         }
-        if shapes.is_empty() {
+        if shapes.is_empty() && !self.class_rasters.borrow().contains(file.as_str()) {
             return Err(self.nothing_found(source, file, &filter, &layer));
         }
         self.note_other_shapes(file, &of_other_shape);
@@ -324,8 +332,14 @@ impl<'a> Sources<'a> {
             return Ok(Arc::clone(layer));
         }
         if let Some(given) = self.assets.given().layer(file) {
-            self.check_given(file, source)?;
+            self.check_only_layer(file, source, "features in memory")?;
             let layer = self.given_layer(given, &key, stated);
+            self.note_reading(file, &layer);
+            self.layers.borrow_mut().insert(key, Arc::clone(&layer));
+            return Ok(layer);
+        }
+        if let Some(layer) = self.class_layer(file, source, &key)? {
+            let layer = Arc::new(layer);
             self.note_reading(file, &layer);
             self.layers.borrow_mut().insert(key, Arc::clone(&layer));
             return Ok(layer);
@@ -349,11 +363,32 @@ impl<'a> Sources<'a> {
         Ok(layer)
     }
 
-    /// Refuses keys that say where features are in a file, of features in memory.
-    fn check_given(&self, file: &Stated<String>, source: &FeatureSource) -> Result<(), Diagnostic> {
+    /// The polygons of a raster of land cover over the ground; `None` of another file.
+    fn class_layer(
+        &self,
+        file: &Stated<String>,
+        source: &FeatureSource,
+        key: &LayerKey,
+    ) -> Result<Option<VectorLayer>, Diagnostic> {
+        let overridden = |own: &Crs| drop(self.overridden.borrow_mut().insert(key.clone(), own.clone()));
+        let failed = |error: ClassRasterError| self.frame.document.error(file, error);
+        let opened = ClassRaster::open(file, self.assets, source.crs.as_ref(), &overridden);
+        let Some(raster) = opened.map_err(failed)? else { return Ok(None) };
+        self.check_only_layer(file, source, "a raster of land cover")?;
+        self.class_rasters.borrow_mut().insert(file.to_string());
+        raster.layer(&self.frame.extent, self.frame.crs).map(Some).map_err(failed)
+    }
+
+    /// Refuses keys that say where features are in a file, of what holds one layer and no columns.
+    fn check_only_layer(
+        &self,
+        file: &Stated<String>,
+        source: &FeatureSource,
+        what: &str,
+    ) -> Result<(), Diagnostic> {
         let key = source.layer.as_ref().map(|_| "layer").or(source.columns.as_ref().map(|_| "columns"));
         let Some(key) = key else { return Ok(()) };
-        let message = format!("`{key}` has no effect on '{}', which is features in memory", quoted(file));
+        let message = format!("`{key}` has no effect on '{}', which is {what}", quoted(file));
         let error = self.frame.document.error(file, message).with_code(FindingCode::NoEffect);
         Err(error.with_help("leave it out: it says what is read of a file"))
     }
@@ -484,7 +519,10 @@ impl<'a> Sources<'a> {
             })
             .collect::<Result<_, _>>()
             .map_err(|error| self.frame.document.error_at(source.span(), error))?;
-        self.reaches.borrow_mut().insert(source.span().start, reach.into_inner());
+        // Of a raster the part around the ground is read: that it reaches beyond says nothing.
+        if !self.is_class_raster(source) {
+            self.reaches.borrow_mut().insert(source.span().start, reach.into_inner());
+        }
         Ok(placed)
     }
 
@@ -541,28 +579,4 @@ fn closed(mut ring: Vec<DVec2>) -> Option<Polygon> {
         ring.pop();
     }
     (ring.len() >= 3).then_some(Polygon { exterior: ring, holes: Vec::new() })
-}
-
-/// A filter that no feature matches, so that it explains which values the properties of an expression have.
-fn values_of(condition: &Expression) -> Filter {
-    let properties = condition.properties().into_iter();
-    let none = |property: &str| Condition { property: property.to_owned(), any_of: Vec::new() };
-    Filter { conditions: properties.map(none).collect() }
-}
-
-fn filter_of(source: &FeatureSource) -> Filter {
-    let value = |scalar: &Scalar| match scalar {
-        Scalar::Bool(value) => serde_json::Value::from(*value),
-        Scalar::Number(value) => serde_json::Value::from(*value),
-        Scalar::Text(value) => serde_json::Value::from(value.as_str()),
-    };
-    let condition = |(property, wanted): (&String, &Vec<Scalar>)| Condition {
-        property: property.clone(),
-        any_of: wanted.iter().map(value).collect(),
-    };
-    let conditions = match source.selection.as_deref() {
-        Some(Selection::Matching(wanted)) => wanted.iter().map(condition).collect(),
-        _ => Vec::new(),
-    };
-    Filter { conditions }
 }

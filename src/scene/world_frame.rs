@@ -10,6 +10,7 @@ use sandtable_description::finding_code::FindingCode;
 use sandtable_description::stated::Stated;
 use sandtable_geom::crs::{Crs, CrsError};
 use sandtable_geom::position::Position;
+use sandtable_geom::rect::Rect;
 use sandtable_raster::answer::Answer;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::query::{Interpolation, ground_height};
@@ -24,17 +25,19 @@ pub struct WorldFrame<'a> {
     pub points_crs: Crs,
     /// Map coordinates of world (0, 0).
     pub origin: DVec2,
+    /// The ground, in map coordinates.
+    pub extent: Rect,
     /// How elevations are drawn.
     pub scale: VerticalScale,
 }
 
 impl<'a> WorldFrame<'a> {
-    /// The frame of a document whose ground lies in `crs`, from `origin` on; `stated_crs` is the system that the document
-    /// or its elevation states.
-    pub fn new(document: &'a Document, crs: &'a Crs, stated_crs: &Crs, origin: DVec2) -> Self {
+    /// The frame of a document whose ground is `extent` of `crs`; `stated_crs` is the system that the document or its
+    /// elevation states.
+    pub fn new(document: &'a Document, crs: &'a Crs, stated_crs: &Crs, extent: Rect) -> Self {
         let points_crs = document.points_crs.as_ref().unwrap_or(stated_crs).clone();
         let scale = VerticalScale(document.terrain.vertical_exaggeration as f32);
-        Self { document, crs, points_crs, origin, scale }
+        Self { document, crs, points_crs, origin: extent.min, extent, scale }
     }
 
     /// World X and Y of a point in `from`.

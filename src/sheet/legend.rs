@@ -223,7 +223,7 @@ impl ShownClass {
                 Cover::Field => PrintPattern::Furrows,
                 Cover::Orchard | Cover::Vineyard => PrintPattern::Crosses,
                 Cover::Wetland => PrintPattern::Dashes,
-                Cover::BuiltUp => PrintPattern::Hatching,
+                Cover::BuiltUp | Cover::DenseBuiltUp => PrintPattern::Hatching,
                 Cover::Industry | Cover::Restricted => PrintPattern::CrossHatching,
                 Cover::Meadow | Cover::Rock | Cover::Glacier | Cover::Paved => return None,
             }),
@@ -303,6 +303,7 @@ fn cover_name(cover: Cover) -> String {
         Cover::Quarry => "Quarry",
         Cover::Paved => "Paved area",
         Cover::BuiltUp => "Built-up area",
+        Cover::DenseBuiltUp => "Dense built-up area",
         Cover::Industry => "Industry",
         Cover::Restricted => "Restricted area",
     };

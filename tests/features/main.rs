@@ -16,6 +16,7 @@ mod coast;
 mod conform;
 mod earthworks;
 mod fences;
+mod land_cover;
 mod left_out;
 mod left_out_models;
 mod left_out_rasters;

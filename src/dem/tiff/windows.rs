@@ -38,6 +38,11 @@ use sandtable_raster::error::{DemError, DemErrorKind};
 use sandtable_raster::raster::{Raster, Samples};
 use sandtable_raster::windows::{RasterWindow, Windows, WithOverviews};
 
+/// Whether a file is a TIFF or BigTIFF by its first bytes.
+pub fn is_tiff(head: &[u8]) -> bool {
+    header::recognizes(head)
+}
+
 /// A GeoTIFF, read in windows.
 pub struct GeoTiffWindows<R> {
     name: String,

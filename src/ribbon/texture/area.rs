@@ -246,6 +246,23 @@ fn drawn(cover: Cover) -> Option<AreaTexture> {
             square: 1.0,
             ..none
         },
+        Cover::DenseBuiltUp => AreaTexture {
+            ground: color([206, 188, 170], 0.7),
+            figure: color([184, 142, 120], 0.8),
+            border: color([226, 214, 196], 0.72),
+            tone: Vec3::new(-0.08, -0.01, -0.05),
+            uneven: 0.03,
+            noise_m: 300.0,
+            parcel_m: 90.0,
+            border_m: 8.0,
+            warp_m: 4.0,
+            light: 0.05,
+            figure_m: Vec2::new(20.0, 26.0),
+            jitter: 0.06,
+            radius: [0.36, 0.47],
+            square: 1.0,
+            ..none
+        },
         Cover::Industry => AreaTexture {
             ground: color([214, 206, 212], 0.66),
             figure: color([176, 168, 182], 0.8),

@@ -17,7 +17,7 @@ pub fn cover_length_m(cover: Cover) -> f64 {
         Cover::Scrub | Cover::Heath | Cover::Sand | Cover::Scree => 40.0,
         Cover::Meadow | Cover::Field => 60.0,
         Cover::Wetland | Cover::Rock | Cover::Glacier | Cover::Quarry | Cover::Paved => 80.0,
-        Cover::BuiltUp => 120.0,
+        Cover::BuiltUp | Cover::DenseBuiltUp => 120.0,
         Cover::Industry => 240.0,
         Cover::Restricted => 48.0,
     }
@@ -39,6 +39,7 @@ pub fn border_color(cover: Cover) -> Srgba {
         Cover::Quarry => [138, 122, 100],
         Cover::Paved => [150, 146, 142],
         Cover::BuiltUp => [142, 98, 82],
+        Cover::DenseBuiltUp => [126, 82, 70],
         Cover::Industry => [112, 102, 122],
         Cover::Restricted => [186, 44, 40],
     };
@@ -51,8 +52,11 @@ pub const EDGE_M: f64 = 12.0;
 
 /// Whether a cover grows or lies by nature; what is built, tilled or forbidden ends at a line.
 pub fn is_natural(cover: Cover) -> bool {
-    use Cover::{BuiltUp, Field, Industry, Orchard, Paved, Quarry, Restricted, Vineyard};
-    !matches!(cover, BuiltUp | Industry | Restricted | Paved | Quarry | Field | Orchard | Vineyard)
+    use Cover::{BuiltUp, DenseBuiltUp, Field, Industry, Orchard, Paved, Quarry, Restricted, Vineyard};
+    !matches!(
+        cover,
+        BuiltUp | DenseBuiltUp | Industry | Restricted | Paved | Quarry | Field | Orchard | Vineyard
+    )
 }
 
 /// A texel of the strip in which a cover fades: nothing at `u` 0.5, where the outline is, all of the cover at 0 and 1.
@@ -82,6 +86,7 @@ pub(super) fn texel(cover: Cover, u: f32, v: f32, grain: f32) -> Srgba {
         Cover::Quarry => quarry(u, v, grain),
         Cover::Paved => translucent([198, 194, 188], (grain - 0.5) * 8.0, 0.8),
         Cover::BuiltUp => houses(u, v, grain, &TOWN),
+        Cover::DenseBuiltUp => houses(u, v, grain, &CENTER),
         Cover::Industry => houses(u, v, grain, &WORKS),
         Cover::Restricted => hatched(u, v),
     }
@@ -211,6 +216,7 @@ struct Lots {
 }
 
 const TOWN: Lots = Lots { count: 6, street: 3, ground: [226, 206, 186], roof: [198, 142, 118], seed: 83 };
+const CENTER: Lots = Lots { count: 8, street: 4, ground: [200, 174, 156], roof: [172, 112, 90], seed: 79 };
 const WORKS: Lots = Lots { count: 4, street: 2, ground: [214, 206, 214], roof: [168, 160, 176], seed: 89 };
 
 /// Roofs on lots, with streets between blocks.

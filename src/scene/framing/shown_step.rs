@@ -69,7 +69,7 @@ fn widest_square(pictures: &PlannedPictures, document: &Document, ground: &Unrea
     let extent = Rect::around(points.ok()?);
     let count = DVec2::new(ground.whole.width.into(), ground.whole.height.into());
     let cell_m = (extent.size() / count).max_element();
-    let frame = WorldFrame::new(document, ground.crs, ground.stated_crs, extent.min);
+    let frame = WorldFrame::new(document, ground.crs, ground.stated_crs, extent);
     let plan = Rect { min: DVec2::ZERO, max: extent.size() };
     let cameras = &document.cameras;
     let planned: Vec<Option<&CameraTable>> = match &pictures.cameras {

@@ -231,6 +231,27 @@ fn a_layer_without_properties_is_taken_for_what_its_name_says() {
     }
 }
 
+#[test]
+fn a_raster_of_land_cover_becomes_an_area_wherever_it_is_named() {
+    let cover = bytes_of("tests/features/land_cover/corine.tif");
+    for option in ["--vectors", "--dem"] {
+        let scratch = valley();
+        scratch.write("project/data/cover.tif", &cover);
+        // Of elevation the files are one list.
+        let files = if option == "--dem" { vec!["data/cover.tif"] } else { vec![option, "data/cover.tif"] };
+        let dem = ["new", "scene", "--crs", "EPSG:32616", "--dem", "data/valley.asc"];
+        run_in(&scratch.at("project"), &[&dem[..], &files].concat()).ok();
+        let text = text_of(&scratch);
+        let wanted = "# Land cover by CORINE Land Cover. Its water has no cover: lakes, rivers and coasts draw it.\n[[area]]\n\
+                      file = \"../data/cover.tif\"\nwhere = \"cover\"\ncover = \"(cover)\"\n";
+        assert!(text.contains(wanted) && text.contains("dem = \"../data/valley.asc\""), "{text}");
+    }
+    let scratch = valley();
+    scratch.write("project/data/cover.tif", &cover);
+    let refused = run_in(&scratch.at("project"), &["new", "scene", "--dem", "data/cover.tif"]).failed(1);
+    assert!(refused.contains("data/cover.tif: this is land cover and no elevation"), "{refused}");
+}
+
 /// Ground that falls from 20 m in the north to −28 m in the south, and a coastline across it.
 #[test]
 fn a_coastline_through_ground_with_the_depths_of_the_sea_states_its_level() {

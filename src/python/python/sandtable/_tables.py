@@ -625,7 +625,7 @@ class SceneTables:
         border_width: float | None = None,
         color: Color | None = None,
         columns: Mapping[str, Any] | None = None,
-        cover: Literal["forest", "scrub", "meadow", "field", "orchard", "vineyard", "heath", "wetland", "sand", "rock", "scree", "glacier", "quarry", "paved", "built-up", "industry", "restricted"] | Expression | None = None,
+        cover: Literal["forest", "scrub", "meadow", "field", "orchard", "vineyard", "heath", "wetland", "sand", "rock", "scree", "glacier", "quarry", "paved", "built-up", "dense-built-up", "industry", "restricted"] | Expression | None = None,
         crs: Crs | None = None,
         layer: str | None = None,
         name: str | None = None,
@@ -651,11 +651,12 @@ class SceneTables:
             `y`, `zone`, `z` or `shape`, or the name of a property, such as `{ position = "Grid" }`. Default: by the
             names of the columns.
         cover
-            What covers the area. `forest`: trees; `scrub`: bushes; `meadow`: grass; `field`: crops in rows;
-            `orchard`: fruit trees in rows; `vineyard`: vines in rows; `heath`: heather; `wetland`: marsh; `sand`:
-            sand or beach; `rock`: bare rock; `scree`: loose stones; `glacier`: ice; `quarry`: a pit with benches;
-            `paved`: squares and yards without houses; `built-up`: houses and yards; `industry`: halls and yards;
-            `restricted`: closed ground, hatched. Needed.
+            What covers the area; of a raster of land cover "(cover)", the cover of each patch. `forest`: trees;
+            `scrub`: bushes; `meadow`: grass; `field`: crops in rows; `orchard`: fruit trees in rows; `vineyard`:
+            vines in rows; `heath`: heather; `wetland`: marsh; `sand`: sand or beach; `rock`: bare rock; `scree`:
+            loose stones; `glacier`: ice; `quarry`: a pit with benches; `paved`: squares and yards without houses;
+            `built-up`: houses and yards; `dense-built-up`: houses wall to wall, streets and courts; `industry`: halls
+            and yards; `restricted`: closed ground, hatched. Needed.
         crs
             Coordinate system of `points`, or of a file that names none or a wrong one. Default: the scene's
             `points_crs`, or what the file names.
