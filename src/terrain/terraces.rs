@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::lattice::Lattice;
+use crate::lattice::{Lattice, Post};
 use crate::vectorized::vectorized;
 use sandtable_raster::raster::SampleFloat;
 
@@ -37,40 +37,75 @@ pub fn without_terraces(
     is_fixed: &(dyn Fn(usize) -> bool + Sync),
 ) -> Lattice {
     let (columns, rows) = (lattice.columns() as usize, lattice.rows() as usize);
-    let own = lattice.heights();
     let lowest = lattice.height_range().0;
-    let mut heights: Vec<f32> = vec![0.0; own.len()];
+    let mut heights: Vec<f32> = vec![0.0; lattice.heights().len()];
     heights.par_chunks_mut(TILE_ROWS * columns).enumerate().for_each(|(band, smooth)| {
         let first = band * TILE_ROWS;
-        let wanted = first..(first + TILE_ROWS).min(rows);
-        let around = surroundings(wanted.clone(), rows);
-        let filled: Vec<Vec<f32>> =
-            around.clone().map(|row| lattice.filled_row(row as u32, lowest)).collect();
-        let reach_of = |row: usize, column: usize| {
-            let index = row * columns + column;
-            let is_kept = || is_fixed(index) || lattice.pinned().get(index).is_some_and(|pinned| *pinned);
-            match own[index].is_nan() {
-                true => f32::INFINITY,
-                false if is_kept() => 0.0,
-                false => 0.5 * step_m,
-            }
-        };
-        let mut tile = SmoothedTile::default();
-        for west in (0..columns).step_by(TILE_COLUMNS) {
-            let wanted_columns = west..(west + TILE_COLUMNS).min(columns);
-            let block = PostBlock { rows: around.clone(), columns: surroundings(wanted_columns.clone(), columns) };
-            tile.fill(&block, &filled, reach_of);
-            tile.smooth(block, [rows, columns]);
-            for (row, line) in wanted.clone().zip(smooth.chunks_exact_mut(columns)) {
-                let line = &mut line[wanted_columns.clone()];
-                line.copy_from_slice(tile.heights_of(row, wanted_columns.clone()));
-                let own = &own[row * columns..][wanted_columns.clone()];
-                let holes = line.iter_mut().zip(own).filter(|(_, own)| own.is_nan());
-                holes.for_each(|(height, _)| *height = f32::NAN);
-            }
-        }
+        smooth_band(lattice, lowest, first..(first + TILE_ROWS).min(rows), step_m, is_fixed, smooth);
     });
     lattice.with_heights(heights)
+}
+
+/// The rows `wanted` of [`without_terraces`], as a part of the lattice that has no pins; `lowest` is the lowest height of the
+/// lattice, meters.
+///
+/// # Panics
+/// Where a row lies outside the lattice, or there are fewer than two.
+pub fn rows_without_terraces(
+    lattice: &Lattice,
+    lowest: f32,
+    wanted: Range<usize>,
+    step_m: f32,
+    is_fixed: &(dyn Fn(usize) -> bool + Sync),
+) -> Lattice {
+    let mut heights = vec![0.0; wanted.len() * lattice.columns() as usize];
+    let south = Post { row: lattice.first().row + wanted.start as u32, ..lattice.first() };
+    for first in wanted.clone().step_by(TILE_ROWS) {
+        let rows = first..(first + TILE_ROWS).min(wanted.end);
+        let begin = (first - wanted.start) * lattice.columns() as usize;
+        smooth_band(lattice, lowest, rows, step_m, is_fixed, &mut heights[begin..]);
+    }
+    Lattice::part((lattice.origin(), lattice.cell()), south, lattice.columns(), heights)
+        .expect("the heights of a lattice, two rows or more")
+}
+
+/// The rows `wanted` of the smooth heights, into `smooth`.
+fn smooth_band(
+    lattice: &Lattice,
+    lowest: f32,
+    wanted: Range<usize>,
+    step_m: f32,
+    is_fixed: &(dyn Fn(usize) -> bool + Sync),
+    smooth: &mut [f32],
+) {
+    let (columns, rows) = (lattice.columns() as usize, lattice.rows() as usize);
+    let own = lattice.heights();
+    let around = surroundings(wanted.clone(), rows);
+    let filled: Vec<Vec<f32>> = around.clone().map(|row| lattice.filled_row(row as u32, lowest)).collect();
+    let reach_of = |row: usize, column: usize| {
+        let index = row * columns + column;
+        let is_kept = || is_fixed(index) || lattice.pinned().get(index).is_some_and(|pinned| *pinned);
+        match own[index].is_nan() {
+            true => f32::INFINITY,
+            false if is_kept() => 0.0,
+            false => 0.5 * step_m,
+        }
+    };
+    let mut tile = SmoothedTile::default();
+    for west in (0..columns).step_by(TILE_COLUMNS) {
+        let wanted_columns = west..(west + TILE_COLUMNS).min(columns);
+        let block =
+            PostBlock { rows: around.clone(), columns: surroundings(wanted_columns.clone(), columns) };
+        tile.fill(&block, &filled, reach_of);
+        tile.smooth(block, [rows, columns]);
+        for (row, line) in wanted.clone().zip(smooth.chunks_exact_mut(columns)) {
+            let line = &mut line[wanted_columns.clone()];
+            line.copy_from_slice(tile.heights_of(row, wanted_columns.clone()));
+            let own = &own[row * columns..][wanted_columns.clone()];
+            let holes = line.iter_mut().zip(own).filter(|(_, own)| own.is_nan());
+            holes.for_each(|(height, _)| *height = f32::NAN);
+        }
+    }
 }
 
 /// The rows, or columns, of `count` on which those in `wanted` depend.
@@ -153,7 +188,8 @@ impl SmoothedTile {
             for row in next.rows.clone() {
                 let to = self.place(row, next.columns.clone());
                 let near = row.saturating_sub(reach)..(row + reach + 1).min(rows);
-                let [first, stride] = [self.place(near.start, next.columns.clone()).start, self.block.columns.len()];
+                let [first, stride] =
+                    [self.place(near.start, next.columns.clone()).start, self.block.columns.len()];
                 let around = self.along[first..].chunks(stride).take(near.len());
                 let line = &mut self.heights[to.clone()];
                 let (own, most_m) = (&self.own[to.clone()], &self.most_m[to]);
@@ -316,6 +352,11 @@ mod tests {
             let lattice = Lattice::new(DVec2::ZERO, DVec2::splat(30.0), columns, heights).expect("sound");
             let smooth = without_terraces(&lattice, 1.0, &is_fixed);
             assert!(smooth.heights() == smoothed_whole(&lattice, is_fixed), "{columns} × {rows}");
+            let some = (rows as usize / 3)..(rows as usize / 3 + 2);
+            let part =
+                rows_without_terraces(&lattice, lattice.height_range().0, some.clone(), 1.0, &is_fixed);
+            let places = some.start * columns as usize..some.end * columns as usize;
+            assert_eq!(part.heights(), &smooth.heights()[places], "{columns} × {rows}");
         }
     }
 }
