@@ -61,6 +61,16 @@ pub fn coarser_levels(map: &GroundMap) -> impl Iterator<Item = GroundLevel> {
 ///
 /// Finer levels are never held: each thread keeps two rows a level.
 pub fn level(size: PostCount, number: u32, row: impl Fn(usize) -> Vec<GroundPost> + Sync) -> GroundLevel {
+    level_of_portions(size, number, |_| &row)
+}
+
+/// The same with rows that are prepared together: `portion` takes the numbers of those that one thread makes next, and returns what
+/// makes each of them.
+pub fn level_of_portions<R: Fn(usize) -> Vec<GroundPost>>(
+    size: PostCount,
+    number: u32,
+    portion: impl Fn(Range<usize>) -> R + Sync,
+) -> GroundLevel {
     /// Rows made together; those that two portions share are made twice.
     const PORTION: usize = 32;
     let sizes: Vec<PostCount> =
@@ -68,12 +78,20 @@ pub fn level(size: PostCount, number: u32, row: impl Fn(usize) -> Vec<GroundPost
     let size = sizes[sizes.len() - 1];
     let (columns, rows) = (size.columns as usize, size.rows as usize);
     let mut posts: Vec<GroundPost> = bytemuck::zeroed_vec(columns * rows);
-    posts.par_chunks_mut(PORTION * columns).enumerate().for_each(|(portion, posts)| {
-        let first = portion * PORTION;
-        let made = rows_of(&sizes, first..(first + PORTION).min(rows), &row);
+    posts.par_chunks_mut(PORTION * columns).enumerate().for_each(|(at, posts)| {
+        let wanted = at * PORTION..((at + 1) * PORTION).min(rows);
+        let finer = sizes.iter().rev().skip(1);
+        let row = portion(finer.fold(wanted.clone(), |rows, finer| finer_rows(&rows, *finer)));
+        let made = rows_of(&sizes, wanted, &row);
         posts.chunks_exact_mut(columns).zip(made).for_each(|(posts, row)| posts.copy_from_slice(&row));
     });
     GroundLevel { size, posts }
+}
+
+/// The rows of a level of size `finer` that rows of the next coarser one are made of.
+fn finer_rows(rows: &Range<usize>, finer: PostCount) -> Range<usize> {
+    let last = finer.rows as usize - 1;
+    (2 * rows.start).saturating_sub(1).min(last)..(2 * rows.end).min(last + 1)
 }
 
 /// The post `[column, row]` of the next coarser level, as [`coarser_levels`] makes it, from a level of `size` that `post`
@@ -109,10 +127,9 @@ fn rows_of<'a>(
         _ => return Box::new(rows.map(finest)),
     };
     // Post `i` is made of posts `2 i − 1`, `2 i` and `2 i + 1`; past the border the border's posts are repeated.
-    let (columns, last) = (size.columns as usize, finer.rows as usize - 1);
-    let from = (2 * rows.start).saturating_sub(1).min(last)..(2 * rows.end).min(last + 1);
-    let mut source =
-        rows_of(&sizes[..sizes.len() - 1], from, finest).map(move |row| halved_row(&row, columns));
+    let columns = size.columns as usize;
+    let mut source = rows_of(&sizes[..sizes.len() - 1], finer_rows(&rows, *finer), finest)
+        .map(move |row| halved_row(&row, columns));
     let mut before = None;
     Box::new(rows.map(move |row| {
         let south = before.take().or_else(|| if row > 0 { source.next() } else { None });
@@ -223,6 +240,14 @@ mod tests {
             };
             for (number, step_by_step) in (1..).zip(coarser_levels(&map)) {
                 let at_once = level(size, number, |row| map.posts[row * columns..][..columns].to_vec());
+                let asked = |rows: Range<usize>| {
+                    let posts = &map.posts;
+                    move |row: usize| {
+                        assert!(rows.contains(&row), "{row} of {rows:?}");
+                        posts[row * columns..][..columns].to_vec()
+                    }
+                };
+                assert!(level_of_portions(size, number, asked).posts == at_once.posts);
                 assert_eq!(at_once.size, step_by_step.size);
                 assert!(at_once.posts == step_by_step.posts, "level {number} of {size:?}");
             }

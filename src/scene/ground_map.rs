@@ -1,5 +1,6 @@
 //! The ground map of a picture: heights, slopes and light at the level of the posts that the picture shows.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use glam::Vec2;
@@ -11,11 +12,11 @@ use crate::texture_shading::TextureShading;
 use crate::undergrowth::undergrowth;
 use sandtable_draw::contour_ground::lift_level_ground;
 use sandtable_draw::ground::{GroundMap, GroundPost};
-use sandtable_draw::ground_levels::{GroundLevel, PostCount, level};
+use sandtable_draw::ground_levels::{GroundLevel, PostCount, level_of_portions};
 use sandtable_draw::lighting::ReliefShading;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::light::TerrainLight;
-use sandtable_terrain::terraces::without_terraces;
+use sandtable_terrain::terraces::{rows_without_terraces, without_terraces};
 use sandtable_terrain::water_shore::WaterShore;
 
 impl SceneModel {
@@ -39,11 +40,13 @@ pub fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: Gr
     let columns = lattice.columns() as usize;
     let is_water = |index: usize| water.get(index).copied().unwrap_or_default();
     let is_rounded = scene.heights.snapshot().holds_whole_numbers();
-    let smooth = is_rounded.then(|| without_terraces(lattice, 1.0, &is_water));
-    let shaded = smooth.as_ref().unwrap_or(lattice);
-    let row = |row: usize| {
-        let heights = shaded.filled_row(row as u32, scene.height_range_m.0);
-        let slopes = shaded.slopes_of_row(row as u32);
+    // Smooth ground is held whole where it must be, and portion by portion where a picture shows fewer posts.
+    let is_held = number == 0 || lattice.doublings() > 0;
+    let smooth = (is_rounded && is_held).then(|| without_terraces(lattice, 1.0, &is_water));
+    let lowest_m = if is_rounded { lattice.height_range().0 } else { 0.0 };
+    let posts_of = |shaded: &Lattice, first: usize, row: usize| {
+        let heights = shaded.filled_row((row - first) as u32, scene.height_range_m.0);
+        let slopes = shaded.slopes_of_row((row - first) as u32);
         let light = light.sun(row).into_iter().zip(light.sky(row));
         let posts = heights.into_iter().zip(slopes).zip(light).map(
             |((height_m, slopes), (sun_visibility, sky_visibility))| GroundPost {
@@ -65,7 +68,16 @@ pub fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: Gr
         posts
     };
     let all = PostCount { columns: lattice.columns(), rows: lattice.rows() };
-    let GroundLevel { size, mut posts } = level(all, number, row);
+    let portion = |rows: Range<usize>| {
+        // Slopes are those between the rows beside a row.
+        let around = rows.start.saturating_sub(1)..(rows.end + 1).min(lattice.rows() as usize);
+        let first = if is_rounded && !is_held { around.start } else { 0 };
+        let part = (is_rounded && !is_held)
+            .then(|| rows_without_terraces(lattice, lowest_m, around, 1.0, &is_water));
+        let (smooth, posts_of) = (&smooth, &posts_of);
+        move |row: usize| posts_of(part.as_ref().or(smooth.as_ref()).unwrap_or(lattice), first, row)
+    };
+    let GroundLevel { size, mut posts } = level_of_portions(all, number, portion);
     if let Some(contours) = &scene.contours {
         lift_level_ground(&mut posts, size, contours, if is_rounded { 1.0 } else { 0.0 });
     }

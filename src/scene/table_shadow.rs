@@ -60,10 +60,11 @@ impl TableShadow<'_> {
             .map(|index| self.hidden_share(&block, place(index), step.min_element()))
             .collect();
         // The block's samples are coarse: their steps would show in the shadow's edge.
-        let cast = blurred(cast, side as usize, 1);
-        let covered = (0..count).map(|index| f32::from(block.at(place(index)).is_finite())).collect();
+        let cast = blurred(&cast, side as usize, 1);
+        let is_covered = |index| f32::from(block.at(place(index)).is_finite());
+        let covered: Vec<f32> = (0..count).into_par_iter().map(is_covered).collect();
         let reach = ((side as f32 * CONTACT_REACH) as usize).max(1);
-        let contact = blurred(blurred(covered, side as usize, reach), side as usize, reach);
+        let contact = blurred(&blurred(&covered, side as usize, reach), side as usize, reach);
         cast.iter()
             .zip(contact)
             .map(|(cast, near)| 1.0 - (1.0 - cast * CAST) * (1.0 - near * CONTACT))
@@ -131,20 +132,26 @@ impl BlockHeights {
 }
 
 /// A square map with each value replaced by the mean of the square around it that reaches `reach` values far.
-fn blurred(map: Vec<f32>, side: usize, reach: usize) -> Vec<f32> {
-    let along = |map: &[f32], at: &dyn Fn(usize, usize) -> usize| {
-        let mut means = vec![0.0; map.len()];
-        for line in 0..side {
-            for place in 0..side {
-                let near = place.saturating_sub(reach)..(place + reach + 1).min(side);
-                let count = near.len() as f32;
-                means[at(line, place)] = near.map(|near| map[at(line, near)]).sum::<f32>() / count;
-            }
+fn blurred(map: &[f32], side: usize, reach: usize) -> Vec<f32> {
+    let columns = transposed(&blurred_rows(map, side, reach), side);
+    transposed(&blurred_rows(&columns, side, reach), side)
+}
+
+/// The same along rows alone.
+fn blurred_rows(map: &[f32], side: usize, reach: usize) -> Vec<f32> {
+    let mut means = vec![0.0; map.len()];
+    means.par_chunks_exact_mut(side).zip(map.par_chunks_exact(side)).for_each(|(means, line)| {
+        for (place, mean) in means.iter_mut().enumerate() {
+            let near = &line[place.saturating_sub(reach)..(place + reach + 1).min(side)];
+            *mean = near.iter().sum::<f32>() / near.len() as f32;
         }
-        means
-    };
-    let rows = along(&map, &|line, place| line * side + place);
-    along(&rows, &|line, place| place * side + line)
+    });
+    means
+}
+
+/// A square map with its rows as columns.
+fn transposed(map: &[f32], side: usize) -> Vec<f32> {
+    (0..side).flat_map(|column| map.iter().copied().skip(column).step_by(side)).collect()
 }
 
 /// The rectangle of world X and Y that a lattice covers, grown by `margin_m` on all sides.

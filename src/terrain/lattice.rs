@@ -19,6 +19,7 @@
 use std::sync::Arc;
 
 use glam::{DVec2, Vec2, Vec3};
+use rayon::prelude::*;
 
 use crate::height_scan;
 use crate::post_rect::PostRect;
@@ -43,7 +44,8 @@ pub struct Lattice {
     doublings: u32,
     /// Shared with clones, and with the raster that they were read from, until one is set.
     heights: Arc<Vec<f32>>,
-    pinned: Vec<bool>,
+    /// Shared with clones, until one is pinned.
+    pinned: Arc<Vec<bool>>,
     pin_slack_m: f32,
 }
 
@@ -221,7 +223,7 @@ impl Lattice {
         if let Some(height) = height_scan::first_beyond(&heights, HIGHEST_M) {
             return Err(LatticeError::TooHigh { height });
         }
-        let pinned = vec![false; heights.len()];
+        let pinned = Arc::new(vec![false; heights.len()]);
         Ok(Self {
             origin,
             cell,
@@ -246,19 +248,20 @@ impl Lattice {
             &self.heights[first..=self.index(Post { column: held.last.column, row })]
         };
         let heights = (held.first.row..=held.last.row).map(row).collect::<Vec<_>>().concat();
-        Self { held, pinned: vec![false; heights.len()], heights: Arc::new(heights), ..*self }
+        let pinned = Arc::new(vec![false; heights.len()]);
+        Self { held, pinned, heights: Arc::new(heights), ..*self }
     }
 
     /// The lattice with every height times `factor`, which is above 0.
     pub fn stretched(&self, factor: f32) -> Self {
-        let heights = Arc::new(self.heights.iter().map(|height| height * factor).collect());
-        Self { heights, pinned: self.pinned.clone(), pin_slack_m: self.pin_slack_m * factor, ..*self }
+        let heights = Arc::new(self.heights.par_iter().map(|height| height * factor).collect());
+        Self { heights, pinned: Arc::clone(&self.pinned), pin_slack_m: self.pin_slack_m * factor, ..*self }
     }
 
     /// The lattice with other heights, row by row from the south-west, one for each post.
     pub(crate) fn with_heights(&self, heights: Vec<f32>) -> Self {
         assert_eq!(heights.len(), self.heights.len(), "a height for each post");
-        Self { heights: Arc::new(heights), pinned: self.pinned.clone(), ..*self }
+        Self { heights: Arc::new(heights), pinned: Arc::clone(&self.pinned), ..*self }
     }
 
     /// The heights of a row, where posts without data take the nearest height of the row, or `otherwise` if it has none.
@@ -406,7 +409,7 @@ impl Lattice {
     pub fn pin(&mut self, post: Post, height: f32) {
         let index = self.index(post);
         Arc::make_mut(&mut self.heights)[index] = height;
-        self.pinned[index] = true;
+        Arc::make_mut(&mut self.pinned)[index] = true;
     }
 
     /// The heights of the posts from `first` to column `last` of its row, to be set. Pins stay.

@@ -68,12 +68,15 @@ impl<'a> WaterShore<'a> {
             let covered = &self.cover.is_water[beside * columns..][..columns];
             sums.iter_mut().zip(covered).for_each(|(sum, &is_water)| *sum += weight * u32::from(is_water));
         }
+        if sums.iter().all(|&sum| sum == 0) {
+            return vec![0.25; columns];
+        }
         let own = &self.cover.is_water[row * columns..][..columns];
-        let value = |column: usize| {
-            let weighted = WEIGHTS
-                .iter()
-                .enumerate()
-                .map(|(offset, weight)| weight * sums[(column + offset).saturating_sub(3).min(columns - 1)]);
+        // The ends are repeated past the border.
+        let ends = [sums[0], sums[columns - 1]].map(|end| [end; 3]);
+        let sums = [ends[0].as_slice(), &sums, &ends[1]].concat();
+        let value = |(column, near): (usize, &[u32])| {
+            let weighted = WEIGHTS.iter().zip(near).map(|(weight, sum)| weight * sum);
             let smoothed = weighted.sum::<u32>() as f32 / 4096.0;
             if own[column] {
                 0.25 + 0.5 * smoothed.max(0.5 + LEAST_SIDE) + 0.25 * self.open_at(column, row)
@@ -81,7 +84,7 @@ impl<'a> WaterShore<'a> {
                 0.25 + 0.5 * smoothed.min(0.5 - LEAST_SIDE)
             }
         };
-        (0..columns).map(value).collect()
+        sums.windows(WEIGHTS.len()).enumerate().map(value).collect()
     }
 
     fn open_at(&self, column: usize, row: usize) -> f32 {
