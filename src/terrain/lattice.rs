@@ -19,7 +19,6 @@
 use std::sync::Arc;
 
 use glam::{DVec2, Vec2, Vec3};
-use rayon::prelude::*;
 
 use crate::height_scan;
 use crate::post_rect::PostRect;
@@ -254,7 +253,7 @@ impl Lattice {
 
     /// The lattice with every height times `factor`, which is above 0.
     pub fn stretched(&self, factor: f32) -> Self {
-        let heights = Arc::new(self.heights.par_iter().map(|height| height * factor).collect());
+        let heights = Arc::new(self.heights.iter().map(|height| height * factor).collect());
         Self { heights, pinned: Arc::clone(&self.pinned), pin_slack_m: self.pin_slack_m * factor, ..*self }
     }
 
