@@ -247,8 +247,7 @@ impl Lattice {
             &self.heights[first..=self.index(Post { column: held.last.column, row })]
         };
         let heights = (held.first.row..=held.last.row).map(row).collect::<Vec<_>>().concat();
-        let pinned = Arc::new(vec![false; heights.len()]);
-        Self { held, pinned, heights: Arc::new(heights), ..*self }
+        Self { held, pinned: vec![false; heights.len()].into(), heights: Arc::new(heights), ..*self }
     }
 
     /// The lattice with every height times `factor`, which is above 0.
