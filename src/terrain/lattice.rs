@@ -19,7 +19,6 @@
 use std::sync::Arc;
 
 use glam::{DVec2, Vec2, Vec3};
-use rayon::prelude::*;
 
 use crate::height_scan;
 use crate::post_rect::PostRect;
@@ -248,13 +247,12 @@ impl Lattice {
             &self.heights[first..=self.index(Post { column: held.last.column, row })]
         };
         let heights = (held.first.row..=held.last.row).map(row).collect::<Vec<_>>().concat();
-        let pinned = Arc::new(vec![false; heights.len()]);
-        Self { held, pinned, heights: Arc::new(heights), ..*self }
+        Self { held, pinned: vec![false; heights.len()].into(), heights: Arc::new(heights), ..*self }
     }
 
     /// The lattice with every height times `factor`, which is above 0.
     pub fn stretched(&self, factor: f32) -> Self {
-        let heights = Arc::new(self.heights.par_iter().map(|height| height * factor).collect());
+        let heights = Arc::new(self.heights.iter().map(|height| height * factor).collect());
         Self { heights, pinned: Arc::clone(&self.pinned), pin_slack_m: self.pin_slack_m * factor, ..*self }
     }
 
