@@ -144,7 +144,8 @@ fn classes_are_selected_by_number_and_water_makes_a_lake() {
             .sum()
     };
     assert!((area(RibbonSurface::Cover(Cover::Forest)) / 9e4 - 0.4123).abs() < 0.005);
-    assert!((area(RibbonSurface::Lake) / 9e4 - 0.0982).abs() < 0.005);
+    // A round patch of 14 cells is cut by a third of a cell all around where its border is made smooth.
+    assert!((area(RibbonSurface::Lake) / 9e4 - 0.0982).abs() < 0.007);
 }
 
 #[test]
