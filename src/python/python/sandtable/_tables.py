@@ -1733,8 +1733,9 @@ class SceneTables:
             Name of a style: the keys of `[styles.NAME]` that this table does not state count as its own. Default:
             none.
         water
-            Where the water lies. `falls`: its level never rises downstream, and the ground is cut to it; it is white where it falls by more than 4 %, and bars lie in its bends on level ground; `drape`: on
-            the ground as it is. Default: "falls".
+            Where the water lies. `falls`: its level never rises downstream, and the ground is cut to it; it is white
+            where it falls by more than 4 %, and bars lie in its bends on level ground; `drape`: on the ground as it
+            is. Default: "falls".
         where
             With `file`: the features that are taken, by the values of their properties, such as `{ highway =
             ["primary", "trunk"] }`, or by an expression that holds for them. Default: all features.
