@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::lattice::{Lattice, Post};
+use crate::lattice::{HIGHEST_M, Lattice, Post};
 use crate::vectorized::vectorized;
 use sandtable_raster::raster::SampleFloat;
 
@@ -65,6 +65,8 @@ pub fn rows_without_terraces(
         let begin = (first - wanted.start) * lattice.columns() as usize;
         smooth_band(lattice, lowest, rows, step_m, is_fixed, &mut heights[begin..]);
     }
+    // The mean of heights at the bound may be rounded to one beyond it.
+    heights.iter_mut().for_each(|height| *height = height.clamp(-HIGHEST_M, HIGHEST_M));
     Lattice::part((lattice.origin(), lattice.cell()), south, lattice.columns(), heights)
         .expect("the heights of a lattice, two rows or more")
 }
@@ -338,6 +340,19 @@ mod tests {
             }
         }
         heights
+    }
+
+    #[test]
+    fn ground_at_the_bound_of_heights_stays_within_it() {
+        for height in [HIGHEST_M, -HIGHEST_M, HIGHEST_M - 1.0] {
+            let lattice = Lattice::new(DVec2::ZERO, DVec2::ONE, 40, vec![height; 40 * 40]).expect("sound");
+            let part = rows_without_terraces(&lattice, height, 3..30, 1.0, &|_| false);
+            assert!(
+                part.heights()
+                    .iter()
+                    .all(|smooth| smooth.abs() <= HIGHEST_M && (smooth - height).abs() <= 1.0)
+            );
+        }
     }
 
     #[test]
