@@ -42,7 +42,6 @@ use sandtable_raster::undeclared::undeclared_nodata;
 use sandtable_remote::address::is_address_path;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build_with;
-use sandtable_scene::class_raster::legend::ClassLegend;
 use sandtable_scene::planned_pictures::{ElevationNeed, PlannedPictures};
 use sandtable_scene::scene_file::OpenSceneError;
 use sandtable_scene::scene_model::SceneModel;
@@ -156,17 +155,16 @@ pub fn write(
 fn survey_file(file: &Path, folder: &SceneFolder) -> Result<VectorDraft, NewSceneError> {
     let name = folder.name_of(file)?;
     Ok(match survey::land_cover(file)? {
-        Some(legend) => VectorDraft { file: name, layers: Vec::new(), land_cover: Some(legend) },
+        Some(cover) => VectorDraft { file: name, layers: Vec::new(), land_cover: Some(cover.legend) },
         None => VectorDraft { file: name, layers: survey::layers(file)?, land_cover: None },
     })
 }
 
-/// Those of the files named as elevation that are, and those that are rasters of land cover. CORINE's numbers from 1 to 44 are
-/// taken for elevation, which may have these values.
+/// Those of the files named as elevation that are, and those that are surely rasters of land cover.
 fn elevation_and_covers(files: &[PathBuf]) -> (Vec<&PathBuf>, Vec<&PathBuf>) {
     let is_cover = |file: &&PathBuf| {
-        let legend = survey::land_cover(file).ok().flatten();
-        legend.is_some_and(|legend| legend != ClassLegend::CorineNumbers)
+        let cover = survey::land_cover(file).ok().flatten();
+        cover.is_some_and(|cover| cover.is_sure)
     };
     let (covers, elevation) = files.iter().partition(is_cover);
     (elevation, covers)

@@ -26,8 +26,7 @@ use sandtable_files::error::FileError;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::polygon;
 use sandtable_scene::attributes::Attributes;
-use sandtable_scene::class_raster::legend::ClassLegend;
-use sandtable_scene::class_raster::{ClassRaster, ClassRasterError};
+use sandtable_scene::class_raster::{ClassRaster, ClassRasterError, SampledLegend};
 use sandtable_vector::error::VectorError;
 use sandtable_vector::feature::{Feature, Geometry, VectorLayer};
 use sandtable_vector::hints::VectorHints;
@@ -124,7 +123,7 @@ pub enum SurveyError {
 ///
 /// # Errors
 /// See [`SurveyError`]: the file holds other values than classes, too.
-pub(super) fn land_cover(file: &Path) -> Result<Option<ClassLegend>, SurveyError> {
+pub(super) fn land_cover(file: &Path) -> Result<Option<SampledLegend>, SurveyError> {
     let (head, content) = addressed::open(file)?;
     if !is_tiff(&head) {
         return Ok(None);

@@ -11,6 +11,7 @@ use sandtable_analysis::land::LandCover;
 use sandtable_base::message::choice::Choice;
 use sandtable_catalog::kind::LandPart;
 use sandtable_dem::dem_format::DemFormat;
+use sandtable_dem::hints::DemHints;
 use sandtable_dem::write::write;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::parse::parse_bytes;
@@ -24,6 +25,8 @@ use sandtable_ribbon::plan::{PlanMesh, PlanVertex};
 use sandtable_ribbon::texture::RibbonSurface;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
+use sandtable_scene::class_raster::legend::ClassLegend;
+use sandtable_scene::class_raster::{ClassRaster, SampledLegend};
 use sandtable_scene::land::land_of;
 use sandtable_scene::scene_model::SceneModel;
 
@@ -164,7 +167,7 @@ fn other_rasters_are_refused_with_what_was_found() {
         let error = built(bytes, &NEAR, text).map(drop).expect_err("refused");
         format!("{} {}", error.message(), error.help().unwrap_or_default())
     };
-    let elevation = message(&elevation(), ALL);
+    let elevation = message(&elevation(417.25), ALL);
     assert!(elevation.contains("no class of land cover") && elevation.contains("`dem`"), "{elevation}");
     assert!(elevation.contains("417.25"), "{elevation}");
     let layer = message(WORLD_COVER, &ALL.replace("where", "layer = \"a\"\nwhere"));
@@ -173,8 +176,8 @@ fn other_rasters_are_refused_with_what_was_found() {
     assert!(cut.contains("cover.tif"), "{cut}");
 }
 
-/// A GeoTIFF of heights over the ground.
-fn elevation() -> Vec<u8> {
+/// A GeoTIFF of level ground at this height.
+fn elevation(height_m: f32) -> Vec<u8> {
     let place = DAffine2::from_scale_angle_translation(
         DVec2::new(10.0, -10.0),
         0.0,
@@ -184,11 +187,25 @@ fn elevation() -> Vec<u8> {
         map_from_grid: place,
         georeferenced: true,
         crs: Crs::from_epsg(32633).ok(),
-        ..Raster::new(50, Samples::F32(vec![417.25; 2500]))
+        ..Raster::new(50, Samples::F32(vec![height_m; 2500]))
     };
     write(&raster, DemFormat::to_write("tif").expect("a GeoTIFF"), "cover.tif")
         .expect("it can be written")
         .bytes
+}
+
+#[test]
+fn level_ground_is_not_surely_land_cover() {
+    let sampled = |bytes: &[u8]| {
+        let content = Box::new(std::io::Cursor::new(bytes.to_vec()));
+        let raster = ClassRaster::of_content("cover.tif", content, &DemHints::default());
+        raster.and_then(|mut raster| raster.sampled_legend()).expect("classes")
+    };
+    let sure = |legend| SampledLegend { legend, is_sure: true };
+    assert_eq!(sampled(WORLD_COVER), sure(ClassLegend::WorldCover));
+    assert_eq!(sampled(CORINE), sure(ClassLegend::Corine));
+    assert!(!sampled(CORINE_NUMBERS).is_sure);
+    assert!(!sampled(&elevation(100.0)).is_sure);
 }
 
 #[test]

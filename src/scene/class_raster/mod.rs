@@ -81,6 +81,19 @@ pub enum ClassRasterError {
     Unknown { name: String, found: String },
 }
 
+/// The classification that a raster seems to have by values here and there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SampledLegend {
+    /// The classification.
+    pub legend: ClassLegend,
+    /// Whether elevation does not look like that: whole numbers in storage, three classes or more, and not CORINE's numbers from 1 to
+    /// 44, which heights have as well.
+    pub is_sure: bool,
+}
+
+/// The fewest classes that level ground and ground of a few steps cannot be taken for.
+const SURE_CLASSES: usize = 3;
+
 /// A raster of classes, opened.
 pub struct ClassRaster {
     name: String,
@@ -223,7 +236,7 @@ impl ClassRaster {
     ///
     /// # Errors
     /// The raster is broken, or holds other values than classes, or none, there.
-    pub fn sampled_legend(&mut self) -> Result<ClassLegend, ClassRasterError> {
+    pub fn sampled_legend(&mut self) -> Result<SampledLegend, ClassRasterError> {
         let (width, height) = self.windows.size();
         let (count, side) = SAMPLED;
         let first = |index: u32, most: u32| {
@@ -237,11 +250,14 @@ impl ClassRaster {
             bytes.iter().for_each(|byte| is_present[usize::from(*byte)] = true);
         }
         is_present[usize::from(NO_CLASS)] = false;
-        if is_present.contains(&true) {
-            self.legend(&is_present)
-        } else {
-            Err(self.unknown(UnknownClass(f64::NAN)))
+        let classes = is_present.iter().filter(|is_present| **is_present).count();
+        if classes == 0 {
+            return Err(self.unknown(UnknownClass(f64::NAN)));
         }
+        let legend = self.legend(&is_present)?;
+        let is_whole = !self.windows.metadata().data_type.starts_with("Float");
+        let is_sure = is_whole && classes >= SURE_CLASSES && legend != ClassLegend::CorineNumbers;
+        Ok(SampledLegend { legend, is_sure })
     }
 
     /// The side of a cell from row to row, meters.
