@@ -118,10 +118,9 @@ impl ClassRaster {
             Some(_) => return Ok(None),
             None if is_address(name) && !has_tiff_extension(name) => return Ok(None),
             None => {
-                let (head, content) = assets.open_elevation(name, 4)?;
-                if !is_tiff(&head) {
-                    return Ok(None);
-                }
+                // What cannot be opened is told by who reads it as vectors.
+                let opened = assets.open_elevation(name, 4).ok().filter(|(head, _)| is_tiff(head));
+                let Some((_, content)) = opened else { return Ok(None) };
                 content
             }
         };

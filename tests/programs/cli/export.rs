@@ -98,10 +98,11 @@ fn ground_and_drapes_cover_every_place_once() {
     let names: BTreeSet<&str> = model.materials.iter().map(|material| material.name.as_str()).collect();
     assert!(names.contains("lake") && names.contains("ground"), "{names:?}");
     let whole = size.x * size.y;
-    let drapes = area(&|name| ["river", "lake"].contains(&name));
+    let water = ["river", "rapids", "falls", "bar", "lake"];
+    let drapes = area(&|name| water.contains(&name));
     assert!(drapes > whole * 0.005, "{drapes} of {whole}");
     // Trees stand on it.
-    let covered = area(&|name| ["ground", "river", "lake"].contains(&name));
+    let covered = area(&|name| name == "ground" || water.contains(&name));
     assert!((covered / whole - 1.0).abs() < 1e-4, "{covered} of {whole}");
 }
 
