@@ -111,10 +111,10 @@ impl Climate {
         let hot = (part(self.dryness, [0.6, 0.85]) * warmth) as f32;
         let color =
             |[red, green, blue]: [u8; 3], light: f32| CoverColor::new(Srgba::opaque(red, green, blue), light);
-        let woods = color([88, 116, 76], 0.55)
-            .lerp(&color([72, 118, 64], 0.52), self.tropical as f32)
-            .lerp(&color([92, 114, 86], 0.62), self.polar as f32)
-            .lerp(&color([90, 114, 74], 0.56), dry);
+        let woods = color([88, 116, 76], 0.64)
+            .lerp(&color([72, 118, 64], 0.60), self.tropical as f32)
+            .lerp(&color([92, 114, 86], 0.70), self.polar as f32)
+            .lerp(&color([90, 114, 74], 0.66), dry);
         let meadow = color([168, 178, 118], 1.02)
             .lerp(&color([166, 166, 134], 0.95), self.polar as f32)
             .lerp(&color([188, 178, 126], 1.02), dry);
