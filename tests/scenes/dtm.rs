@@ -93,10 +93,12 @@ fn a_digital_terrain_model_is_heights_features_and_what_is_no_terrain() {
     let shot = build_draw_list(&scene, &scene_camera(&scene, view, (640, 480)).expect("sound"), &|_| ());
     assert!(shot.ground_triangles > 100, "the elevation model");
     let draped = shot.list.items.iter().filter(|item| matches!(item.layer, DepthLayer::Draped(_)));
-    // The line that the picture draws along a shore is no feature of the model, nor is what is painted on a road.
+    // The line that the picture draws along a shore is no feature of the model, nor is what is painted on a road; white water and bars
+    // are of the river.
     let draped = draped.filter(|item| {
         let name = &shot.list.materials[item.material.0 as usize].name;
-        !name.ends_with("shoreline") && !name.starts_with("markings")
+        let is_of_river = ["rapids", "falls", "bar"].contains(&name.as_str());
+        !name.ends_with("shoreline") && !name.starts_with("markings") && !is_of_river
     });
     let mut ribbons = 0;
     for item in draped {
