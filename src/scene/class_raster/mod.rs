@@ -103,10 +103,10 @@ pub struct ClassRaster {
 
 impl ClassRaster {
     /// Opens the file that a scene calls `name`, with the system that the scene states for it; `None` of one that is no TIFF by its
-    /// first bytes. Of an address the extension says so: `.tif` or `.tiff`.
+    /// first bytes, or cannot be opened. Of an address the extension says so: `.tif` or `.tiff`.
     ///
     /// # Errors
-    /// The file is not there, is broken, or has no place.
+    /// The file is broken, or has no place.
     pub fn open(
         name: &str,
         assets: &Assets,

@@ -151,7 +151,8 @@ fn row(stream: &Stream, cut: &Cut) -> RiverRow {
     }
 }
 
-/// Lays water with its white reaches and bars, banks and confluences; narrower water over wider, so that a mouth shows in the river that it flows into.
+/// Lays water with its white reaches and bars, banks and confluences; narrower water over wider, so that a mouth shows in the
+/// river that it flows into.
 fn ribbons(streams: &[Stream], lattice: &Lattice, collected: &mut SceneBuilder) {
     let extent = &lattice.extent();
     let streets: Vec<&Street> = streams.iter().map(|stream| &stream.street).collect();
