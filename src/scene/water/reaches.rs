@@ -82,13 +82,7 @@ fn white_water(water: &Alignment, lattice: &Lattice) -> Vec<(Alignment, RibbonSu
         let (from, to) = (stations[first], stations[last + 1]);
         let surface = seen(first)?;
         let line = line.slice(from, to, MERGE_M)?;
-        let width = match &water.width {
-            Width::Constant(_) => water.width.clone(),
-            Width::Varying(profile) => {
-                let widths = line.stations().iter().map(|station| profile.at(from + station)).collect();
-                Width::Varying(Profile::new(line.stations().to_vec(), widths)?)
-            }
-        };
+        let width = water.width.along(&line, from);
         Some((Alignment { line, level: None, width, support: water.support }, surface))
     };
     runs.filter_map(reach).collect()
