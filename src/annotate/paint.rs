@@ -146,8 +146,9 @@ fn on_picture(
 /// The space between pieces of furniture that stand under each other, design pixels.
 const GAP: f32 = 14.0;
 
-/// A corner is free where a panel covers no more than this share of its own area of the scene.
-const FREE: f32 = 0.05;
+/// A corner is free where a panel covers no more than this share of its own area of the scene: a corner of the scene under a
+/// panel is seen, however small.
+const FREE: f32 = 0.01;
 
 struct Furniture {
     sheet: Sheet,

@@ -13,6 +13,8 @@
 //! Each part fades to its mean before it is a few pixels wide, so that nothing sparkles and an area keeps its mean color from
 //! afar. Everything depends on the place in the world alone: areas side by side go on into each other.
 
+use std::cell::Cell;
+
 use glam::{FloatExt, UVec2, Vec2, Vec3, Vec4};
 
 use crate::cover_noise::{FINER, SHARE, TURN, WAVE_PX, pair, values};
@@ -132,13 +134,13 @@ impl Default for AreaTexture {
 }
 
 /// The parcel around a place.
-struct Parcel {
+pub(crate) struct Parcel {
     /// The cell of its point.
-    cell: UVec2,
+    pub cell: UVec2,
     /// Its own two numbers, -1..=1.
-    own: Vec2,
+    pub own: Vec2,
     /// Meters to its border.
-    inside_m: f32,
+    pub inside_m: f32,
 }
 
 impl AreaTexture {
@@ -247,18 +249,6 @@ impl AreaTexture {
     /// The tone of the piece of a strip at a place in a parcel, -1..=1, and the share of a pixel that the border between two
     /// strips covers.
     fn strip(&self, place: Vec2, pixel_m: f32, own: UVec2) -> (f32, f32) {
-        let along = place.y / self.strip_m - 0.5;
-        let below = floor(along);
-        let piece_m = STRIP_LENGTH * self.strip_m;
-        let number = |row: f32, column: f32| {
-            values(UVec2::new(row as i32 as u32, column as i32 as u32).wrapping_add(own))
-        };
-        let tone = |row: f32| {
-            let along = place.x / piece_m + number(row, 0.0).x - 0.5;
-            let before = floor(along);
-            let part = ((along - before - 0.5) * piece_m / pixel_m + 0.5).clamp(0.0, 1.0);
-            number(row, before).y.lerp(number(row, before + 1.0).y, part)
-        };
         let shown = part_shown(self.strip_m, pixel_m);
         let [from, wide] = STRIP_BORDER;
         let wide_m = wide * self.border_m;
@@ -266,11 +256,10 @@ impl AreaTexture {
         if shown <= 0.0 {
             return (0.0, mean_line);
         }
-        let across_m = (along - below - 0.5) * self.strip_m;
-        let between = tone(below).lerp(tone(below + 1.0), (across_m / pixel_m + 0.5).clamp(0.0, 1.0));
+        let Strip { below, across_m } = Strip::at(place, self.strip_m);
         let line = line_cover(wide_m, across_m.abs(), pixel_m);
-        let line = if number(below, 0.0).x > from { line } else { 0.0 };
-        (shown * between, mean_line.lerp(line, shown))
+        let line = if strip_number(below, 0.0, own).x > from { line } else { 0.0 };
+        (shown * strip_tone(self.strip_m, place, pixel_m, own), mean_line.lerp(line, shown))
     }
 
     /// The share of a pixel that the nearest figure covers, and how far it turns to the north-west, -1..=1.
@@ -302,8 +291,51 @@ impl AreaTexture {
     }
 }
 
+/// Where a place lies between strips.
+struct Strip {
+    /// The row of the strip whose middle lies below.
+    below: f32,
+    /// Meters from the line between that strip and the next.
+    across_m: f32,
+}
+
+impl Strip {
+    fn at(place: Vec2, strip_m: f32) -> Self {
+        let along = place.y / strip_m - 0.5;
+        let below = floor(along);
+        Self { below, across_m: (along - below - 0.5) * strip_m }
+    }
+}
+
+/// Two numbers of a piece of a strip, -1..=1; of column 0 those of the strip, too.
+fn strip_number(row: f32, column: f32, own: UVec2) -> Vec2 {
+    values(UVec2::new(row as i32 as u32, column as i32 as u32).wrapping_add(own))
+}
+
+/// The tone of the piece of a strip `strip_m` meters wide at `place` in the parcel `own`, -1..=1.
+pub(crate) fn strip_tone(strip_m: f32, place: Vec2, pixel_m: f32, own: UVec2) -> f32 {
+    let piece_m = STRIP_LENGTH * strip_m;
+    let tone = |row: f32| {
+        let along = place.x / piece_m + strip_number(row, 0.0, own).x - 0.5;
+        let before = floor(along);
+        between(|piece| strip_number(row, before + piece, own).y, (along - before - 0.5) * piece_m / pixel_m)
+    };
+    let Strip { below, across_m } = Strip::at(place, strip_m);
+    between(|row| tone(below + row), across_m / pixel_m)
+}
+
+/// The tone so many pixels past the line between two, of which `tone` of 0 is the one before and of 1 the one behind.
+fn between(tone: impl Fn(f32) -> f32, past_px: f32) -> f32 {
+    // Most pixels lie in one of them.
+    match past_px + 0.5 {
+        part if part <= 0.0 => tone(0.0),
+        part if part >= 1.0 => tone(1.0),
+        part => tone(0.0).lerp(tone(1.0), part),
+    }
+}
+
 /// A place by axes of which the first runs along `axis`, of length 1.
-fn turned(at: Vec2, axis: Vec2) -> Vec2 {
+pub(crate) fn turned(at: Vec2, axis: Vec2) -> Vec2 {
     Vec2::new(axis.x, -axis.y).rotate(at)
 }
 
@@ -314,7 +346,7 @@ fn line_cover(wide_m: f32, away_m: f32, pixel_m: f32) -> f32 {
 }
 
 /// How far a part of this width shows in pixels that wide, 0..=1.
-fn part_shown(wide_m: f32, pixel_m: f32) -> f32 {
+pub(crate) fn part_shown(wide_m: f32, pixel_m: f32) -> f32 {
     shown(wide_m, PART_PX, pixel_m)
 }
 
@@ -344,28 +376,70 @@ fn octaves(at: Vec2, first_m: f32, pixel_m: f32) -> AreaNoise {
     AreaNoise { sum, bend }
 }
 
+/// The points of parcels in the squares around one.
+#[derive(Clone, Copy, Debug)]
+struct ParcelPoints {
+    /// The corner of the square in the middle, in squares.
+    corner: Vec2,
+    /// Two numbers of each square, -1..=1, row by row from the south-western one.
+    hashes: [Vec2; Self::COUNT],
+}
+
+impl ParcelPoints {
+    /// The squares whose points may be the nearest ones.
+    const COUNT: usize = 9;
+    /// Those around no square.
+    const NONE: Self = Self { corner: Vec2::NAN, hashes: [Vec2::ZERO; Self::COUNT] };
+
+    /// The points around the square with this corner: a pixel next to another looks at the same ones, which each thread keeps.
+    fn around(corner: Vec2) -> Self {
+        let last = LAST_POINTS.get();
+        if last.corner == corner {
+            return last;
+        }
+        let cell = |index: usize| corner + Vec2::new((index % 3) as f32 - 1.0, (index / 3) as f32 - 1.0);
+        let hashes = std::array::from_fn(|index| values(Self::salted(cell(index))));
+        let points = Self { corner, hashes };
+        LAST_POINTS.set(points);
+        points
+    }
+
+    fn salted(cell: Vec2) -> UVec2 {
+        cell.as_ivec2().as_uvec2().wrapping_add(UVec2::splat(PARCEL_SALT))
+    }
+}
+
+thread_local! {
+    /// The points around the last square that the thread looked at.
+    static LAST_POINTS: Cell<ParcelPoints> = const { Cell::new(ParcelPoints::NONE) };
+}
+
 /// The parcel around a place.
-fn parcel(at: Vec2, parcel_m: f32) -> Parcel {
+pub(crate) fn parcel(at: Vec2, parcel_m: f32) -> Parcel {
     let grid = at / parcel_m;
     let corner = floor_each(grid);
+    let points = ParcelPoints::around(corner);
     let (mut first, mut second) = ((f32::INFINITY, Vec2::ZERO), (f32::INFINITY, Vec2::ZERO));
-    let (mut found, mut own) = (UVec2::ZERO, Vec2::ZERO);
-    for index in 0..9 {
+    let (mut found, mut own) = (corner, Vec2::ZERO);
+    for index in 0..ParcelPoints::COUNT {
         let cell = corner + Vec2::new((index % 3) as f32 - 1.0, (index / 3) as f32 - 1.0);
-        let salted = cell.as_ivec2().as_uvec2().wrapping_add(UVec2::splat(PARCEL_SALT));
-        let hash = values(salted);
+        let hash = points.hashes[index];
         let away = cell + 0.5 + PARCEL_JITTER * hash - grid;
         let distance = away.length_squared();
         if distance < first.0 {
             (second, first) = (first, (distance, away));
-            (found, own) = (salted, hash);
+            (found, own) = (cell, hash);
         } else if distance < second.0 {
             second = (distance, away);
         }
     }
     // To the line halfway between the two points.
     let apart = (second.1 - first.1).length().max(1e-3);
-    Parcel { cell: found, own, inside_m: (second.0 - first.0) / (2.0 * apart) * parcel_m }
+    Parcel {
+        cell: ParcelPoints::salted(found),
+        own,
+        inside_m: (second.0 - first.0) / (2.0 * apart) * parcel_m,
+    }
 }
 
 #[cfg(test)]

@@ -51,12 +51,17 @@ pub struct CoverNoise {
     pub form: Vec2,
     /// How high these forms stand: positive on their ridges, negative between.
     pub ridge: f32,
+    /// The place itself, world X and Y.
+    pub at: Vec2,
+    /// The greatest width of the pixel in plan, meters.
+    pub longest_m: f32,
 }
 
 impl CoverNoise {
-    /// The noise at world X and Y, over a pixel of a mean width of `pixel_m` meters, on a map of cells `cell_m` meters wide.
-    pub fn new(at: Vec2, pixel_m: f32, cell_m: f32) -> Self {
-        LAST_CELLS.with(|cells| Self::with_cells(at, pixel_m, cell_m, cells))
+    /// The noise at world X and Y, over a pixel of a mean and a greatest width of `pixel_m` meters, on a map of cells `cell_m`
+    /// meters wide.
+    pub fn new(at: Vec2, [pixel_m, longest_m]: [f32; 2], cell_m: f32) -> Self {
+        Self { at, longest_m, ..LAST_CELLS.with(|cells| Self::with_cells(at, pixel_m, cell_m, cells)) }
     }
 
     fn with_cells(
@@ -183,10 +188,10 @@ mod tests {
     fn the_cells_that_a_thread_keeps_change_nothing() {
         let fresh = |at: Vec2| {
             let cells = [const { Cell::new(LatticeCell::NONE) }; OCTAVES as usize];
-            CoverNoise::with_cells(at, 1.0, 30.0, &cells)
+            CoverNoise { at, longest_m: 1.0, ..CoverNoise::with_cells(at, 1.0, 30.0, &cells) }
         };
         for at in places().flat_map(|at| [at, at + Vec2::new(0.7, 0.0), -at]) {
-            assert_eq!(CoverNoise::new(at, 1.0, 30.0), fresh(at), "{at}");
+            assert_eq!(CoverNoise::new(at, [1.0; 2], 30.0), fresh(at), "{at}");
         }
     }
 
@@ -217,13 +222,14 @@ mod tests {
     #[test]
     fn pixels_see_waves_wider_than_themselves_alone_and_forms_below_the_cells() {
         for at in places() {
-            let far = CoverNoise::new(at, 2000.0, 30.0);
-            assert_eq!(far, CoverNoise::default());
-            let overview = CoverNoise::new(at, 60.0, 30.0);
+            let far = CoverNoise::new(at, [2000.0; 2], 30.0);
+            assert_eq!(far, CoverNoise { at, longest_m: 2000.0, ..CoverNoise::default() });
+            let overview = CoverNoise::new(at, [60.0; 2], 30.0);
             assert_eq!((overview.form, overview.ridge, overview.fine), (Vec2::ZERO, 0.0, 0.0));
         }
-        let sum =
-            |pixel_m: f32| places().map(|at| CoverNoise::new(at, pixel_m, 30.0).form.length()).sum::<f32>();
+        let sum = |pixel_m: f32| {
+            places().map(|at| CoverNoise::new(at, [pixel_m; 2], 30.0).form.length()).sum::<f32>()
+        };
         assert!(sum(1.0) > 1.2 * sum(10.0) && sum(10.0) > 0.0);
     }
 }

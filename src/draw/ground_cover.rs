@@ -2,7 +2,7 @@
 //! tints over the ramp's, with the texture of each.
 //!
 //! Trees grow where it is moist enough: it is moister on high ground, on shady slopes and in hollows. They leave level low
-//! ground to fields, and end at the tree line; snow begins at the snow line; both lie higher on slopes toward the equator. Scree
+//! ground to fields, which lie in plots of grass, dry crops and soil, and end at the tree line; snow begins at the snow line; both lie higher on slopes toward the equator. Scree
 //! lies up to its angle of repose, about 36°; what is steeper is rock, and holds no snow. [`CoverNoise`] moves all borders, so
 //! that they look grown and not drawn.
 //!
@@ -14,6 +14,7 @@ use glam::{FloatExt, Vec2, Vec3};
 
 use crate::color::{Srgba, luminance};
 use crate::cover_noise::CoverNoise;
+use crate::field_plots::field_tone;
 use crate::ground::GroundPost;
 use crate::ground_grain::{WIDE_PX, noise};
 use crate::shown::shown;
@@ -46,6 +47,11 @@ pub(crate) const WILD: [f32; 2] = [0.3, 0.55];
 pub(crate) const WILD_WOODS: f32 = 0.8;
 /// The greatest share of meadows among fields.
 pub(crate) const FIELD_MEADOW: f32 = 0.5;
+/// From and to which moisture land is farmed, and from and to which rise no more; low and level ground alone is.
+pub(crate) const FARMED_MOISTURE: [f32; 2] = [0.30, 0.48];
+pub(crate) const FARMED_RISE: [f32; 2] = [0.08, 0.22];
+/// By how much the tones of plots follow the patches of the noise: one valley has more grass, another more crops.
+pub(crate) const FARMED_PATCHES: f32 = 0.8;
 /// The greatest share of a cover over the tint.
 pub(crate) const MOST: f32 = 0.85;
 /// The share of a cover's own hue: the rest is the tint's, which tells heights through all covers, as in the cross-blended
@@ -69,10 +75,10 @@ pub(crate) const FORM_RISE: f32 = 0.6;
 /// them.
 pub(crate) const RIDGES: f32 = 0.4;
 
-/// Which of the covers' colors is that of snow.
-const SNOW: usize = 4;
+/// No plot is seen by a pixel less wide, meters.
+pub(crate) const LEAST_PIXEL_M: f32 = 1e-3;
 
-/// The covers of natural ground, and where they change.
+/// The covers of ground, and where they change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundCover {
     /// The elevation of the tree line, meters.
@@ -87,8 +93,8 @@ pub struct GroundCover {
     pub moisture: f32,
     /// Whether the ground is drawn with forms too small for its cells: not under a picture, which shows its own.
     pub has_forms: bool,
-    /// The colors of woods, meadow, scree, rock and snow.
-    pub colors: [CoverColor; 5],
+    /// The colors of woods, meadow, scree, rock, snow, crops and tilled soil.
+    pub colors: [CoverColor; 7],
 }
 
 /// The color of a cover: a hue at the tint's own luminance, times a factor.
@@ -142,21 +148,34 @@ impl GroundCover {
         let rock = step(rise, ROCK_RISE.map(|rise| rise * bare));
         let snow = step(height, [self.snow_m - half, self.snow_m + half]) * (1.0 - rock);
         let own = luminance(tint);
+        let farmed = step(moist, FARMED_MOISTURE)
+            * (1.0 - step(rise, FARMED_RISE))
+            * (1.0 - wild)
+            * (1.0 - above_trees);
+        let [of_woods, of_meadow, of_scree, of_rock, of_snow, of_crops, of_soil] = self.colors;
         let mut color = tint;
-        for (cover, share) in [1, 0, 2, 3, SNOW].into_iter().zip([meadow, woods, scree, rock, snow]) {
-            let CoverColor { hue, light } = self.colors[cover];
-            // Snow hides the ground that heights color.
-            let hue_share = if cover == SNOW { 1.0 } else { HUE };
-            color = color.lerp(tint.lerp(hue * own, hue_share) * light, MOST * share);
+        let mut lay = |cover: &CoverColor, hue_share: f32, share: f32| {
+            color = color.lerp(tint.lerp(cover.hue * own, hue_share) * cover.light, MOST * share);
+        };
+        lay(&of_meadow, HUE, meadow);
+        if farmed > 0.0 {
+            let plot = field_tone(noise.at, noise.longest_m.max(LEAST_PIXEL_M));
+            let tone = (plot + FARMED_PATCHES * patch).clamp(-1.0, 1.0);
+            let other = if tone < 0.0 { of_meadow } else { of_soil };
+            lay(&of_crops.lerp(&other, tone.abs()), HUE, farmed);
         }
+        lay(&of_woods, HUE, woods);
+        lay(&of_scree, HUE, scree);
+        lay(&of_rock, HUE, rock);
+        // Snow hides the ground that heights color.
+        lay(&of_snow, 1.0, snow);
         let open = (1.0 - snow).max(0.0);
         let wooded = woods * (1.0 - rock) * open;
         let layered = rock.max(scree * (1.0 - green)) * open;
         let ridges = if self.has_forms { RIDGES * ridge * steep.min(1.0) } else { 0.0 };
-        let bushy = (1.0 - above_trees) * (1.0 - woods) * (1.0 - rock) * open;
+        let bushy = (1.0 - above_trees) * (1.0 - woods) * (1.0 - rock) * (1.0 - farmed) * open;
         let shrubs = bushy * step(fine + 0.5 * patch, SHRUBS);
-        let CoverColor { hue, light } = self.colors[0];
-        color = color.lerp(hue * (own * light), SHRUB_SHARE * shrubs);
+        color = color.lerp(of_woods.hue * (own * of_woods.light), SHRUB_SHARE * shrubs);
         let rough = TUFTS.lerp(CROWNS, wooded);
         let texture = (PATCHES * patch + rough * fine) * open + ridges;
         // Nearly everywhere there is no rock, whose layers would be noise for nothing.
@@ -210,6 +229,8 @@ mod tests {
                 color(176, 170, 160, 0.97),
                 color(150, 145, 142, 0.8),
                 color(240, 244, 250, 1.2),
+                color(226, 202, 128, 1.08),
+                color(186, 150, 112, 0.88),
             ],
         }
     }

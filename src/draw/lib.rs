@@ -8,6 +8,7 @@ pub mod border;
 pub mod color;
 pub mod contour_ground;
 pub mod cover_noise;
+mod field_plots;
 mod floor;
 pub mod font;
 pub mod ground;

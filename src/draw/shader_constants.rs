@@ -7,7 +7,9 @@ use glam::Vec3;
 
 use crate::lighting::ReliefShading;
 use crate::water::WaterColor;
-use crate::{area_texture, cover_noise, ground_cover, ground_grain, hatching, lighting, water, wireframe};
+use crate::{
+    area_texture, cover_noise, field_plots, ground_cover, ground_grain, hatching, lighting, water, wireframe,
+};
 
 /// A language that shaders are written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,6 +86,11 @@ pub fn shader_constants() -> Vec<(&'static str, Vec<f32>)> {
         ("COVER_WILD", ground_cover::WILD.to_vec()),
         ("COVER_WILD_WOODS", vec![ground_cover::WILD_WOODS]),
         ("COVER_FIELD_MEADOW", vec![ground_cover::FIELD_MEADOW]),
+        ("COVER_FARMED_MOISTURE", ground_cover::FARMED_MOISTURE.to_vec()),
+        ("COVER_FARMED_PATCHES", vec![ground_cover::FARMED_PATCHES]),
+        ("COVER_FARMED_RISE", ground_cover::FARMED_RISE.to_vec()),
+        ("COVER_LEAST_PIXEL_M", vec![ground_cover::LEAST_PIXEL_M]),
+        ("FIELD_M", field_plots::FIELD_M.to_vec()),
         ("COVER_MOST", vec![ground_cover::MOST]),
         ("COVER_HUE", vec![ground_cover::HUE]),
         ("COVER_PATCHES", vec![ground_cover::PATCHES]),

@@ -58,7 +58,7 @@ fn color(map: &GroundMap, at: Vec2, step: Vec2) -> Srgba {
         |of: fn(&GroundPost) -> f32| Vec2::new(of(&east) - of(&west), of(&north) - of(&south)).length();
     let change = PixelChange { height_m: change(|post| post.height_m), water: change(|post| post.water) };
     let draped = map.imagery.as_deref().map(|imagery| imagery.at(at)).unwrap_or_default();
-    let noise = |_| CoverNoise::new(at, step.max_element(), map.cell.max_element());
+    let noise = |_| CoverNoise::new(at, [step.max_element(); 2], map.cell.max_element());
     let detail =
         GroundDetail { grain: 1.0, cover: map.cover.map(noise).unwrap_or_default(), draped, facing: 0.0 };
     Srgba::from_linear(map.albedo(&map.sample(at), change, &detail))

@@ -36,7 +36,7 @@ struct Frame {
     imagery_size: vec4f,  // its columns and rows; 1 where there is one; 1 where it is shaded
     cover: vec4f,         // tree line and snow line in meters, true rise over drawn (0: no cover), 1 where the north is shady
     cover_more: vec4f,    // moisture; cell of the ground in meters; 1 where it has forms too small for that; share of the fill
-    cover_colors: array<vec4f, 5>, // rgb of luminance 1, factor on the tint's luminance: woods, meadow, scree, rock, snow
+    cover_colors: array<vec4f, 7>, // rgb of luminance 1, factor on the tint's luminance: woods, meadow, scree, rock, snow, crops, soil
     contour: vec4f,       // rgb, strength
     contour_shape: vec4f, // interval in meters (0: none), width in pixels, every how many is heavier; 1 where the ground has a grain
     contour_lit: vec4f,   // rgb of lines toward the light, 1 where lines are illuminated
@@ -470,6 +470,8 @@ struct Noise {
     fine: f32,
     form: vec2f,
     ridge: f32,
+    at: vec2f,
+    longest_m: f32,
 }
 
 fn noise_values(at: vec2u) -> vec2f {
@@ -480,8 +482,8 @@ fn noise_values(at: vec2u) -> vec2f {
     return vec2f(vec2u(bits & 65535u, bits >> 16u)) / 32768.0 - 1.0;
 }
 
-fn cover_noise(at: vec2f, mean_pixel_m: f32) -> Noise {
-    var sum = Noise(0.0, 0.0, 0.0, vec2f(0.0), 0.0);
+fn cover_noise(at: vec2f, mean_pixel_m: f32, longest_m: f32) -> Noise {
+    var sum = Noise(0.0, 0.0, 0.0, vec2f(0.0), 0.0, at, longest_m);
     var wave_m = NOISE_FIRST_M;
     var turn = vec2f(1.0, 0.0);
     var wider = vec2f(0.0);
@@ -532,6 +534,19 @@ fn strata_wave(height: f32, change: f32, uneven: f32, wave_m: f32) -> f32 {
     return shown * grain_noise(vec2f(height / wave_m + 2.0 * uneven, 0.5));
 }
 
+// The function of src/draw/field_plots.rs.
+fn field_tone(at: vec2f, pixel_m: f32) -> f32 {
+    let shown = area_shown(FIELD_M.x, pixel_m);
+    if shown <= 0.0 {
+        return 0.0;
+    }
+    let parcel = area_parcel(at, FIELD_M.x);
+    let place = area_turned(at, normalize(parcel.own + vec2f(1e-3, 0.0)));
+    let whole = noise_values(parcel.cell + u32(AREA_SALTS.y)).x;
+    let inside = clamp(parcel.inside_m / pixel_m + 0.5, 0.0, 1.0);
+    return shown * inside * (AREA_PARCEL_TONE * whole + area_strip(place, FIELD_M.y, 0.0, pixel_m, parcel.cell).x);
+}
+
 fn with_cover(tint: vec3f, post: Post, change: f32, noise: Noise) -> vec3f {
     let slope = post.slope * frame.cover.z;
     let shade = clamp(-slope.y * frame.cover.w, -1.0, 1.0);
@@ -555,6 +570,14 @@ fn with_cover(tint: vec3f, post: Post, change: f32, noise: Noise) -> vec3f {
     let snow = smoothstep(frame.cover.y - half, frame.cover.y + half, height) * (1.0 - rock);
     let own = dot(tint, vec3f(0.2126, 0.7152, 0.0722));
     var color = covered_by(tint, tint, own, frame.cover_colors[1], meadow);
+    let farmed = smoothstep(COVER_FARMED_MOISTURE.x, COVER_FARMED_MOISTURE.y, moist)
+        * (1.0 - smoothstep(COVER_FARMED_RISE.x, COVER_FARMED_RISE.y, rise)) * (1.0 - wild) * (1.0 - above_trees);
+    if farmed > 0.0 {
+        let plot = field_tone(noise.at, max(noise.longest_m, COVER_LEAST_PIXEL_M));
+        let tone = clamp(plot + COVER_FARMED_PATCHES * noise.patches, -1.0, 1.0);
+        let other = select(frame.cover_colors[6], frame.cover_colors[1], tone < 0.0);
+        color = covered_by(color, tint, own, mix(frame.cover_colors[5], other, abs(tone)), farmed);
+    }
     color = covered_by(color, tint, own, frame.cover_colors[0], woods);
     color = covered_by(color, tint, own, frame.cover_colors[2], scree);
     color = covered_by(color, tint, own, frame.cover_colors[3], rock);
@@ -566,7 +589,7 @@ fn with_cover(tint: vec3f, post: Post, change: f32, noise: Noise) -> vec3f {
         + strata_wave(post.height, change, noise.uneven, COVER_STRATA_M.z);
     let layered = max(rock, scree * (1.0 - green)) * open;
     let ridges = COVER_RIDGES * noise.ridge * min(length(slope), 1.0) * frame.cover_more.z;
-    let bushy = (1.0 - above_trees) * (1.0 - woods) * (1.0 - rock) * open;
+    let bushy = (1.0 - above_trees) * (1.0 - woods) * (1.0 - rock) * (1.0 - farmed) * open;
     let shrubs = bushy * smoothstep(COVER_SHRUBS.x, COVER_SHRUBS.y, noise.fine + 0.5 * noise.patches);
     color = mix(color, frame.cover_colors[0].rgb * (own * frame.cover_colors[0].w), COVER_SHRUB_SHARE * shrubs);
     let rough = mix(COVER_TUFTS, COVER_CROWNS, wooded);
@@ -1001,10 +1024,10 @@ fn on_ground(color: vec4f, flags: u32, world: vec3f, span: Footprint) -> Shaded 
     if has(NATURAL_PART) && (flags & NATURAL) != 0u {
         shaded.color = vec4f(color.rgb * grain, color.a);
     }
-    var noise = Noise(0.0, 0.0, 0.0, vec2f(0.0), 0.0);
+    var noise = Noise(0.0, 0.0, 0.0, vec2f(0.0), 0.0, vec2f(0.0), 0.0);
     var small = vec2f(0.0);
     if has(COVER_PART) {
-        noise = cover_noise(world.xy, sqrt(length(span.right.xy) * length(span.down.xy)));
+        noise = cover_noise(world.xy, sqrt(length(span.right.xy) * length(span.down.xy)), pixel_m(span));
         small = small_form(post, noise);
     }
     var unlit = 0.0;

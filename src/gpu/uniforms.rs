@@ -65,7 +65,7 @@ pub struct FrameUniforms {
     imagery_size: [f32; 4],
     cover: [f32; 4],
     cover_more: [f32; 4],
-    cover_colors: [[f32; 4]; 5],
+    cover_colors: [[f32; 4]; 7],
     contour: [f32; 4],
     contour_shape: [f32; 4],
     contour_lit: [f32; 4],

@@ -37,6 +37,13 @@ const LOW_AZIMUTHS_DEG: [f64; 5] = [0.0, -30.0, 30.0, -60.0, 60.0];
 const DARK: f64 = 0.25;
 /// Where the ground before a block is looked at, in sixteenths of its longer side from its middle: fine enough for a ridge.
 const APPROACH: Range<u32> = 8..32;
+/// Where the ground beside and behind a block is looked at, in sixteenths of its longer side from its middle: it widens like
+/// the view.
+const FLANKS: Range<u32> = 0..16;
+/// What ground that ends beside the block costs, where ground that hides as much as there is to see costs 1.
+const ENDED: f64 = 3.0;
+/// The same for ground that ends before the block, where the walls of the model are in the way.
+const BEYOND: f64 = 4.0;
 /// Where there is no ground before any block, that with the greatest difference of heights is the best still.
 const LEAST_HELD: f64 = 0.01;
 /// Along each side of a block as many places are looked at: enough to compare directions.
@@ -87,9 +94,10 @@ pub(super) fn cameras(scene: &SceneModel, vectors: Rect, exaggeration: f64) -> V
     cameras
 }
 
-/// The block of the ground with the greatest difference of heights and a block around it, from the south-west post on; of
-/// those whose middle lies in `subject`, where that is stated and holds any. Where data are missing, the difference counts by
-/// how much ground there is around the block and before it, lest the walls of the model hide it. `None` on level ground.
+/// The block of the ground with the greatest difference of heights and a block around it, from the south-west post on, moved
+/// inward at the border of the model; of those whose middle lies in `subject`, where that is stated and holds any. The difference
+/// counts by how much ground there is in and before what is shown, lest the walls of the model hide it or a picture show its end.
+/// `None` on level ground.
 fn boldest_block(lattice: &Lattice, subject: Option<Rect>) -> Option<Rect> {
     let side = (lattice.columns().max(lattice.rows()) / BLOCKS).max(2);
     let relief = |&(left, below): &(u32, u32)| {
@@ -115,13 +123,12 @@ fn boldest_block(lattice: &Lattice, subject: Option<Rect>) -> Option<Rect> {
     let block = |(column, row): (u32, u32)| {
         let min = lattice.position(Post { column, row }).as_dvec2();
         let size = lattice.cell() * f64::from(side);
-        Rect { min: min - size, max: min + size * 2.0 }.intersection(&lattice.extent())
+        let extent = lattice.extent();
+        let most = (extent.max - size * 3.0).max(extent.min);
+        let min = (min - size).clamp(extent.min, most);
+        Rect { min, max: min + size * 3.0 }.intersection(&extent)
     };
-    let is_masked = lattice.heights().iter().any(|height| height.is_nan());
-    let worth = |corner: (u32, u32)| {
-        let held = if is_masked { held_share(lattice, block(corner)) } else { 1.0 };
-        f64::from(relief(&corner)) * held * held
-    };
+    let worth = |corner: (u32, u32)| f64::from(relief(&corner)) * held_share(lattice, block(corner)).powi(2);
     let (corner, worth) = among
         .into_iter()
         .map(|corner| (corner, worth(corner)))
@@ -129,11 +136,12 @@ fn boldest_block(lattice: &Lattice, subject: Option<Rect>) -> Option<Rect> {
     (worth > 0.0).then(|| block(corner))
 }
 
-/// The share of a block and of the ground before it, from the best of the low camera's directions, that holds data.
+/// The share of a block and of the ground before and beside it, from the best of the low camera's directions, that holds data.
 fn held_share(lattice: &Lattice, block: Rect) -> f64 {
     let held = places(block).filter(|at| is_held(lattice, *at)).count() as f64 / f64::from(PLACES * PLACES);
     let before = LOW_AZIMUTHS_DEG.map(|azimuth_deg| {
-        approach(block, azimuth_deg).filter(|at| is_held(lattice, *at)).count() as f64 / APPROACH.len() as f64
+        let seen = approach(block, azimuth_deg).chain(flanks(block, azimuth_deg));
+        seen.filter(|at| is_held(lattice, *at)).count() as f64 / (APPROACH.len() + 2 * FLANKS.len()) as f64
     });
     (held * before.into_iter().fold(0.0, f64::max)).max(LEAST_HELD)
 }
@@ -148,8 +156,17 @@ fn approach(block: Rect, azimuth_deg: f64) -> impl Iterator<Item = DVec2> {
     APPROACH.map(move |step| center - toward * (reach * f64::from(step) / 16.0))
 }
 
+/// Places on the ground at both sides of a block and behind it, where such a camera sees the ground end if it does.
+fn flanks(block: Rect, azimuth_deg: f64) -> impl Iterator<Item = DVec2> {
+    let (center, reach, toward) = (block.center(), block.size().max_element(), heading(azimuth_deg));
+    FLANKS.flat_map(move |step| {
+        let away = f64::from(step) / 16.0;
+        [1.0, -1.0].map(|side| center + (toward * away - toward.perp() * side * (0.55 + 0.35 * away)) * reach)
+    })
+}
+
 /// The direction toward `block`, degrees clockwise from north, from which most of it is lit and the ground before it is low;
-/// beyond the border of the data there is none, and the walls of the ground's block would be in the way.
+/// beyond the border of the data there is none: the walls of the ground's block would be in the way, and its end would show.
 fn best_approach(lattice: &Lattice, block: Rect, exaggeration: f64) -> f64 {
     let heights = || places(block).filter_map(|at| lattice.cell_at(at)).map(|(post, _)| lattice.height(post));
     let (low, high) = heights()
@@ -162,7 +179,10 @@ fn best_approach(lattice: &Lattice, block: Rect, exaggeration: f64) -> f64 {
             (beyond + u32::from(height.is_nan()), highest.max(height))
         });
         let hidden = f64::from((highest - low) / (high - low).max(f32::MIN_POSITIVE));
-        (beyond, hidden + dark_share(lattice, block, azimuth_deg, exaggeration))
+        let ends = flanks(block, azimuth_deg).filter(|at| !is_held(lattice, *at)).count();
+        let ended = ends as f64 / (2 * FLANKS.len()) as f64;
+        let before = f64::from(beyond) / APPROACH.len() as f64;
+        hidden + BEYOND * before + ENDED * ended + dark_share(lattice, block, azimuth_deg, exaggeration)
     };
     let [first, others @ ..] = LOW_AZIMUTHS_DEG.map(|azimuth| (azimuth, cost(azimuth)));
     others.into_iter().fold(first, |best, next| if next.1 < best.1 { next } else { best }).0

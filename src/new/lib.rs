@@ -45,9 +45,12 @@ use sandtable_scene::build::build_with;
 use sandtable_scene::planned_pictures::{ElevationNeed, PlannedPictures};
 use sandtable_scene::scene_file::OpenSceneError;
 use sandtable_scene::scene_model::SceneModel;
+use sandtable_terrain::lattice::Lattice;
 
 /// About as many contour lines as the eye can follow.
 const CONTOURS: f64 = 12.0;
+/// The least interval of contours, in mean changes of heights from post to post.
+const CONTOUR_STEPS: f64 = 3.0;
 
 /// Options for a new scene file.
 #[derive(Clone, Debug, Default)]
@@ -212,7 +215,7 @@ fn complete(
     draft.crs_name = scene.stated_crs.name().to_owned();
     draft.exaggeration = exaggeration(draft.relief_m / size_m);
     draft.post_m = lattice.measured_cell().max_element();
-    draft.contours_m = NiceNumber::at_most(draft.relief_m / CONTOURS).map(|nice| nice.value());
+    draft.contours_m = contour_interval(lattice, draft.relief_m);
     draft.cameras = cameras(&scene, vectors, draft.exaggeration);
     for camera in &mut draft.cameras {
         camera.shown = camera.shown.map(|shown| stated(shown, &scene));
@@ -248,6 +251,33 @@ fn stated(rect: Rect, scene: &SceneModel) -> Rect {
         max: DVec2::new(low_right.x.min(high_right.x), high_left.y.min(high_right.y)),
     };
     if inner.is_empty() { Rect::around([low_left, low_right, high_left, high_right]) } else { inner }
+}
+
+/// The interval of contours in meters; `None` on level ground.
+///
+/// It is wider than the relief asks for where the ground changes more from post to post: between such posts lines would tell
+/// the noise of the model, as roofs and trees in one of radar.
+fn contour_interval(lattice: &Lattice, relief_m: f64) -> Option<f64> {
+    let wanted = NiceNumber::at_most(relief_m / CONTOURS)?.value();
+    let told = NiceNumber::at_least(CONTOUR_STEPS * mean_step_m(lattice)).map_or(0.0, |nice| nice.value());
+    Some(wanted.max(told))
+}
+
+/// The mean change of heights from a post to the next one, in meters.
+fn mean_step_m(lattice: &Lattice) -> f64 {
+    let columns = lattice.columns() as usize;
+    let rows = lattice.heights().chunks_exact(columns);
+    let eastward = rows.clone().flat_map(|row| row.windows(2).map(|pair| (pair[0], pair[1])));
+    let northward = rows
+        .clone()
+        .zip(rows.skip(1))
+        .flat_map(|(south, north)| south.iter().copied().zip(north.iter().copied()));
+    let steps = eastward
+        .chain(northward)
+        .map(|(from, to)| f64::from((to - from).abs()))
+        .filter(|step| !step.is_nan());
+    let (sum, count) = steps.fold((0.0, 0_u32), |(sum, count), step| (sum + step, count + 1));
+    sum / f64::from(count.max(1))
 }
 
 /// The vertical exaggeration for a relief as a share of the extent: flat country shows nothing at true scale.

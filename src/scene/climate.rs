@@ -103,15 +103,15 @@ impl Climate {
         }
     }
 
-    /// The colors of woods, meadow, scree, rock and snow.
-    fn colors(&self) -> [CoverColor; 5] {
+    /// The colors of [`GroundCover::colors`].
+    fn colors(&self) -> [CoverColor; 7] {
         let dry = part(self.dryness, [0.2, 0.8]) as f32;
         // Red rock: of hot deserts alone.
         let warmth = part(self.latitude_deg.unwrap_or(FIRST_DEG).abs(), [44.0, 35.0]);
         let hot = (part(self.dryness, [0.6, 0.85]) * warmth) as f32;
         let color =
             |[red, green, blue]: [u8; 3], light: f32| CoverColor::new(Srgba::opaque(red, green, blue), light);
-        let woods = color([88, 116, 76], 0.64)
+        let woods = color([94, 114, 66], 0.64)
             .lerp(&color([72, 118, 64], 0.60), self.tropical as f32)
             .lerp(&color([92, 114, 86], 0.70), self.polar as f32)
             .lerp(&color([90, 114, 74], 0.66), dry);
@@ -120,7 +120,9 @@ impl Climate {
             .lerp(&color([188, 178, 126], 1.02), dry);
         let scree = color([184, 173, 150], 0.97).lerp(&color([202, 172, 138], 0.98), hot);
         let rock = color([156, 149, 128], 0.80).lerp(&color([180, 128, 98], 0.80), hot);
-        [woods, meadow, scree, rock, color([238, 243, 250], 1.2)]
+        let crops = color([224, 204, 136], 1.16);
+        let soil = color([186, 150, 112], 0.92).lerp(&color([190, 140, 104], 0.94), dry);
+        [woods, meadow, scree, rock, color([238, 243, 250], 1.2), crops, soil]
     }
 }
 

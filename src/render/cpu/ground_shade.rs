@@ -117,7 +117,7 @@ impl<'a> GroundShader<'a> {
         if self.map.cover.is_some() && !self.shore(&point, hit).is_open() {
             let cell_m = self.map.cell.max_element();
             let at = hit.world.truncate() + self.noise_origin;
-            point.noise = CoverNoise::new(at, hit.mean_pixel_m(), cell_m);
+            point.noise = CoverNoise::new(at, [hit.mean_pixel_m(), hit.pixel_m()], cell_m);
         }
         point
     }

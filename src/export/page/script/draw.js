@@ -158,7 +158,7 @@ class Renderer {
     const { cover, contours } = map;
     set("cover", "uniform4f", ...(cover ? [cover.tree, cover.snow, cover.trueRise, cover.shadyNorth] : [0, 0, 0, 0]));
     set("cover_more", "uniform3f", ...(cover ? [cover.moisture, cover.cell, cover.hasForms ? 1 : 0] : [0, 1, 0]));
-    set("cover_colors", "uniform4fv", cover ? cover.colors : new Array(20).fill(0));
+    set("cover_colors", "uniform4fv", cover ? cover.colors : new Array(28).fill(0));
     const linear = (channel) => (channel <= 0.04045 ? channel / 12.92 : ((channel + 0.055) / 1.055) ** 2.4);
     set("contour", "uniform4f", ...(contours
       ? [...contours.color.slice(0, 3).map((channel) => linear(channel / 255)), contours.color[3] / 255]

@@ -205,7 +205,7 @@ uniform vec4 bathymetry[9]; // height, rgb
 uniform vec4 undergrowth, shallow, open_water;
 uniform vec4 cover;         // tree line, snow line, true rise over drawn (0: no cover), 1 where the north is shady
 uniform vec3 cover_more;    // moisture, cell of the ground in meters, 1 where it has forms too small for that
-uniform vec4 cover_colors[5]; // rgb of luminance 1, factor on the tint's luminance: woods, meadow, scree, rock, snow
+uniform vec4 cover_colors[7]; // rgb of luminance 1, factor on the tint's luminance: woods, meadow, scree, rock, snow, crops, soil
 uniform vec4 contour;       // rgb, strength
 uniform vec4 contour_lit;   // rgb of lines toward the light, 1 where lines are illuminated
 uniform vec3 contour_turn;  // their width along the light and across it, how fast they turn
@@ -242,7 +242,7 @@ vec3 water_at(float height) {
   return mix(low.yzw, high.yzw, clamp((height - low.x) / (high.x - low.x), 0.0, 1.0));
 }
 
-struct Noise { float uneven; float patches; float fine; vec2 form; float ridge; };
+struct Noise { float uneven; float patches; float fine; vec2 form; float ridge; vec2 at; float longest_m; };
 
 vec2 noise_values(uvec2 at) {
   uint bits = at.x * 2376512323u + at.y * 3625334849u;
@@ -253,8 +253,8 @@ vec2 noise_values(uvec2 at) {
 }
 
 ${AREA_SHADER}
-Noise cover_noise(vec2 at, float mean_pixel_m) {
-  Noise sum = Noise(0.0, 0.0, 0.0, vec2(0.0), 0.0);
+Noise cover_noise(vec2 at, float mean_pixel_m, float longest_m) {
+  Noise sum = Noise(0.0, 0.0, 0.0, vec2(0.0), 0.0, at, longest_m);
   float wave_m = NOISE_FIRST_M;
   vec2 turn = vec2(1.0, 0.0);
   vec2 wider = vec2(0.0);
@@ -302,6 +302,16 @@ float strata_wave(float height, float change, float uneven, float wave_m) {
   return shown * noise(vec2(height / wave_m + 2.0 * uneven, 0.5));
 }
 
+float field_tone(vec2 at, float pixel_m) {
+  float shown = area_shown(FIELD_M.x, pixel_m);
+  if (shown <= 0.0) return 0.0;
+  AreaParcel parcel = area_parcel(at, FIELD_M.x);
+  vec2 place = area_turned(at, normalize(parcel.own + vec2(1e-3, 0.0)));
+  float whole = noise_values(parcel.cell + uint(AREA_SALTS.y)).x;
+  float inside = clamp(parcel.inside_m / pixel_m + 0.5, 0.0, 1.0);
+  return shown * inside * (AREA_PARCEL_TONE * whole + area_strip(place, FIELD_M.y, 0.0, pixel_m, parcel.cell).x);
+}
+
 vec3 with_cover(vec3 tint, float height_m, float change, vec2 slope, float sky_share, Noise here) {
   slope *= cover.z;
   float shade = clamp(-slope.y * cover.w, -1.0, 1.0);
@@ -324,6 +334,14 @@ vec3 with_cover(vec3 tint, float height_m, float change, vec2 slope, float sky_s
   float snow = smoothstep(cover.y - COVER_MEADOW_M.z, cover.y + COVER_MEADOW_M.z, height) * (1.0 - rock);
   float own = dot(tint, vec3(0.2126, 0.7152, 0.0722));
   vec3 color = covered_by(tint, tint, own, cover_colors[1], meadow);
+  float farmed = smoothstep(COVER_FARMED_MOISTURE.x, COVER_FARMED_MOISTURE.y, moist)
+    * (1.0 - smoothstep(COVER_FARMED_RISE.x, COVER_FARMED_RISE.y, rise)) * (1.0 - wild) * (1.0 - above_trees);
+  if (farmed > 0.0) {
+    float plot = field_tone(here.at, max(here.longest_m, COVER_LEAST_PIXEL_M));
+    float tone = clamp(plot + COVER_FARMED_PATCHES * here.patches, -1.0, 1.0);
+    vec4 other = tone < 0.0 ? cover_colors[1] : cover_colors[6];
+    color = covered_by(color, tint, own, mix(cover_colors[5], other, abs(tone)), farmed);
+  }
   color = covered_by(color, tint, own, cover_colors[0], woods);
   color = covered_by(color, tint, own, cover_colors[2], scree);
   color = covered_by(color, tint, own, cover_colors[3], rock);
@@ -335,7 +353,7 @@ vec3 with_cover(vec3 tint, float height_m, float change, vec2 slope, float sky_s
     + strata_wave(height_m, change, here.uneven, COVER_STRATA_M.z);
   float layered = max(rock, scree * (1.0 - green)) * open;
   float ridges = COVER_RIDGES * here.ridge * min(length(slope), 1.0) * cover_more.z;
-  float bushy = (1.0 - above_trees) * (1.0 - woods) * (1.0 - rock) * open;
+  float bushy = (1.0 - above_trees) * (1.0 - woods) * (1.0 - rock) * (1.0 - farmed) * open;
   float shrubs = bushy * smoothstep(COVER_SHRUBS.x, COVER_SHRUBS.y, here.fine + 0.5 * here.patches);
   color = mix(color, cover_colors[0].rgb * (own * cover_colors[0].w), COVER_SHRUB_SHARE * shrubs);
   float rough = mix(COVER_TUFTS, COVER_CROWNS, wooded);
@@ -430,10 +448,10 @@ void main() {
   }
   float water_share = is_water;
   float unlit = 0.0;
-  Noise here = Noise(0.0, 0.0, 0.0, vec2(0.0), 0.0);
+  Noise here = Noise(0.0, 0.0, 0.0, vec2(0.0), 0.0, vec2(0.0), 0.0);
   vec4 shaded = post;
   if (cover.z > 0.0) {
-    here = cover_noise(world.xy, sqrt(length(right_m) * length(down_m)));
+    here = cover_noise(world.xy, sqrt(length(right_m) * length(down_m)), pixel_m);
     shaded.xy += small_form(post, here);
   }
   if (is_map > 0.5) {
