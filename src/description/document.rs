@@ -217,9 +217,10 @@ table! {
         spot_heights: u32 = key::integer(0, 1000), default 0;
         /// A picture of the ground over the colors by height, such as an aerial photograph.
         imagery: Option<ImageryTable> = table_key::table::<ImageryTable>(), otherwise "no picture";
-        /// Whether the ground looks like ground: woods, meadow, scree, rock and snow, inferred from the place's climate and from
-        /// elevation, slope, aspect and hollows, tint it by at most 12 of lightness and give it texture, near by with forms too
-        /// small for the model's cells; its shade is filled by the sky. Heights stay as they are. `new` switches it on.
+        /// Whether the ground looks like ground: woods, fields, meadow, scree, rock and snow, inferred from the place's climate and
+        /// from elevation, slope, aspect and hollows, tint it by at most 12 of lightness and give it texture, with plots of fields
+        /// that are symbols, and near by with forms too small for the model's cells; its shade is filled by the sky. Heights stay as
+        /// they are. `new` switches it on.
         land_cover: Stated<bool> = key::switch(), default false;
         /// Whether the edges of the drawn triangles of the ground show, as papers on terrain print their meshes.
         wireframe: bool = key::switch(), default false;

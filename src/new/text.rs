@@ -158,7 +158,7 @@ pub(super) fn terrain(draft: &SceneDraft) -> String {
 fn style(draft: &SceneDraft) -> String {
     let mut out = "\n[style]\n# Tints of the place's climate. Or \"desert\", \"gray\", or stops of your own: [[0, \"#7f9f6b\"], [400, \"#c9cf97\"]].\n\
                    ramp = \"atlas\"\n\
-                   # Woods, meadow, scree, rock and snow, inferred from climate, height and slope; false shows the tints alone.\n\
+                   # Woods, fields, meadow, scree, rock and snow, inferred from climate, height and slope; false shows the tints alone.\n\
                    land_cover = true\n"
         .to_owned();
     if let Some(interval) = draft.contours_m {

@@ -258,8 +258,8 @@ impl SceneModel {
             format!("{} level basins are drawn as lakes, {area} in all", lakes.len())
         });
         let cover = self.land_cover.then(|| {
-            "woods, meadow, scree, rock and snow are inferred from climate, elevation and slope, and forms below the size of the \
-             model's cells are symbols (`land_cover = false` in [style] switches them off)"
+            "woods, fields, meadow, scree, rock and snow are inferred from climate, elevation and slope; plots of fields and forms \
+             below the size of the model's cells are symbols (`land_cover = false` in [style] switches them off)"
                 .to_owned()
         });
         let off = |note| format!("{note} (inferred; `infer_water = false` in [terrain] switches it off)");

@@ -38,7 +38,7 @@ const FILLED: f64 = 0.6;
 /// least.
 const SPREAD: f64 = 9.0;
 const DARK: f64 = 38.5;
-const LIGHT: f64 = 84.0;
+const LIGHT: f64 = 85.0;
 
 /// The least contrast of letters with what is around them (WCAG 2.2, 1.4.3).
 const CONTRAST: f32 = 4.5;
