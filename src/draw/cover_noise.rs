@@ -33,10 +33,10 @@ pub(crate) const FORM_CELLS: f32 = 8.0;
 /// How far an octave's lattice is bent by the values of the one before, in its cells: straight, it shows as a maze on rock.
 pub(crate) const BENT: f32 = 0.6;
 /// How sharp the crests of forms are: the noise below which they are round.
-pub(crate) const CREST: f32 = 0.12;
+pub(crate) const CREST: f32 = 0.35;
 
 /// The mean distance of the noise from its ridges, with [`CREST`].
-pub(crate) const MEAN_AWAY: f32 = 0.34;
+pub(crate) const MEAN_AWAY: f32 = 0.49;
 
 /// The noise at a place; sums are about -1 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
