@@ -7,6 +7,7 @@
 
 use crate::adapters::gpus;
 use crate::common::forest::{forest, overlook};
+use crate::common::mountain_lake::{low_over_water, mountain_lake};
 use crate::common::synthetic::{
     HOUSE, MASKED, camera, material_of, scene, scene_with_contours, scene_with_illuminated_contours,
 };
@@ -19,7 +20,7 @@ use sandtable_draw::backdrop::Backdrop;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::ground_imagery::GroundImagery;
 use sandtable_draw::list::{DrawList, FeatureId};
-use sandtable_draw::material::{Albedo, AlphaMode, TextureWrap};
+use sandtable_draw::material::{Albedo, AlphaMode, Material, TextureWrap};
 use sandtable_draw::pixels::Pixels;
 use sandtable_gpu::adapter::Gpu;
 use sandtable_gpu::render_on;
@@ -103,6 +104,18 @@ fn the_grain_of_the_ground_and_the_sky_in_water_are_the_same_on_both() {
     Arc::make_mut(map).has_grain = true;
     list.materials.iter_mut().for_each(|material| material.is_water = true);
     compare(&list, &camera(640, 480), "grain and water");
+}
+
+#[test]
+fn relief_in_water_is_the_same_on_both() {
+    let mut list = mountain_lake(0.3);
+    compare(&list, &low_over_water((640, 480)), "a mountain in a lake");
+    let map = Arc::make_mut(list.ground.as_mut().expect("there is ground"));
+    map.posts.iter_mut().for_each(|post| post.water = 0.0);
+    list.materials.iter_mut().for_each(|material| {
+        *material = Material { is_water: true, albedo: Albedo::Surface, ..*material };
+    });
+    compare(&list, &low_over_water((640, 480)), "a mountain in water of its own color");
 }
 
 #[test]
