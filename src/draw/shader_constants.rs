@@ -120,6 +120,7 @@ pub fn shader_constants() -> Vec<(&'static str, Vec<f32>)> {
         ("RELIEF_SHOWN", water_relief::SHOWN.to_vec()),
         ("RAY_LEAST_RISE", vec![water_relief::LEAST_RISE]),
         ("RAY_STEPS", vec![water_relief::MOST_STEPS as f32]),
+        ("RAY_FIRST_LEVEL", vec![water_relief::FIRST_LEVEL as f32]),
         ("RAY_BISECTIONS", vec![water_relief::BISECTIONS as f32]),
         ("RAY_BLOCK", vec![ground_tops::BLOCK as f32]),
         ("WATER_SHORE", vec![WaterColor::SHORE]),

@@ -26,6 +26,9 @@ pub const LEAST_RISE: f32 = 1e-3;
 /// shows the sky where this is spent.
 pub const MOST_STEPS: u32 = 256;
 
+/// The level of blocks that a ray begins with: it begins on water, mostly far from all land.
+pub const FIRST_LEVEL: usize = 3;
+
 /// How often the last half cell of a ray is halved: to a part in a hundred of a cell.
 pub const BISECTIONS: u32 = 6;
 
@@ -87,9 +90,12 @@ impl MirroredRay {
     /// Where it first meets a checked map, of which `tops` are, from `start_m` on.
     pub fn meets(&self, map: &GroundMap, tops: &GroundTops, start_m: f32) -> RayEnd {
         let start = (self.from - map.origin) / map.cell;
+        // What runs along the posts crosses no line beside it on the map.
         let per_m = self.toward / map.cell;
+        let per_m = Vec2::select(per_m.cmpeq(Vec2::ZERO), Vec2::splat(1e-20), per_m);
+        let (meters, ahead) = (per_m.recip(), Vec2::select(per_m.cmplt(Vec2::ZERO), Vec2::ZERO, Vec2::ONE));
         let last = Vec2::new((map.columns - 1) as f32, (map.rows - 1) as f32);
-        let beyond = exit(start, per_m, [Vec2::ZERO, last]);
+        let beyond = ((ahead * last - start) * meters).min_element();
         let clear = (tops.highest_m() * map.z_per_m - self.z) / self.rise;
         let end = beyond.min(clear);
         // Half a cell, and what carries a ray over the border of a block.
@@ -98,12 +104,12 @@ impl MirroredRay {
             let grid = (start + per_m * along).clamp(Vec2::ZERO, last);
             map.height_m(grid) * map.z_per_m > self.z + self.rise * along && is_land(&map.post_at(grid))
         };
-        let (mut along, mut level, mut left) = (start_m, 0_usize, MOST_STEPS);
+        let (mut along, mut level, mut left) = (start_m, FIRST_LEVEL.min(tops.levels.len() - 1), MOST_STEPS);
         while along < end && left > 0 {
             left -= 1;
             let cells = (BLOCK << level) as f32;
-            let block = ((start + per_m * along).clamp(Vec2::ZERO, last) / cells).floor();
-            let leaves = exit(start, per_m, [block * cells, (block + 1.0) * cells]).max(along);
+            let block = ((start + per_m * along).clamp(Vec2::ZERO, last) * cells.recip()).floor();
+            let leaves = (((block + ahead) * cells - start) * meters).min_element().max(along);
             let top = tops.levels[level].top_m(UVec2::new(block.x as u32, block.y as u32));
             if self.z + self.rise * along >= top * map.z_per_m {
                 along = leaves + past;
@@ -129,14 +135,6 @@ impl MirroredRay {
         }
         RayEnd::Beyond(beyond)
     }
-}
-
-/// Where a ray leaves a rectangle that it starts in, whose corners are `min` and `max`.
-fn exit(start: Vec2, per_m: Vec2, [min, max]: [Vec2; 2]) -> f32 {
-    let border = Vec2::select(per_m.cmplt(Vec2::ZERO), min, max);
-    // What runs along a border does not cross it.
-    let at = Vec2::select(per_m.cmpeq(Vec2::ZERO), Vec2::splat(f32::MAX), (border - start) / per_m);
-    at.min_element()
 }
 
 /// The first place below the ground between one above it and one below.
@@ -203,11 +201,13 @@ mod tests {
                     post.height_m * 2.0 > ray.z + rise * along && is_land(&post)
                 };
                 let end = ray.meets(&map, &tops, 0.0);
-                let beyond =
-                    exit(ray.from / map.cell, toward / map.cell, [Vec2::ZERO, Vec2::new(96.0, 60.0)]);
+                let is_within = |at: f32| {
+                    let grid = ray.at(at) / map.cell;
+                    grid.cmpge(Vec2::ZERO).all() && grid.cmple(Vec2::new(96.0, 60.0)).all()
+                };
                 let found = (0..10_000)
                     .map(|step| step as f32 * 0.1)
-                    .take_while(|at| *at < beyond)
+                    .take_while(|at| is_within(*at))
                     .find(|at| is_below(*at));
                 match (end, found) {
                     (RayEnd::Ground(at), Some(wanted)) => assert!((at - wanted).abs() < 2.6, "{at} {wanted}"),

@@ -1096,7 +1096,7 @@ fn ray_meets(ray: MirroredRay) -> f32 {
     let step = 0.5 / fastest;
     let past = 1e-3 / fastest;
     var along = 0.0;
-    var level = 0u;
+    var level = min(u32(RAY_FIRST_LEVEL), levels - 1u);
     var left = u32(RAY_STEPS);
     while along < end && left > 0u {
         left -= 1u;

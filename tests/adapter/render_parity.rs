@@ -20,7 +20,7 @@ use sandtable_draw::backdrop::Backdrop;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::ground_imagery::GroundImagery;
 use sandtable_draw::list::{DrawList, FeatureId};
-use sandtable_draw::material::{Albedo, AlphaMode, Material, TextureWrap};
+use sandtable_draw::material::{Albedo, AlphaMode, TextureWrap};
 use sandtable_draw::pixels::Pixels;
 use sandtable_gpu::adapter::Gpu;
 use sandtable_gpu::render_on;
@@ -113,7 +113,7 @@ fn relief_in_water_is_the_same_on_both() {
     let map = Arc::make_mut(list.ground.as_mut().expect("there is ground"));
     map.posts.iter_mut().for_each(|post| post.water = 0.0);
     list.materials.iter_mut().for_each(|material| {
-        *material = Material { is_water: true, albedo: Albedo::Surface, ..*material };
+        (material.is_water, material.albedo) = (true, Albedo::Surface);
     });
     compare(&list, &low_over_water((640, 480)), "a mountain in water of its own color");
 }
