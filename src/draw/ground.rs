@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use glam::{Vec2, Vec3};
+use glam::{UVec2, Vec2, Vec3};
 
 use crate::color::Srgba;
 use crate::cover_noise::CoverNoise;
@@ -297,9 +297,10 @@ impl GroundMap {
     }
 
     /// The color of ground that water mirrors, in linear light: dry land without the textures of its cover, grain and
-    /// contours, under the picture `draped`, whose height changes by `change_m` across the pixel that it fills.
-    pub fn mirrored_land(&self, post: &GroundPost, change_m: f32, draped: &DrapedColor) -> Vec3 {
-        draped.over(self.land(post, change_m, Some(&CoverNoise::default())))
+    /// contours, under the picture `draped`.
+    pub fn mirrored_land(&self, post: &GroundPost, draped: &DrapedColor) -> Vec3 {
+        // Across a pixel with all heights strata are too thin to show.
+        draped.over(self.land(post, f32::MAX, Some(&CoverNoise::default())))
     }
 
     /// The ramp with land cover, where there is `noise` for it, and undergrowth.
@@ -338,25 +339,24 @@ impl GroundMap {
         south.lerp(&upper, part.y)
     }
 
-    /// The same of the height alone, in meters.
-    pub fn height_m(&self, grid: Vec2) -> f32 {
+    /// The same of one of its values alone.
+    pub fn value_at(&self, grid: Vec2, value: impl Fn(&GroundPost) -> f32) -> f32 {
         let (corners, part) = self.around(grid);
-        let [sw, se, nw, ne] = corners.map(|post| post.height_m);
+        let [sw, se, nw, ne] = corners.map(value);
         let (south, upper) = (sw + (se - sw) * part.x, nw + (ne - nw) * part.x);
         south + (upper - south) * part.y
     }
 
     /// The posts south-west, south-east, north-west and north-east of a place, and where between them it lies.
     fn around(&self, grid: Vec2) -> ([&GroundPost; 4], Vec2) {
-        let last = Vec2::new((self.columns - 1) as f32, (self.rows - 1) as f32);
-        let cell = grid.floor().min((last - 1.0).max(Vec2::ZERO));
+        let cell = grid.as_uvec2().min(UVec2::new(self.columns, self.rows).max(UVec2::splat(2)) - 2);
         let stride = self.columns as usize;
         let east = usize::from(self.columns > 1);
         let north = if self.rows > 1 { stride } else { 0 };
         let first = cell.y as usize * stride + cell.x as usize;
         (
             [first, first + east, first + north, first + north + east].map(|index| &self.posts[index]),
-            grid - cell,
+            grid - cell.as_vec2(),
         )
     }
 }

@@ -14,7 +14,7 @@ use std::iter::successors;
 use glam::UVec2;
 use rayon::prelude::*;
 
-use crate::ground::{GroundMap, GroundPost};
+use crate::ground::GroundMap;
 use crate::ground_levels::PostCount;
 
 /// The cells along a block of the finest level: fewer take memory, more take time where a ray passes close over land.
@@ -98,21 +98,22 @@ fn add_row(map: &GroundMap, y: u32, tops: &mut [f32]) {
     for x in 0..columns.max(2) - 1 {
         let [west, east] = [both(x), both((x + 1).min(columns - 1))];
         let corners = [west[0], west[1], east[0], east[1]];
-        if corners.iter().any(|post| is_land(post)) {
+        if corners.iter().any(|post| is_land(post.water)) {
             let top = &mut tops[x / BLOCK as usize];
             *top = corners.iter().fold(*top, |top, post| top.max(post.height_m));
         }
     }
 }
 
-/// Whether a post, or a place between posts, is no water.
-pub fn is_land(post: &GroundPost) -> bool {
-    post.water < 0.5
+/// Whether a post with that [`water`](crate::ground::GroundPost::water), or a place between posts, is no water.
+pub fn is_land(water: f32) -> bool {
+    water < 0.5
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ground::GroundPost;
 
     fn map(columns: u32, rows: u32, post: impl Fn(u32, u32) -> (f32, f32)) -> GroundMap {
         let post = |index: u32| {

@@ -7,7 +7,7 @@
 //!
 //! The surface that mirrors lies at the height of the map, and over beds below 0 at that of the sea.
 
-use glam::{UVec2, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 
 use crate::ground::GroundMap;
 use crate::ground_tops::{BLOCK, GroundTops, is_land};
@@ -66,7 +66,7 @@ impl MirroredRay {
         let level = direction.truncate().length();
         (level > 1e-3).then(|| Self {
             from,
-            z: (map.height_m(map.grid_at(from)) * map.z_per_m).max(0.0),
+            z: (map.value_at(map.grid_at(from), |post| post.height_m) * map.z_per_m).max(0.0),
             toward: direction.truncate() / level,
             rise: (direction.z / level).max(LEAST_RISE),
         })
@@ -102,15 +102,16 @@ impl MirroredRay {
         let (step, past) = (0.5 / per_m.abs().max_element(), 1e-3 / per_m.abs().max_element());
         let is_below = |along: f32| {
             let grid = (start + per_m * along).clamp(Vec2::ZERO, last);
-            map.height_m(grid) * map.z_per_m > self.z + self.rise * along && is_land(&map.post_at(grid))
+            map.value_at(grid, |post| post.height_m) * map.z_per_m > self.z + self.rise * along
+                && is_land(map.value_at(grid, |post| post.water))
         };
         let (mut along, mut level, mut left) = (start_m, FIRST_LEVEL.min(tops.levels.len() - 1), MOST_STEPS);
         while along < end && left > 0 {
             left -= 1;
             let cells = (BLOCK << level) as f32;
-            let block = ((start + per_m * along).clamp(Vec2::ZERO, last) * cells.recip()).floor();
-            let leaves = (((block + ahead) * cells - start) * meters).min_element().max(along);
-            let top = tops.levels[level].top_m(UVec2::new(block.x as u32, block.y as u32));
+            let block = ((start + per_m * along).clamp(Vec2::ZERO, last) * cells.recip()).as_uvec2();
+            let leaves = (((block.as_vec2() + ahead) * cells - start) * meters).min_element().max(along);
+            let top = tops.levels[level].top_m(block);
             if self.z + self.rise * along >= top * map.z_per_m {
                 along = leaves + past;
                 level = (level + 1).min(tops.levels.len() - 1);
@@ -198,7 +199,7 @@ mod tests {
                 let ray = ray(&map, Vec2::new(200.0, 150.0 + turn as f32), toward, rise);
                 let is_below = |along: f32| {
                     let post = map.sample(ray.at(along));
-                    post.height_m * 2.0 > ray.z + rise * along && is_land(&post)
+                    post.height_m * 2.0 > ray.z + rise * along && is_land(post.water)
                 };
                 let end = ray.meets(&map, &tops, 0.0);
                 let is_within = |at: f32| {

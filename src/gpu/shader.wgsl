@@ -1162,7 +1162,7 @@ fn mirrored_relief(direction: vec3f, world: vec3f, span: Footprint) -> vec4f {
     // GroundMap::mirrored_land.
     var land = ramp_at(post.height);
     if has(COVER_PART) {
-        let covered = with_cover(land, post, across * length(post.gradient), Noise(0.0, 0.0, 0.0, vec2f(0.0), 0.0));
+        let covered = with_cover(land, post, 1e30, Noise(0.0, 0.0, 0.0, vec2f(0.0), 0.0));
         land = select(land, covered, frame.cover.z > 0.0);
     }
     if has(MAP_WATER_PART) {

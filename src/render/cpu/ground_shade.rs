@@ -117,7 +117,7 @@ impl<'a> GroundShader<'a> {
     /// contours. `form` is the [generalized ground](Self::form) there.
     pub fn mirrored(&self, hit: &FacePoint, form: &GroundPost, most_taps: u32) -> Vec3 {
         let point = self.read(hit, most_taps);
-        let albedo = self.map.mirrored_land(&point.post, change(point.gradient, hit), &point.draped);
+        let albedo = self.map.mirrored_land(&point.post, &point.draped);
         self.lit(albedo, &point, form, ReceivedLight::ALL).lerp(albedo, self.unlit_share(&point))
     }
 
