@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use glam::{Vec2, Vec3};
+use glam::{UVec2, Vec2, Vec3};
 
 use crate::color::Srgba;
 use crate::cover_noise::CoverNoise;
@@ -22,6 +22,8 @@ pub struct GroundMap {
     pub origin: Vec2,
     /// Distance between posts eastward and northward, in meters, both positive.
     pub cell: Vec2,
+    /// World Z per meter of elevation, above 0: how far heights are exaggerated as they are drawn.
+    pub z_per_m: f32,
     /// Posts per row.
     pub columns: u32,
     /// Rows of posts.
@@ -242,6 +244,7 @@ impl GroundMap {
         Self {
             origin: Vec2::ZERO,
             cell: Vec2::ONE,
+            z_per_m: 1.0,
             columns: 1,
             rows: 1,
             posts: vec![GroundPost { sun_visibility: 1.0, sky_visibility: 1.0, ..GroundPost::default() }],
@@ -282,19 +285,34 @@ impl GroundMap {
     /// The color of a pixel of ground in linear light, from the map's values `post` at its center and their `change`
     /// across it: the ramp with land cover and [`Undergrowth`], or water, under a draped picture and contours.
     pub fn albedo(&self, post: &GroundPost, change: PixelChange, detail: &GroundDetail) -> Vec3 {
-        let tint = self.ramp.linear_at(post.height_m);
         let shore = ShorePixel::new(post.water, change.water);
-        let cover = self.cover.filter(|_| !shore.is_open());
-        let land = cover.map_or(tint, |cover| cover.over(tint, post, change.height_m, &detail.cover));
-        // Nearly everywhere there are no trees, and no share of undergrowth changes nothing.
-        let woods = Undergrowth::cover(post.water);
-        let land = if woods > 0.0 { Undergrowth::over(land, woods) } else { land } * detail.grain;
+        let noise = (!shore.is_open()).then_some(&detail.cover);
+        let land = self.land(post, change.height_m, noise) * detail.grain;
         let is_dry = shore.cover <= 0.0 && shore.line <= 0.0 && shore.wet <= 0.0;
         let bare = if is_dry { land } else { WaterColor::over(land, post.height_m, &shore) };
         let bare = detail.draped.over(bare);
         let Some(contours) = &self.contours else { return bare };
         let line = contours.ink(post.height_m, change.height_m, detail.facing);
         bare.lerp(line.color, line.cover * (1.0 - shore.cover))
+    }
+
+    /// The color of ground that water mirrors, in linear light: dry land without the textures of its cover, grain and
+    /// contours, under the picture `draped`.
+    pub fn mirrored_land(&self, post: &GroundPost, draped: &DrapedColor) -> Vec3 {
+        // Across a pixel with all heights strata are too thin to show.
+        draped.over(self.land(post, f32::MAX, Some(&CoverNoise { longest_m: f32::INFINITY, ..CoverNoise::default() })))
+    }
+
+    /// The ramp with land cover, where there is `noise` for it, and undergrowth.
+    fn land(&self, post: &GroundPost, change_m: f32, noise: Option<&CoverNoise>) -> Vec3 {
+        let tint = self.ramp.linear_at(post.height_m);
+        let land = match (&self.cover, noise) {
+            (Some(cover), Some(noise)) => cover.over(tint, post, change_m, noise),
+            _ => tint,
+        };
+        // Nearly everywhere there are no trees, and no share of undergrowth changes nothing.
+        let woods = Undergrowth::cover(post.water);
+        if woods > 0.0 { Undergrowth::over(land, woods) } else { land }
     }
 
     /// The upward unit normal by which `post` is shaded.
@@ -304,18 +322,42 @@ impl GroundMap {
 
     /// The map at world position `at`, bilinear between posts; outside the map, the value at its border.
     pub fn sample(&self, at: Vec2) -> GroundPost {
+        self.post_at(self.grid_at(at))
+    }
+
+    /// World position `at` in columns and rows; outside the map, the place at its border.
+    pub fn grid_at(&self, at: Vec2) -> Vec2 {
         let last = Vec2::new((self.columns - 1) as f32, (self.rows - 1) as f32);
-        let grid = ((at - self.origin) / self.cell).clamp(Vec2::ZERO, last);
-        let cell = grid.floor().min((last - 1.0).max(Vec2::ZERO));
-        let part = grid - cell;
-        let (column, row) = (cell.x as usize, cell.y as usize);
+        ((at - self.origin) / self.cell).clamp(Vec2::ZERO, last)
+    }
+
+    /// The map at a place on it in columns and rows, bilinear between posts.
+    pub fn post_at(&self, grid: Vec2) -> GroundPost {
+        let ([sw, se, nw, ne], part) = self.around(grid);
+        let south = sw.lerp(se, part.x);
+        let upper = nw.lerp(ne, part.x);
+        south.lerp(&upper, part.y)
+    }
+
+    /// The same of one of its values alone.
+    pub fn value_at(&self, grid: Vec2, value: impl Fn(&GroundPost) -> f32) -> f32 {
+        let (corners, part) = self.around(grid);
+        let [sw, se, nw, ne] = corners.map(value);
+        let (south, upper) = (sw + (se - sw) * part.x, nw + (ne - nw) * part.x);
+        south + (upper - south) * part.y
+    }
+
+    /// The posts south-west, south-east, north-west and north-east of a place, and where between them it lies.
+    fn around(&self, grid: Vec2) -> ([&GroundPost; 4], Vec2) {
+        let cell = grid.as_uvec2().min(UVec2::new(self.columns, self.rows).max(UVec2::splat(2)) - 2);
         let stride = self.columns as usize;
         let east = usize::from(self.columns > 1);
         let north = if self.rows > 1 { stride } else { 0 };
-        let first = row * stride + column;
-        let south = self.posts[first].lerp(&self.posts[first + east], part.x);
-        let upper = self.posts[first + north].lerp(&self.posts[first + north + east], part.x);
-        south.lerp(&upper, part.y)
+        let first = cell.y as usize * stride + cell.x as usize;
+        (
+            [first, first + east, first + north, first + north + east].map(|index| &self.posts[index]),
+            grid - cell.as_vec2(),
+        )
     }
 }
 
@@ -348,6 +390,7 @@ mod tests {
         let map = GroundMap {
             origin: Vec2::new(-30.0, 70.0),
             cell: Vec2::new(2.0, 5.0),
+            z_per_m: 1.0,
             columns: 3,
             rows: 2,
             posts: vec![GroundPost::default(); 6],

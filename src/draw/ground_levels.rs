@@ -226,6 +226,7 @@ mod tests {
             let map = GroundMap {
                 origin: Vec2::ZERO,
                 cell: Vec2::ONE,
+                z_per_m: 1.0,
                 columns: size.columns,
                 rows: size.rows,
                 posts: posts(size, height),

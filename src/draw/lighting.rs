@@ -90,6 +90,14 @@ impl Lighting {
         let clear = libm::expf(-(distance_m - self.haze.near_m).max(0.0) / self.haze.distance_m);
         self.haze.color.lerp(color, clear)
     }
+
+    /// The same for a ray that something turned `turned_m` meters from the eye, through the air behind that: haze up to
+    /// there then makes of it what [`Self::add_haze`] makes of the whole way.
+    pub fn add_haze_beyond(&self, color: Vec3, turned_m: f32, distance_m: f32) -> Vec3 {
+        let hazy_m = |distance_m: f32| (distance_m - self.haze.near_m).max(0.0);
+        let clear = libm::expf(-(hazy_m(distance_m) - hazy_m(turned_m)) / self.haze.distance_m);
+        self.haze.color.lerp(color, clear)
+    }
 }
 
 /// The shading of the ground: the analytical form of Swiss relief shading.
@@ -350,5 +358,9 @@ mod tests {
         assert_eq!(lighting.add_haze(Vec3::ONE, 99.0), Vec3::ONE);
         let share = (Vec3::ONE - lighting.add_haze(Vec3::ONE, 150.0)) / (Vec3::ONE - haze.color);
         assert!(share.abs_diff_eq(Vec3::splat(0.632), 1e-3), "{share}");
+        for turned_m in [10.0, 120.0] {
+            let turned = lighting.add_haze(lighting.add_haze_beyond(Vec3::ONE, turned_m, 170.0), turned_m);
+            assert!(turned.abs_diff_eq(lighting.add_haze(Vec3::ONE, 170.0), 1e-5), "{turned}");
+        }
     }
 }

@@ -8,7 +8,8 @@ use glam::Vec3;
 use crate::lighting::ReliefShading;
 use crate::water::WaterColor;
 use crate::{
-    area_texture, cover_noise, field_plots, ground_cover, ground_grain, hatching, lighting, water, wireframe,
+    area_texture, cover_noise, field_plots, ground_cover, ground_grain, ground_tops, hatching, lighting, water,
+    water_relief, wireframe,
 };
 
 /// A language that shaders are written in.
@@ -37,7 +38,7 @@ impl ShaderLanguage {
     }
 }
 
-/// Returns the constants of [`ReliefShading`], the grain, the land cover, water, hatching and wireframes.
+/// Returns the constants of [`ReliefShading`], the grain, the land cover, water and relief in it, hatching and wireframes.
 pub fn shader_constants() -> Vec<(&'static str, Vec<f32>)> {
     let vector = |color: Vec3| color.to_array().to_vec();
     let lengths = |waves: &[(f32, f32); 3]| waves.iter().map(|wave| wave.0).collect();
@@ -121,6 +122,12 @@ pub fn shader_constants() -> Vec<(&'static str, Vec<f32>)> {
         ("RIPPLE_GRAZING", water::RIPPLE_GRAZING.to_vec()),
         ("WATER_MIRRORED", vec![WaterColor::MIRRORED]),
         ("WATER_MOST_MIRRORED", vec![WaterColor::MOST_MIRRORED]),
+        ("RELIEF_SHOWN", water_relief::SHOWN.to_vec()),
+        ("RAY_LEAST_RISE", vec![water_relief::LEAST_RISE]),
+        ("RAY_STEPS", vec![water_relief::MOST_STEPS as f32]),
+        ("RAY_FIRST_LEVEL", vec![water_relief::FIRST_LEVEL as f32]),
+        ("RAY_BISECTIONS", vec![water_relief::BISECTIONS as f32]),
+        ("RAY_BLOCK", vec![ground_tops::BLOCK as f32]),
         ("WATER_SHORE", vec![WaterColor::SHORE]),
         ("WATER_WET", vec![WaterColor::WET]),
         ("WATER_SHORE_PX", vec![WaterColor::SHORE_PX]),

@@ -1,5 +1,5 @@
 //! The look of water: one blue, lighter along the shore and deeper far from it and over depths ([`bathymetry`]), a dark
-//! line between it and the land, which is wet there, and the sky in it.
+//! line between it and the land, which is wet there, and sky and relief in it ([`water_relief`](crate::water_relief)).
 //!
 //! A calm surface mirrors what lies at the mirrored angle, by Fresnel's law in the approximation of Schlick (1994): two
 //! hundredths of it from above and nearly all at a grazing angle. Waves turn part of the surface toward the eye, so that
@@ -12,6 +12,7 @@ use crate::color::Srgba;
 use crate::ground_grain::noise;
 use crate::lighting::Lighting;
 use crate::shown::shown;
+use crate::water_relief::relief_shown;
 
 /// The colors of water.
 ///
@@ -135,21 +136,33 @@ pub struct WaterMirror {
 }
 
 impl Lighting {
-    /// `color` of a level surface with the sky that its water mirrors, before haze. `ray`, of unit length, points from the
-    /// eye to the surface.
-    pub fn mirror_sky(&self, color: Vec3, ray: Vec3, water: WaterMirror) -> Vec3 {
+    /// `color` of a level surface with what its water mirrors, before haze. `ray`, of unit length, points from the
+    /// eye to the surface. `relief` returns the ground that the mirrored ray meets, a unit vector, as its light reaches the
+    /// surface; `None` where it meets none, which shows the sky.
+    pub fn mirror(
+        &self,
+        color: Vec3,
+        ray: Vec3,
+        water: WaterMirror,
+        relief: impl FnOnce(Vec3) -> Option<Vec3>,
+    ) -> Vec3 {
         let normal = (-water.slope).extend(1.0).normalize();
         let toward = -ray.dot(normal);
         let grazing = 1.0 - toward.clamp(0.0, 1.0);
         let fifth = grazing * grazing * grazing * grazing * grazing;
         let share = WaterColor::MIRRORED + (WaterColor::MOST_MIRRORED - WaterColor::MIRRORED) * fifth;
-        color.lerp(self.sky_color(ray + normal * (2.0 * toward)), share * water.share)
+        let mirrored = ray + normal * (2.0 * toward);
+        let sky = self.sky_color(mirrored);
+        let shown = relief_shown(share);
+        let relief = if shown > 0.0 { relief(mirrored) } else { None };
+        color.lerp(relief.map_or(sky, |relief| sky.lerp(relief, shown)), share * water.share)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::water_relief::STEEP;
 
     fn still(share: f32) -> WaterMirror {
         WaterMirror { share, slope: Vec2::ZERO }
@@ -160,14 +173,36 @@ mod tests {
         let light = Lighting::default();
         let own = WaterColor::SURFACE.linear();
         let ray = |down: f32| Vec3::new(0.0, 1.0, -down).normalize();
-        let changed = |down: f32| light.mirror_sky(own, ray(down), still(1.0)).distance(own);
+        let changed = |down: f32| light.mirror(own, ray(down), still(1.0), |_| None).distance(own);
         assert!(
             changed(9.0) < 0.03 && changed(0.5) > 1.5 * changed(1.5),
             "{} {}",
             changed(0.5),
             changed(1.5)
         );
-        assert_eq!(light.mirror_sky(own, ray(0.1), still(0.0)), own);
+        assert_eq!(light.mirror(own, ray(0.1), still(0.0), |_| Some(Vec3::ONE)), own);
+    }
+
+    #[test]
+    fn low_over_water_relief_takes_the_place_of_the_sky_and_from_above_it_is_not_looked_for() {
+        let light = Lighting::default();
+        let own = WaterColor::SURFACE.linear();
+        let mirror = |down: f32, relief: &dyn Fn(Vec3) -> Option<Vec3>| {
+            light.mirror(own, Vec3::new(0.0, 1.0, -down).normalize(), still(1.0), relief)
+        };
+        let wall = Vec3::new(0.05, 0.03, 0.01);
+        let low = mirror(0.05, &|ray| {
+            assert!(ray.abs_diff_eq(Vec3::new(0.0, 1.0, 0.05).normalize(), 1e-6), "{ray}");
+            Some(wall)
+        });
+        let share = (low - own) / (wall - own);
+        assert!(share.min_element() > 0.35 && share.abs_diff_eq(Vec3::splat(share.x), 1e-4), "{share}");
+        assert_ne!(low, mirror(0.05, &|_| None));
+        mirror(0.5, &|_| panic!("seen from above"));
+        let steep = Vec3::new(0.0, (1.0 - STEEP * STEEP).sqrt(), -STEEP);
+        let steepest: f32 = RIPPLES.iter().map(|ripple| ripple.1).sum();
+        let tilted = WaterMirror { share: 1.0, slope: Vec2::new(0.0, steepest) };
+        light.mirror(own, steep, tilted, |_| panic!("tilted from the eye"));
     }
 
     #[test]
@@ -221,6 +256,7 @@ mod tests {
         let light = Lighting::default();
         let tilted = WaterMirror { share: 1.0, slope: Vec2::new(0.0, -0.05) };
         let own = WaterColor::SURFACE.linear();
-        assert_ne!(light.mirror_sky(own, low, tilted), light.mirror_sky(own, low, still(1.0)));
+        let mirrored = |water| light.mirror(own, low, water, |_| None);
+        assert_ne!(mirrored(tilted), mirrored(still(1.0)));
     }
 }

@@ -76,6 +76,7 @@ mod tests {
         GroundMap {
             origin: Vec2::new(100.0, 50.0),
             cell: Vec2::new(20.0, 40.0),
+            z_per_m: 1.0,
             columns: 5,
             rows: 3,
             posts: (0..15).map(post).collect(),

@@ -129,6 +129,7 @@ mod tests {
         let map = GroundMap {
             origin: Vec2::ZERO,
             cell: Vec2::splat(10.0),
+            z_per_m: 1.0,
             columns: 3,
             rows: 3,
             posts: (0..9).map(post).collect(),

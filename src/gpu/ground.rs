@@ -6,11 +6,12 @@
 //! ```text
 //! ┌─────────────────┐
 //! │0000000000000000 │  level 0 …
-//! │0000000011111122 │  … then 1, 2, …
+//! │0000000011111122 │  … then 1, 2, …, then the tops of blocks
 //! └─────────────────┘
 //! ```
 //!
-//! So a map may have more columns than a texture, and one reading serves all levels.
+//! So a map may have more columns than a texture, and one reading serves all levels. The tops of blocks, over which the rays
+//! pass that water mirrors ([`GroundTops`]), follow in the same way: a twelfth as many.
 //!
 //! Texels are integers that hold the bits of floats. Every adapter can read them and none may filter them, so that the
 //! interpolation in the shader is the same everywhere.
@@ -25,6 +26,7 @@ use crate::error::GpuError;
 use crate::memory::{Loader, texture};
 use sandtable_draw::ground::{GroundMap, GroundPost};
 use sandtable_draw::ground_levels::{PostCount, coarser_levels};
+use sandtable_draw::ground_tops::GroundTops;
 
 /// More levels than the largest texture has; the length of the shader's array.
 pub const MOST_LEVELS: usize = 24;
@@ -63,19 +65,35 @@ pub fn row_bits(largest: u32) -> u32 {
 
 /// The levels of a map of `size`, down to two posts a side.
 pub fn levels(size: PostCount) -> Vec<PlacedLevel> {
-    let next = |last: &PlacedLevel| {
-        let first = last.first.saturating_add(last.size.columns.saturating_mul(last.size.rows));
-        last.size.halved().map(|size| PlacedLevel { size, first })
-    };
+    let next = |last: &PlacedLevel| last.size.halved().map(|size| PlacedLevel { size, first: last.end() });
     successors(Some(PlacedLevel { size, first: 0 }), next).take(MOST_LEVELS).collect()
+}
+
+/// The levels of the tops of a map of `size`, which lie behind its posts.
+pub fn top_levels(size: PostCount) -> Vec<PlacedLevel> {
+    let mut first = levels(size).last().map_or(0, PlacedLevel::end);
+    let placed = GroundTops::sizes(size).map(|blocks| {
+        let level = PlacedLevel { size: PostCount { columns: blocks.x, rows: blocks.y }, first };
+        first = level.end();
+        level
+    });
+    placed.take(MOST_LEVELS).collect()
+}
+
+impl PlacedLevel {
+    /// The number after that of its last texel.
+    fn end(&self) -> u32 {
+        self.first.saturating_add(self.size.columns.saturating_mul(self.size.rows))
+    }
 }
 
 impl GroundTextures {
     /// Sends a checked map to the device; without a map, texels that nothing reads.
     pub fn upload(loader: &Loader<'_>, map: Option<&GroundMap>) -> Result<Self, GpuError> {
         let levels = map.map_or_else(Vec::new, |map| levels(PostCount::from_map(map)));
+        let tops = map.map_or_else(Vec::new, |map| top_levels(PostCount::from_map(map)));
         let posts_of = |level: &PlacedLevel| u64::from(level.size.columns) * u64::from(level.size.rows);
-        let count = levels.iter().map(posts_of).sum::<u64>().max(1);
+        let count = levels.iter().chain(&tops).map(posts_of).sum::<u64>().max(1);
         let width = 1 << row_bits(loader.gpu.limits.max_texture_dimension_2d);
         let rows = u32::try_from(count.div_ceil(u64::from(width))).unwrap_or(u32::MAX);
         let what = || format!("the {count} posts of the ground map and its coarser levels");
@@ -86,6 +104,9 @@ impl GroundTextures {
             writer.write(&map.posts)?;
             for (_, level) in levels[1..].iter().zip(coarser_levels(map)) {
                 writer.write(&level.posts)?;
+            }
+            for level in &GroundTops::new(map).levels {
+                writer.write_tops(&level.heights_m)?;
             }
             writer.finish()?;
         }
@@ -118,6 +139,12 @@ impl TexelWriter<'_> {
             self.send()?;
         }
         Ok(())
+    }
+
+    fn write_tops(&mut self, heights_m: &[f32]) -> Result<(), GpuError> {
+        // Shaders need not know infinities.
+        self.pending.extend(heights_m.iter().map(|height_m| [height_m.max(-1e30).to_bits(), 0, 0, 0]));
+        self.send()
     }
 
     /// Sends the rows that are full.
@@ -169,6 +196,10 @@ mod tests {
         let sizes: Vec<_> =
             placed.iter().map(|level| (level.size.columns, level.size.rows, level.first)).collect();
         assert_eq!(sizes, [(9, 4, 0), (5, 3, 36), (3, 2, 51), (2, 2, 57)]);
+        let tops = top_levels(PostCount { columns: 9, rows: 4 });
+        let placed: Vec<_> =
+            tops.iter().map(|level| (level.size.columns, level.size.rows, level.first)).collect();
+        assert_eq!(placed, [(2, 1, 61), (1, 1, 63)]);
         assert_eq!(levels(1, 1).len(), 1);
         assert!(levels(u32::MAX, 2).len() <= MOST_LEVELS);
         assert_eq!([1, 2048, 16_384, 40_000].map(row_bits), [0, 11, 13, 13]);

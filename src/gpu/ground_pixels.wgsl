@@ -39,6 +39,6 @@ fn ground_pixel(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let world = frame.eye.xyz + offset_at(pixel, depth);
     let span = Footprint(spanned(pixel, depth, vec2i(1, 0)), spanned(pixel, depth, vec2i(0, 1)));
     let ground = on_ground(vec4f(1.0), FROM_GROUND_NORMAL | FROM_GROUND_ALBEDO, world, span);
-    let mirrored = mirrored_sky(ground.light, ground.water_share, world, span);
-    return vec4f(in_haze(mirrored, world), 1.0);
+    let light = mirrored(ground.light, ground.water_share, world, span);
+    return vec4f(in_haze(light, world), 1.0);
 }

@@ -38,6 +38,8 @@ impl ShaderParts {
     const EDGES: Self = Self(16_384);
     /// The covers of areas.
     const AREA: Self = Self(65_536);
+    /// Relief in water.
+    pub const WATER_RELIEF: Self = Self(131_072);
     /// Windows of finer posts.
     pub const WINDOWS: Self = Self(32_768);
 
@@ -46,6 +48,10 @@ impl ShaderParts {
 
     pub fn with(self, other: Self) -> Self {
         Self(self.0 | other.0)
+    }
+
+    pub fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
     }
 
     fn has(self, part: Self) -> bool {
@@ -96,6 +102,7 @@ impl ShaderParts {
             .with(Self::GRAIN.when(map.has_grain))
             .with(Self::CONTOURS.when(map.contours.is_some()))
             .with(Self::MAP_WATER.when(has_water()))
+            .with(Self::WATER_RELIEF)
     }
 
     /// The parts for what shows these of materials, in a picture that has the parts `picture`.
@@ -104,10 +111,12 @@ impl ShaderParts {
         let shadows = [Self::SUN_SHADOWS, Self::SKY_SHADOWS];
         let colored = self.has(Self::GROUND_COLOR);
         let lit = self.has(Self::GROUND_LIGHT.with(Self::OWN_LIGHT));
+        let mirrors = self.has(Self::WATER) || (colored && picture.has(Self::MAP_WATER));
         let all = |parts: &[Self]| parts.iter().fold(Self::NONE, |all, &part| all.with(part));
         let wanted = self
             .with(Self::HAZE)
             .with(all(&map).when(colored))
+            .with(all(&[Self::WATER_RELIEF, Self::IMAGERY, Self::COVER, Self::MAP_WATER]).when(mirrors))
             .with(Self::GRAIN.when(colored || self.has(Self::NATURAL)))
             .with(Self::WINDOWS.when(self.has(Self::GROUND)))
             .with(all(&shadows).when(lit));

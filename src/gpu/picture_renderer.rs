@@ -8,6 +8,8 @@
 
 use std::sync::{Arc, Weak};
 
+use glam::Vec3;
+
 use crate::adapter::Gpu;
 use crate::culling::seen_items;
 use crate::error::{DriverError, GpuError};
@@ -30,9 +32,10 @@ use crate::tiles::{PictureTile, PictureTiles};
 use crate::uniforms::{FrameScene, FrameUniforms};
 use sandtable_draw::ground::GroundMap;
 use sandtable_draw::list::DrawList;
+use sandtable_draw::water_relief::STEEP;
 use sandtable_render::picture::Rendering;
 use sandtable_render::shadow::Shadows;
-use sandtable_view::camera::Camera;
+use sandtable_view::camera::{Camera, ViewProjection};
 
 /// Draws pictures on one device.
 #[derive(Debug)]
@@ -107,6 +110,7 @@ impl PictureRenderer {
         let shadows = Shadows::new(list, camera)?;
         let has_shadows = [&shadows.sun, &shadows.sky].map(Option::is_some);
         let parts = ShaderParts::of_picture(list.ground.as_deref(), &list.lighting, has_shadows);
+        let parts = if is_from_above(camera) { parts.without(ShaderParts::WATER_RELIEF) } else { parts };
         progress("making pipelines");
         gpu.guarded("building its shaders", || {
             let [colors, features] = plan.keys(parts);
@@ -226,6 +230,21 @@ impl KeptGround {
             (Some(kept), Some(map)) => std::ptr::eq(kept.as_ptr(), Arc::as_ptr(map)),
             (None, None) => true,
             _ => false,
+        }
+    }
+}
+
+/// Whether a picture's rays all fall so steeply that water shows no relief in it.
+fn is_from_above(camera: &Camera) -> bool {
+    let falls = |ray: Vec3| -ray.normalize_or_zero().z > STEEP;
+    match camera.projection() {
+        ViewProjection::Parallel(_) => falls(camera.forward()),
+        ViewProjection::Perspective { .. } => {
+            let half = camera.tan_half_fov();
+            let (right, up) = (camera.right() * half.x, camera.up() * half.y);
+            [-1.0, 1.0]
+                .iter()
+                .all(|x| [-1.0, 1.0].iter().all(|y| falls(camera.forward() + right * *x + up * *y)))
         }
     }
 }

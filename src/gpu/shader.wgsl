@@ -44,6 +44,8 @@ struct Frame {
     ground_levels: array<vec4u, 24>, // columns, rows, first post of all; binary logarithm of the texels in a row
     ground_windows: array<vec4u, 8>, // column and row of the first post, columns, rows
     window_size: vec4u,   // number of windows; rows of the texture for each
+    ground_tops: array<vec4u, 24>, // columns and rows of blocks, first texel of all; number of levels (0: no ground)
+    relief: vec4f,        // world Z per meter of elevation
     shadows: array<ShadowView, 2>, // of the sun, of the sky
 }
 
@@ -86,7 +88,7 @@ const MASK_LEVEL_BIAS = -1.0;
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 // One texel a post, row by row and level by level: height, slope east and slope north as bits of f32; the visibilities of
-// the sun in 11 bits and of the sky in 11, from 0 to 2, and water in 10, from -1 (woods) to 1.
+// the sun in 11 bits and of the sky in 11, from 0 to 2, and water in 10, from -1 (woods) to 1. Then the tops of blocks.
 @group(0) @binding(1) var ground_posts: texture_2d<u32>;
 // One texel a stop of the ramp: linear rgb, height.
 @group(0) @binding(2) var ramp_stops: texture_2d<f32>;
@@ -138,6 +140,7 @@ const MAP_WATER_PART = 8192u;
 const EDGES_PART = 16384u;
 const WINDOWS_PART = 32768u;
 const AREA_PART = 65536u;
+const WATER_RELIEF_PART = 131072u;
 
 struct Corner {
     @location(0) position: vec3f,
@@ -286,9 +289,12 @@ struct Post {
 
 fn post_at(at: vec2u, level: u32) -> Post {
     let place = frame.ground_levels[level];
-    let index = place.z + at.y * place.x + at.x;
+    return unpacked(ground_texel(place.z + at.y * place.x + at.x));
+}
+
+fn ground_texel(index: u32) -> vec4u {
     let row_bits = frame.ground_levels[0].w;
-    return unpacked(textureLoad(ground_posts, vec2u(index & ((1u << row_bits) - 1u), index >> row_bits), 0));
+    return textureLoad(ground_posts, vec2u(index & ((1u << row_bits) - 1u), index >> row_bits), 0);
 }
 
 fn unpacked(texel: vec4u) -> Post {
@@ -812,19 +818,6 @@ fn ripples(at: vec2f, pixel_m: f32, ray: vec3f) -> vec2f {
         + ripple(at, pixel_m, low, RIPPLE_WAVES_M.z, RIPPLE_STEEPNESS.z);
 }
 
-// Lighting::mirror_sky.
-fn mirror_sky(color: vec3f, toward: vec3f, water: f32, at: vec2f, pixel_m: f32) -> vec3f {
-    if water <= 0.0 {
-        return color;
-    }
-    let ray = normalize(toward);
-    let normal = normalize(vec3f(-ripples(at, pixel_m, ray), 1.0));
-    let facing = -dot(ray, normal);
-    let grazing = 1.0 - clamp(facing, 0.0, 1.0);
-    let share = WATER_MIRRORED + (WATER_MOST_MIRRORED - WATER_MIRRORED) * (grazing * grazing * grazing * grazing * grazing);
-    return mix(color, sky_at(ray + normal * (2.0 * facing)), share * water);
-}
-
 fn facing_sun(normal: vec3f) -> f32 {
     return max(dot(normal, frame.to_sun.xyz), 0.0);
 }
@@ -1045,11 +1038,168 @@ fn on_ground(color: vec4f, flags: u32, world: vec3f, span: Footprint) -> Shaded 
     return shaded;
 }
 
-fn mirrored_sky(light: vec3f, water_share: f32, world: vec3f, span: Footprint) -> vec3f {
-    if has(WATER_PART | MAP_WATER_PART) {
-        return mirror_sky(light, from_eye(world), water_share, world.xy, pixel_m(span));
+// Lighting::mirror.
+fn mirrored(light: vec3f, water_share: f32, world: vec3f, span: Footprint) -> vec3f {
+    if !has(WATER_PART | MAP_WATER_PART) || water_share <= 0.0 {
+        return light;
     }
-    return light;
+    let ray = normalize(from_eye(world));
+    let normal = normalize(vec3f(-ripples(world.xy, pixel_m(span), ray), 1.0));
+    let facing = -dot(ray, normal);
+    let grazing = 1.0 - clamp(facing, 0.0, 1.0);
+    let share = WATER_MIRRORED + (WATER_MOST_MIRRORED - WATER_MIRRORED) * (grazing * grazing * grazing * grazing * grazing);
+    let mirrored_ray = ray + normal * (2.0 * facing);
+    var seen = sky_at(mirrored_ray);
+    if has(WATER_RELIEF_PART) {
+        let shown = clamp((share - RELIEF_SHOWN.x) / (RELIEF_SHOWN.y - RELIEF_SHOWN.x), 0.0, 1.0);
+        if shown > 0.0 {
+            let relief = mirrored_relief(mirrored_ray, world, span);
+            seen = mix(seen, relief.rgb, shown * relief.a);
+        }
+    }
+    return mix(light, seen, share * water_share);
+}
+
+// MirroredRay, from a place in columns and rows.
+struct MirroredRay {
+    start: vec2f,
+    per_m: vec2f, // columns and rows per meter in plan
+    z: f32,
+    rise: f32,
+}
+
+// The highest land of a block, in world Z.
+fn top_at(block: vec2u, level: u32) -> f32 {
+    let place = frame.ground_tops[level];
+    let at = min(block, place.xy - 1u);
+    return bitcast<f32>(ground_texel(place.z + at.y * place.x + at.x).x) * frame.relief.x;
+}
+
+// GroundMap::height_m in world Z, GroundPost::water.
+fn ground_between(grid: vec2f) -> vec2f {
+    let size = frame.ground_levels[0].xy;
+    let first = min(vec2u(grid), max(size, vec2u(2u)) - 2u);
+    let next = min(first + 1u, size - 1u);
+    let part = grid - vec2f(first);
+    let sw = ground_texel(first.y * size.x + first.x);
+    let se = ground_texel(first.y * size.x + next.x);
+    let nw = ground_texel(next.y * size.x + first.x);
+    let ne = ground_texel(next.y * size.x + next.x);
+    let west = bitcast<vec2f>(vec2u(sw.x, nw.x));
+    let heights = west + (bitcast<vec2f>(vec2u(se.x, ne.x)) - west) * part.x;
+    let dry = vec2f(vec2u(sw.w, nw.w) >> vec2u(22u));
+    let wet = mix(dry, vec2f(vec2u(se.w, ne.w) >> vec2u(22u)), part.x) / 511.0 - 1.0;
+    return vec2f((heights.x + (heights.y - heights.x) * part.y) * frame.relief.x, mix(wet.x, wet.y, part.y));
+}
+
+fn ray_grid(ray: MirroredRay, along: f32) -> vec2f {
+    return clamp(ray.start + ray.per_m * along, vec2f(0.0), vec2f(frame.ground_levels[0].xy - 1u));
+}
+
+fn is_below_ground(ray: MirroredRay, along: f32) -> bool {
+    let ground = ground_between(ray_grid(ray, along));
+    return ground.x > ray.z + ray.rise * along && ground.y < 0.5;
+}
+
+// Where a ray leaves a rectangle.
+fn ray_exit(ray: MirroredRay, low: vec2f, high: vec2f) -> f32 {
+    let border = select(high, low, ray.per_m < vec2f(0.0));
+    let is_along = ray.per_m == vec2f(0.0);
+    let at = select((border - ray.start) / select(ray.per_m, vec2f(1.0), is_along), vec2f(3.4e38), is_along);
+    return min(at.x, at.y);
+}
+
+// MirroredRay::meets; below 0 where it meets nothing.
+fn ray_meets(ray: MirroredRay) -> f32 {
+    let levels = frame.ground_tops[0].w;
+    let highest = top_at(vec2u(0u), levels - 1u);
+    let leaves_map = ray_exit(ray, vec2f(0.0), vec2f(frame.ground_levels[0].xy - 1u));
+    let end = min(leaves_map, (highest - ray.z) / ray.rise);
+    let fastest = max(abs(ray.per_m.x), abs(ray.per_m.y));
+    let step = 0.5 / fastest;
+    let past = 1e-3 / fastest;
+    var along = 0.0;
+    var level = min(u32(RAY_FIRST_LEVEL), levels - 1u);
+    var left = u32(RAY_STEPS);
+    while along < end && left > 0u {
+        left -= 1u;
+        let cells = RAY_BLOCK * f32(1u << level);
+        let block = floor(ray_grid(ray, along) / cells);
+        let leaves = max(ray_exit(ray, block * cells, (block + 1.0) * cells), along);
+        if ray.z + ray.rise * along >= top_at(vec2u(block), level) {
+            along = leaves + past;
+            level = min(level + 1u, levels - 1u);
+        } else if level > 0u {
+            level -= 1u;
+        } else {
+            let stop = min(leaves, end);
+            var above = along;
+            loop {
+                if is_below_ground(ray, along) {
+                    var below = along;
+                    for (var half = 0.0; half < RAY_BISECTIONS; half += 1.0) {
+                        let middle = 0.5 * (above + below);
+                        if is_below_ground(ray, middle) {
+                            below = middle;
+                        } else {
+                            above = middle;
+                        }
+                    }
+                    return below;
+                }
+                if along >= stop || left == 0u {
+                    break;
+                }
+                left -= 1u;
+                above = along;
+                along = min(along + step, stop);
+            }
+            along = leaves + past;
+        }
+    }
+    return -1.0;
+}
+
+// The light of the ground that a mirrored ray meets, as it reaches the water; 1 where it meets any.
+fn mirrored_relief(direction: vec3f, world: vec3f, span: Footprint) -> vec4f {
+    let level = length(direction.xy);
+    if (level <= 1e-3) | (frame.ground_tops[0].w == 0u) {
+        return vec4f(0.0);
+    }
+    let toward = direction.xy / level;
+    var ray = MirroredRay((world.xy - frame.ground.xy) / frame.ground.zw, toward / frame.ground.zw, 0.0, 0.0);
+    ray.z = max(ground_between(ray_grid(ray, 0.0)).x, 0.0);
+    ray.rise = max(direction.z / level, RAY_LEAST_RISE);
+    let along = ray_meets(ray);
+    if along < 0.0 {
+        return vec4f(0.0);
+    }
+    let turned = distance(world, frame.eye.xyz);
+    let whole = turned + along * sqrt(1.0 + ray.rise * ray.rise);
+    let parted = select(whole / turned, 1.0, is_parallel());
+    let across = min(length(span.right), length(span.down)) * parted;
+    let right = vec2f(across, 0.0);
+    let down = vec2f(0.0, across);
+    let place = world.xy + toward * along;
+    let post = ground_at(place, right, down);
+    // GroundMap::mirrored_land.
+    var land = ramp_at(post.height);
+    if has(COVER_PART) {
+        let covered = with_cover(land, post, 1e30, Noise(0.0, 0.0, 0.0, vec2f(0.0), 0.0, vec2f(0.0), 1e30));
+        land = select(land, covered, frame.cover.z > 0.0);
+    }
+    if has(MAP_WATER_PART) {
+        land = mix(land, frame.undergrowth.rgb, clamp(-post.visibility.z, 0.0, 1.0) * frame.undergrowth.w);
+    }
+    var unlit = 0.0;
+    if has(IMAGERY_PART) {
+        let draped = draped_at(place, right, down);
+        land = mix(land, draped.rgb, draped.a);
+        unlit = select(draped.a, 0.0, frame.imagery_size.w > 0.5);
+    }
+    let light = mix(relief_lit(land, post, vec2f(0.0), place, vec2f(1.0)), land, unlit);
+    let hazy = max(whole - frame.zenith.w, 0.0) - max(turned - frame.zenith.w, 0.0);
+    return vec4f(mix(frame.haze.rgb, light, exp(-hazy * frame.haze.w)), 1.0);
 }
 
 fn in_haze(light: vec3f, world: vec3f) -> vec3f {
@@ -1087,7 +1237,7 @@ fn shade(in: Varying, front: bool) -> vec4f {
     if has(HATCHING_PART) && (flags & HATCHING) != 0u {
         light = color.rgb;
     }
-    light = mirrored_sky(light, water_share, in.world, span);
+    light = mirrored(light, water_share, in.world, span);
     if has(EDGES_PART) {
         let cover = edge_cover(in.uv);
         light = mix(light, WIREFRAME_COLOR, select(0.0, cover * WIREFRAME_ALPHA, (flags & EDGES) != 0u));

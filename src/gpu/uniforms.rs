@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
-use crate::ground::{MOST_LEVELS, levels};
+use crate::ground::{MOST_LEVELS, levels, top_levels};
 use crate::merged_vertex::SurfaceOwner;
 use crate::shadow::ShadowView;
 use crate::tiles::TileProjection;
@@ -73,6 +73,8 @@ pub struct FrameUniforms {
     ground_levels: [[u32; 4]; MOST_LEVELS],
     ground_windows: [[u32; 4]; MOST_WINDOWS],
     window_size: [u32; 4],
+    ground_tops: [[u32; 4]; MOST_LEVELS],
+    relief: [f32; 4],
     shadows: [ShadowView; 2],
 }
 
@@ -189,6 +191,11 @@ impl FrameUniforms {
         for (slot, level) in frame.ground_levels.iter_mut().zip(&levels) {
             *slot = [level.size.columns, level.size.rows, level.first, row_bits];
         }
+        let tops = top_levels(PostCount::from_map(map));
+        for (slot, level) in frame.ground_tops.iter_mut().zip(&tops) {
+            *slot = [level.size.columns, level.size.rows, level.first, tops.len() as u32];
+        }
+        frame.relief = [map.z_per_m, 0.0, 0.0, 0.0];
         frame.ground = [map.origin.x, map.origin.y, map.cell.x, map.cell.y];
         let coarsest = levels.len() as u32 - 1;
         frame.ground_size =

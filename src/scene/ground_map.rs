@@ -97,6 +97,7 @@ pub fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: Gr
     GroundMap {
         origin: Vec2::ZERO,
         cell,
+        z_per_m: scene.scale.0,
         columns: size.columns,
         rows: size.rows,
         posts,

@@ -7,6 +7,7 @@
 
 use crate::adapters::gpus;
 use crate::common::forest::{forest, overlook};
+use crate::common::mountain_lake::{low_over_water, mountain_lake};
 use crate::common::synthetic::{
     HOUSE, MASKED, camera, material_of, scene, scene_with_contours, scene_with_illuminated_contours,
 };
@@ -103,6 +104,18 @@ fn the_grain_of_the_ground_and_the_sky_in_water_are_the_same_on_both() {
     Arc::make_mut(map).has_grain = true;
     list.materials.iter_mut().for_each(|material| material.is_water = true);
     compare(&list, &camera(640, 480), "grain and water");
+}
+
+#[test]
+fn relief_in_water_is_the_same_on_both() {
+    let mut list = mountain_lake(0.3);
+    compare(&list, &low_over_water((640, 480)), "a mountain in a lake");
+    let map = Arc::make_mut(list.ground.as_mut().expect("there is ground"));
+    map.posts.iter_mut().for_each(|post| post.water = 0.0);
+    list.materials.iter_mut().for_each(|material| {
+        (material.is_water, material.albedo) = (true, Albedo::Surface);
+    });
+    compare(&list, &low_over_water((640, 480)), "a mountain in water of its own color");
 }
 
 #[test]

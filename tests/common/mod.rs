@@ -7,6 +7,7 @@ pub mod data;
 pub mod findings;
 pub mod forest;
 pub mod golden;
+pub mod mountain_lake;
 pub mod places;
 pub mod scratch;
 pub mod shapefile;

@@ -162,6 +162,7 @@ fn ground_map() -> GroundMap {
     GroundMap {
         origin: Vec2::ZERO,
         cell: Vec2::splat(CELL_M),
+        z_per_m: 1.0,
         columns: POSTS,
         rows: POSTS,
         posts: (0..POSTS * POSTS).map(post).collect(),

@@ -3,6 +3,7 @@
 mod hiding;
 mod hostile;
 mod landscape;
+mod reflections;
 mod shadows;
 mod surfaces;
 

@@ -3,6 +3,8 @@
 //! Near the eye this is the map's own bilinear reading. Far away, where a pixel spans many posts, the map is read from
 //! its coarser levels, along the longer side of the footprint.
 
+use std::sync::OnceLock;
+
 use glam::{Vec2, Vec3};
 
 use crate::cpu::hit::FacePoint;
@@ -12,9 +14,11 @@ use sandtable_draw::ground::{Contours, GroundDetail, GroundMap, GroundPost, Pixe
 use sandtable_draw::ground_grain::ground_grain;
 use sandtable_draw::ground_imagery::{DrapedColor, GroundImagery};
 use sandtable_draw::ground_levels::{GroundLevel, PostCount, add_weighted, coarser_levels};
+use sandtable_draw::ground_tops::GroundTops;
 use sandtable_draw::lighting::{ReceivedLight, ReliefPoint, ReliefShading};
 use sandtable_draw::material::TextureWrap;
 use sandtable_draw::water::ShorePixel;
+use sandtable_draw::water_relief::{MirroredRay, RayEnd};
 
 #[derive(Debug)]
 pub struct GroundShader<'a> {
@@ -23,6 +27,8 @@ pub struct GroundShader<'a> {
     noise_origin: Vec2,
     posts_per_meter: Vec2,
     coarser: Vec<GroundLevel>,
+    /// Made when the first ray asks for them: most pictures mirror no relief.
+    tops: OnceLock<GroundTops>,
     draped: Option<(&'a GroundImagery, Texture<'a>)>,
     relief: ReliefShading,
     /// The direction to the light in plan, of length 1; zero for a light straight above.
@@ -54,6 +60,7 @@ impl<'a> GroundShader<'a> {
             noise_origin: Vec2::ZERO,
             posts_per_meter: map.cell.recip(),
             coarser,
+            tops: OnceLock::new(),
             draped,
             relief,
             toward_light: to_sun.truncate().normalize_or_zero(),
@@ -96,7 +103,37 @@ impl<'a> GroundShader<'a> {
         form
     }
 
+    /// The ray `direction`, of unit length, that water at world position `at` mirrors; `None` where it is upright.
+    pub fn mirrored_ray(&self, at: Vec2, direction: Vec3) -> Option<MirroredRay> {
+        MirroredRay::new(self.map, at, direction)
+    }
+
+    /// Where a mirrored ray first meets the map from `start_m` on.
+    pub fn met_by(&self, ray: &MirroredRay, start_m: f32) -> RayEnd {
+        ray.meets(self.map, self.tops.get_or_init(|| GroundTops::new(self.map)), start_m)
+    }
+
+    /// The light that the ground at a point returns to water, before haze: without the textures of its cover, grain and
+    /// contours. `form` is the [generalized ground](Self::form) there.
+    pub fn mirrored(&self, hit: &FacePoint, form: &GroundPost, most_taps: u32) -> Vec3 {
+        let point = self.read(hit, most_taps);
+        let albedo = self.map.mirrored_land(&point.post, &point.draped);
+        self.lit(albedo, &point, form, ReceivedLight::ALL).lerp(albedo, self.unlit_share(&point))
+    }
+
     pub fn at(&self, hit: &FacePoint, most_taps: u32) -> GroundPoint {
+        let mut point = self.read(hit, most_taps);
+        // Open water hides all that the noise is for.
+        if self.map.cover.is_some() && !self.shore(&point, hit).is_open() {
+            let cell_m = self.map.cell.max_element();
+            let at = hit.world.truncate() + self.noise_origin;
+            point.noise = CoverNoise::new(at, [hit.mean_pixel_m(), hit.pixel_m()], cell_m);
+        }
+        point
+    }
+
+    /// A point without its noise.
+    fn read(&self, hit: &FacePoint, most_taps: u32) -> GroundPoint {
         let [right, down] = [hit.right.truncate(), hit.down.truncate()];
         let footprint = TexelFootprint::new(right, down, self.posts_per_meter, most_taps);
         let level = footprint.level.min(self.coarser.len() as f32);
@@ -112,12 +149,6 @@ impl<'a> GroundShader<'a> {
         }
         if let Some((imagery, texture)) = &self.draped {
             point.draped = draped(imagery, texture, hit, most_taps);
-        }
-        // Open water hides all that the noise is for.
-        if self.map.cover.is_some() && !self.shore(&point, hit).is_open() {
-            let cell_m = self.map.cell.max_element();
-            let at = hit.world.truncate() + self.noise_origin;
-            point.noise = CoverNoise::new(at, [hit.mean_pixel_m(), hit.pixel_m()], cell_m);
         }
         point
     }
@@ -267,6 +298,7 @@ mod tests {
         GroundMap {
             origin: Vec2::new(-30.0, 70.0),
             cell: Vec2::new(2.0, 5.0),
+            z_per_m: 1.0,
             columns,
             rows,
             posts: (0..columns * rows).map(post).collect(),

@@ -54,6 +54,11 @@ impl FacePoint {
         (self.right.truncate().length_squared() * self.down.truncate().length_squared()).sqrt().sqrt()
     }
 
+    /// The width of the pixel across the view, in meters: the surface may lie along it in one direction, not in both.
+    pub fn across_m(&self) -> f32 {
+        self.right.length_squared().min(self.down.length_squared()).sqrt()
+    }
+
     /// The greatest width of the pixel in plan, in meters.
     pub fn pixel_m(&self) -> f32 {
         self.right.truncate().length_squared().max(self.down.truncate().length_squared()).sqrt()

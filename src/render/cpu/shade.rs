@@ -20,6 +20,7 @@ use sandtable_draw::lighting::ReceivedLight;
 use sandtable_draw::list::{DrawItem, DrawList, DrawVertex};
 use sandtable_draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use sandtable_draw::water::{WaterMirror, ripples};
+use sandtable_draw::water_relief::RayEnd;
 use sandtable_draw::wireframe::{self, edge_cover};
 
 #[derive(Debug)]
@@ -151,7 +152,8 @@ impl<'a> Shader<'a> {
             let ray = if screen.is_parallel { screen.forward.as_vec3() } else { screen.ray_at(at) };
             let ray = ray.normalize_or_zero();
             let slope = ripples(hit.world.truncate(), hit.pixel_m(), ray);
-            color = lighting.mirror_sky(color, ray, WaterMirror { share: water, slope });
+            let mirror = WaterMirror { share: water, slope };
+            color = lighting.mirror(color, ray, mirror, |ray| self.mirrored_relief(&hit, ray));
         }
         if material.shows_edges {
             // At the center, wherever the samples of the face are: both faces of an edge draw the same line.
@@ -175,17 +177,49 @@ impl<'a> Shader<'a> {
         hit: FacePoint,
     ) -> (Option<&'b GroundShader<'a>>, FacePoint) {
         let at = hit.world.truncate();
-        let holds = |inset: &&InsetShader<'_>| {
-            let [min, max] = inset.corners;
-            min.cmple(at).all() && at.cmple(max).all()
-        };
-        match self.insets.iter().find(holds) {
+        match self.insets.iter().find(|inset| inset.holds(at)) {
             Some(inset) => {
                 let world = hit.world - inset.origin.extend(0.0);
                 (Some(&inset.ground), FacePoint { world, ..hit })
             }
             None => (Some(outer), hit),
         }
+    }
+
+    /// The light of the ground that a ray meets which water at a point mirrors, as it reaches the water through the haze;
+    /// `None` where it meets none.
+    ///
+    /// The ray goes from the finest map that holds the point out into coarser ones.
+    fn mirrored_relief(&self, hit: &FacePoint, direction: Vec3) -> Option<Vec3> {
+        let outer = self.ground.as_ref()?;
+        let at = hit.world.truncate();
+        let insets = self.insets.iter().filter(|inset| inset.holds(at));
+        let mut grounds =
+            insets.map(|inset| (&inset.ground, inset.origin)).chain([(outer, Vec2::ZERO)]).peekable();
+        let (finest, origin) = *grounds.peek()?;
+        let ray = finest.mirrored_ray(at - origin, direction)?.within(-origin);
+        let mut start_m = 0.0_f32;
+        for (ground, origin) in grounds {
+            match ground.met_by(&ray.within(origin), start_m) {
+                RayEnd::Ground(along_m) => {
+                    let (place, way_m) = (ray.at(along_m), ray.length_m(along_m));
+                    let distance_m = hit.distance_m + way_m;
+                    // Rays part with distance from the eye, and parallel ones do not.
+                    let parted = if self.screen.is_parallel { 1.0 } else { distance_m / hit.distance_m };
+                    let pixel_m = hit.across_m() * parted;
+                    let met = FacePoint {
+                        world: (place - origin).extend(ray.z + ray.rise * along_m),
+                        distance_m,
+                        right: Vec3::X * pixel_m,
+                        down: Vec3::Y * pixel_m,
+                    };
+                    let light = ground.mirrored(&met, &outer.form(place), self.most_taps);
+                    return Some(self.list.lighting.add_haze_beyond(light, hit.distance_m, distance_m));
+                }
+                RayEnd::Beyond(along_m) => start_m = along_m.max(0.0),
+            }
+        }
+        None
     }
 
     /// The light that reaches a point past solids; the sun is looked for only where the surface turns to it.
@@ -273,6 +307,11 @@ impl<'a> InsetShader<'a> {
     fn new(inset: &'a GroundInset, to_sun: Vec3) -> Self {
         let ground = GroundShader::new(&inset.map, to_sun).within(inset.origin);
         Self { ground, origin: inset.origin, corners: inset.corners() }
+    }
+
+    fn holds(&self, at: Vec2) -> bool {
+        let [min, max] = self.corners;
+        min.cmple(at).all() && at.cmple(max).all()
     }
 }
 

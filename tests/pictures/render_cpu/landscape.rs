@@ -94,6 +94,7 @@ pub fn ground_map(side: u32, half_m: f32, contours: bool, height: impl Fn(f32, f
     GroundMap {
         origin: Vec2::splat(-half_m),
         cell: Vec2::splat(cell),
+        z_per_m: 1.0,
         columns: side,
         rows: side,
         posts: (0..side * side).map(post).collect(),
