@@ -19,7 +19,6 @@
 use std::sync::Arc;
 
 use glam::{DVec2, Vec2, Vec3};
-use rayon::prelude::*;
 
 use crate::height_scan;
 use crate::post_rect::PostRect;
@@ -397,12 +396,6 @@ impl Lattice {
     /// Which posts are pinned, in the order of [`Lattice::heights`].
     pub fn pinned(&self) -> &[bool] {
         &self.pinned
-    }
-
-    /// Whether any post is pinned; all threads look.
-    pub fn has_pins(&self) -> bool {
-        let any = |pinned: &[bool]| pinned.iter().fold(false, |any, pinned| any | pinned);
-        self.pinned.par_chunks(1 << 16).any(any)
     }
 
     /// The greatest difference of drawn ground from a pinned post, meters: rounding of heights, which
