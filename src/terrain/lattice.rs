@@ -22,7 +22,6 @@ use glam::{DVec2, Vec2, Vec3};
 
 use crate::height_scan;
 use crate::post_rect::PostRect;
-use crate::returned_memory::returned_zeros;
 use crate::row_order::turned;
 use sandtable_base::limits::memory::{MemoryRefused, check_memory};
 use sandtable_geom::rect::Rect;
@@ -223,7 +222,7 @@ impl Lattice {
         if let Some(height) = height_scan::first_beyond(&heights, HIGHEST_M) {
             return Err(LatticeError::TooHigh { height });
         }
-        let pinned = Arc::new(returned_zeros(heights.len()));
+        let pinned = Arc::new(crate::returned_memory::returned_zeros(heights.len()));
         Ok(Self {
             origin,
             cell,
