@@ -361,6 +361,48 @@ impl GroundMap {
     }
 }
 
+/// What a row of posts is made of, by post.
+#[derive(Clone, Copy, Debug)]
+pub struct PostRow<'a> {
+    /// Elevations in meters.
+    pub heights_m: &'a [f32],
+    /// Rises eastward and northward, true to scale, meters per meter.
+    pub slopes: &'a [Vec2],
+    /// The factor on slopes as they are drawn.
+    pub exaggeration: f32,
+    /// See [`GroundPost::sun_visibility`].
+    pub sun: &'a [f32],
+    /// See [`GroundPost::sky_visibility`].
+    pub sky: &'a [f32],
+    /// See [`GroundPost::water`]; empty where there is none.
+    pub water: &'a [f32],
+    /// The share of the ground under crowns; empty where there are none.
+    pub woods: &'a [f32],
+}
+
+impl PostRow<'_> {
+    /// The posts, as many as there are heights.
+    pub fn posts(&self) -> Vec<GroundPost> {
+        let shape = self.heights_m.iter().zip(self.slopes);
+        let light = self.sun.iter().zip(self.sky);
+        let posts =
+            shape.zip(light).map(|((&height_m, slopes), (&sun_visibility, &sky_visibility))| GroundPost {
+                height_m,
+                slope_east: slopes.x * self.exaggeration,
+                slope_north: slopes.y * self.exaggeration,
+                sun_visibility,
+                sky_visibility,
+                water: 0.0,
+            });
+        let mut posts: Vec<GroundPost> = posts.collect();
+        posts.iter_mut().zip(self.water).for_each(|(post, water)| post.water = *water);
+        for (post, share) in posts.iter_mut().zip(self.woods) {
+            post.water = if post.water > 0.0 { post.water } else { -share };
+        }
+        posts
+    }
+}
+
 impl GroundPost {
     /// The greatest [`Self::sky_visibility`], which is brighter than level ground by half.
     pub const MOST_SKY: f32 = 2.0;

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use crate::color::Srgba;
 
 /// Pixels row by row from the upper left corner. Clones share them until one is painted on.
@@ -28,6 +30,15 @@ impl Pixels {
     pub fn from_fn(width: u32, height: u32, color: impl Fn(u32, u32) -> Srgba) -> Self {
         let color = &color;
         let data: Vec<Srgba> = (0..height).flat_map(|y| (0..width).map(move |x| color(x, y))).collect();
+        Self { width, height, data: Arc::new(data) }
+    }
+
+    /// The same on all threads, row by row.
+    pub fn par_from_fn(width: u32, height: u32, color: impl Fn(u32, u32) -> Srgba + Sync) -> Self {
+        let mut data: Vec<Srgba> = bytemuck::zeroed_vec(width as usize * height as usize);
+        data.par_chunks_mut(width.max(1) as usize).zip(0..height).for_each(|(row, y)| {
+            row.iter_mut().zip(0..width).for_each(|(pixel, x)| *pixel = color(x, y));
+        });
         Self { width, height, data: Arc::new(data) }
     }
 

@@ -96,7 +96,7 @@ fn shadowed(scene: &SceneModel, to_sun: Vec3, rect: &Rect, top: Option<Vec3>, fu
     let shades = shadow.map(rect, TEXELS);
     let block = table_rect(&scene.lattice, full_m);
     let margin = (block.min - rect.min).max_element();
-    Pixels::from_fn(TEXELS, TEXELS, |x, y| {
+    Pixels::par_from_fn(TEXELS, TEXELS, |x, y| {
         let part = DVec2::new(f64::from(x), f64::from(TEXELS - 1 - y)) / f64::from(TEXELS - 1);
         let at = rect.min + part * rect.size();
         let off = (block.min - at).max(at - block.max).max(DVec2::ZERO).length() / margin;

@@ -23,7 +23,7 @@ fn next_level(level: &Pixels) -> Option<Pixels> {
     if width.min(height) == 0 || width.max(height) == 1 {
         return None;
     }
-    Some(Pixels::from_fn((width / 2).max(1), (height / 2).max(1), |x, y| {
+    Some(Pixels::par_from_fn((width / 2).max(1), (height / 2).max(1), |x, y| {
         let mut by_alpha = Vec4::ZERO;
         let mut even = Vec3::ZERO;
         for (row, down) in covered(y, height) {

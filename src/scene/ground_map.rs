@@ -11,7 +11,7 @@ use crate::scene_model::SceneModel;
 use crate::texture_shading::TextureShading;
 use crate::undergrowth::undergrowth;
 use sandtable_draw::contour_ground::lift_level_ground;
-use sandtable_draw::ground::{GroundMap, GroundPost};
+use sandtable_draw::ground::{GroundMap, PostRow};
 use sandtable_draw::ground_levels::{GroundLevel, PostCount, level_of_portions};
 use sandtable_draw::lighting::ReliefShading;
 use sandtable_terrain::lattice::Lattice;
@@ -45,27 +45,17 @@ pub fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: Gr
     let smooth = (is_rounded && is_held).then(|| without_terraces(lattice, 1.0, &is_water));
     let lowest_m = if is_rounded { lattice.height_range().0 } else { 0.0 };
     let posts_of = |shaded: &Lattice, first: usize, row: usize| {
-        let heights = shaded.filled_row((row - first) as u32, scene.height_range_m.0);
-        let slopes = shaded.slopes_of_row((row - first) as u32);
-        let light = light.sun(row).into_iter().zip(light.sky(row));
-        let posts = heights.into_iter().zip(slopes).zip(light).map(
-            |((height_m, slopes), (sun_visibility, sky_visibility))| GroundPost {
-                height_m,
-                slope_east: scene.scale.world_z(slopes.x),
-                slope_north: scene.scale.world_z(slopes.y),
-                sun_visibility,
-                sky_visibility,
-                water: 0.0,
-            },
-        );
-        let mut posts: Vec<GroundPost> = posts.collect();
-        if let Some(shore) = &shore {
-            posts.iter_mut().zip(shore.row(row)).for_each(|(post, water)| post.water = water);
-        }
-        for (post, share) in posts.iter_mut().zip(woods.get(row * columns..).unwrap_or_default()) {
-            post.water = if post.water > 0.0 { post.water } else { -share };
-        }
-        posts
+        let row_in_part = (row - first) as u32;
+        let posts = PostRow {
+            heights_m: &shaded.filled_row(row_in_part, scene.height_range_m.0),
+            slopes: &shaded.slopes_of_row(row_in_part),
+            exaggeration: scene.scale.0,
+            sun: &light.sun(row),
+            sky: &light.sky(row),
+            water: &shore.as_ref().map(|shore| shore.row(row)).unwrap_or_default(),
+            woods: woods.get(row * columns..).unwrap_or_default(),
+        };
+        posts.posts()
     };
     let all = PostCount { columns: lattice.columns(), rows: lattice.rows() };
     let portion = |rows: Range<usize>| {

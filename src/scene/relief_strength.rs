@@ -4,6 +4,7 @@
 //! It depends on the ground and the sun alone, so that all pictures of a scene under one sun are shaded alike.
 
 use glam::{DVec2, UVec2, Vec2, Vec3};
+use rayon::prelude::*;
 
 use crate::vertical_scale::VerticalScale;
 use sandtable_draw::color::luminance;
@@ -108,7 +109,7 @@ fn shade_gain(slopes: &[LandSlope], z_factor: f32, ramp: &ColorRamp, shading: &R
         let (relief, _) = shading.relief(&point);
         if relief < 0.0 { (brightness - 1.0) / relief } else { f32::INFINITY }
     };
-    let mut gains: Vec<f32> = slopes.iter().map(darkening_gain).collect();
+    let mut gains: Vec<f32> = slopes.par_iter().map(darkening_gain).collect();
     if gains.is_empty() {
         return ReliefShading::GAIN;
     }

@@ -222,7 +222,7 @@ impl Lattice {
         if let Some(height) = height_scan::first_beyond(&heights, HIGHEST_M) {
             return Err(LatticeError::TooHigh { height });
         }
-        let pinned = Arc::new(vec![false; heights.len()]);
+        let pinned = Arc::new(crate::returned_memory::returned_zeros(heights.len()));
         Ok(Self {
             origin,
             cell,

@@ -17,6 +17,9 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::lattice::Lattice;
+use crate::level_regions::large_region_posts;
+use crate::returned_memory::returned_capacity;
+use crate::terraces::are_whole;
 
 /// The fewest posts of a lake or a sea without a stated level: fewer happen to be level.
 pub const LEAST_POSTS: usize = 200;
@@ -106,7 +109,9 @@ impl WaterCover {
 /// The water of a lattice of elevations in meters, by the rules of this module. Time and memory are linear in the number of posts.
 pub fn water_cover(lattice: &Lattice, rules: &WaterRules) -> WaterCover {
     let heights = lattice.heights();
-    let mut search = WaterSearch { lattice, state: vec![PostState::New; heights.len()], posts: Vec::new() };
+    let mut state = Vec::with_capacity(returned_capacity::<PostState>(heights.len()));
+    state.resize(heights.len(), PostState::New);
+    let mut search = WaterSearch { lattice, state, posts: Vec::new() };
     let mut cover = WaterCover::default();
     match rules.sea_level_m {
         Some(level_m) => cover.sea_posts = search.sea_at(level_m),
@@ -202,12 +207,6 @@ impl WaterSearch<'_> {
         })
     }
 
-    /// The rows of heights of which something holds: all threads look, so that a search on one passes most rows over.
-    fn rows_where(&self, holds: impl Fn(&[f32]) -> bool + Sync) -> Vec<usize> {
-        let rows = self.lattice.heights().par_chunks_exact(self.lattice.columns() as usize).enumerate();
-        rows.filter(|(_, row)| holds(row)).map(|(number, _)| number).collect()
-    }
-
     /// Marks what lies at or below a stated level and is connected to the border as water; the number of its posts.
     fn sea_at(&mut self, level_m: f32) -> usize {
         let mut count = 0;
@@ -224,7 +223,8 @@ impl WaterSearch<'_> {
     fn sort_low_ground(&mut self, cover: &mut WaterCover) {
         let is_low = |height: f32| height <= -LEVEL_M;
         let columns = self.lattice.columns() as usize;
-        let rows = self.rows_where(|row| row.iter().fold(false, |any, &height| any | is_low(height)));
+        let rows =
+            rows_where(self.lattice, |row| row.iter().fold(false, |any, &height| any | is_low(height)));
         let inner = rows.into_iter().flat_map(|row| row * columns..(row + 1) * columns);
         let at_border = self.border().map(|index| (index, true));
         for (index, is_open) in at_border.chain(inner.map(|index| (index, false))) {
@@ -257,21 +257,18 @@ impl WaterSearch<'_> {
 
     /// Marks lakes as water; the posts of each.
     fn lakes(&mut self) -> Vec<usize> {
-        let (heights, columns) = (self.lattice.heights(), self.lattice.columns() as usize);
+        let heights = self.lattice.heights();
         let mut lakes = Vec::new();
-        let has_level = |row: &[f32]| row.windows(2).fold(false, |any, pair| any | (pair[0] == pair[1]));
-        for row in self.rows_where(has_level) {
-            for (column, pair) in heights[row * columns..][..columns].windows(2).enumerate() {
-                let (level, index) = (pair[0], row * columns + column);
-                if level != pair[1] || !self.state[index].is_open() {
-                    continue;
-                }
-                let belongs = |height: f32, _| (height - level).abs() < LEVEL_M;
-                let sides = self.find(index, level, belongs, PostState::found);
-                let is_shaped = || self.posts.iter().any(|&index| self.lattice.pinned()[index as usize]);
-                if sides.is_lake(self.posts.len()) && !is_shaped() {
-                    lakes.push(self.flood());
-                }
+        for index in level_posts(self.lattice) {
+            let level = heights[index];
+            if !self.state[index].is_open() {
+                continue;
+            }
+            let belongs = |height: f32, _| (height - level).abs() < LEVEL_M;
+            let sides = self.find(index, level, belongs, PostState::found);
+            let is_shaped = || self.posts.iter().any(|&index| self.lattice.pinned()[index as usize]);
+            if sides.is_lake(self.posts.len()) && !is_shaped() {
+                lakes.push(self.flood());
             }
         }
         lakes
@@ -335,6 +332,28 @@ impl WaterSearch<'_> {
         }
         sides
     }
+}
+
+/// The rows of heights of which something holds: all threads look, so that a search on one passes most rows over.
+fn rows_where(lattice: &Lattice, holds: impl Fn(&[f32]) -> bool + Sync) -> Vec<usize> {
+    let rows = lattice.heights().par_chunks_exact(lattice.columns() as usize).enumerate();
+    rows.filter(|(_, row)| holds(row)).map(|(number, _)| number).collect()
+}
+
+/// Posts, rising, among which is the first of every lake that is as high as the one east of it.
+///
+/// Where heights are whole numbers, those of one lake are equal, and no region of equal heights shares posts with another: small
+/// ones need not be looked at.
+fn level_posts(lattice: &Lattice) -> Box<dyn Iterator<Item = usize> + '_> {
+    let (heights, columns) = (lattice.heights(), lattice.columns() as usize);
+    if are_whole(heights) {
+        let posts = large_region_posts(heights, columns, LEAST_POSTS);
+        return Box::new(posts.into_iter().map(|index| index as usize));
+    }
+    let has_level = |row: &[f32]| row.windows(2).fold(false, |any, pair| any | (pair[0] == pair[1]));
+    let rows = rows_where(lattice, has_level).into_iter();
+    let level = move |&index: &usize| heights[index] == heights[index + 1];
+    Box::new(rows.flat_map(move |row| (row * columns..(row + 1) * columns - 1).filter(level)))
 }
 
 #[cfg(test)]

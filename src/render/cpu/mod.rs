@@ -49,6 +49,7 @@ mod texture;
 mod tile;
 mod visibility;
 
+use rayon::iter::repeat_n;
 use rayon::prelude::*;
 
 use crate::cpu::band::{BandRows, TilesLeft, draw_band};
@@ -199,9 +200,10 @@ fn draw<const N: usize>(
     let drawn = if let DrawnAs::Colors(drawn) = drawn_as { drawn } else { &uncounted };
     drawn.begin(height);
     let (count, band) = (width as usize * height as usize, (width * TILE) as usize);
-    let mut pixels = Pixels::filled(width, height, Srgba::WHITE);
-    let mut depth_m = vec![f32::INFINITY; count];
-    let mut features = vec![FeatureId::NONE; count];
+    // All threads fill them: new memory takes time when it is first written.
+    let mut pixels = Pixels::par_from_fn(width, height, |_, _| Srgba::WHITE);
+    let mut depth_m: Vec<f32> = repeat_n(f32::INFINITY, count).collect();
+    let mut features: Vec<FeatureId> = repeat_n(FeatureId::NONE, count).collect();
     // While a strip is drawn, the faces of the next are made: threads that find no tile left in one go on with the other.
     let faces = |rows| source.geometry(rows, &strips.chunk_rows);
     let mut made = strips.rows.first().map(faces);

@@ -2,10 +2,11 @@
 
 use std::borrow::Cow;
 
-use glam::{Vec2, Vec2Swizzles};
+use glam::Vec2;
 use rayon::prelude::*;
 
 use crate::lattice::Lattice;
+use crate::returned_memory::returned_zeros;
 use crate::vectorized::vectorized;
 
 /// Values at every `every`-th post of a lattice, row by row from the south-west. The last row and the last column may
@@ -80,7 +81,7 @@ impl<'a> CoarseField<'a> {
     /// The field at every `by`-th of its values, each reduced from those around it.
     pub fn reduced<R: Reduction>(&self, by: usize, reduction: &R) -> CoarseField<'static> {
         let [columns, rows] = [self.columns, self.rows].map(|count| (count - 1).div_ceil(by) + 1);
-        let mut values = vec![0.0; columns * rows];
+        let mut values = returned_zeros(columns * rows);
         values.par_chunks_exact_mut(columns).enumerate().for_each(|(row, values)| {
             let mut sums = vec![R::NONE; self.columns];
             for (from, north) in around::<R>(row, by, self.rows) {
@@ -96,28 +97,6 @@ impl<'a> CoarseField<'a> {
         });
         let cell = self.cell * by as f32;
         CoarseField { columns, rows, every: self.every * by, cell, values: Cow::Owned(values) }
-    }
-
-    /// The field with its rows as columns.
-    pub fn transposed(&self) -> CoarseField<'static> {
-        /// Columns that are copied together: their values in a row share lines of the cache.
-        const TOGETHER: usize = 16;
-        let mut values = vec![0.0; self.values.len()];
-        values.par_chunks_mut(TOGETHER * self.rows).enumerate().for_each(|(block, values)| {
-            for row in 0..self.rows {
-                let line = &self.line(row)[block * TOGETHER..];
-                for (value, &from) in values[row..].iter_mut().step_by(self.rows).zip(line) {
-                    *value = from;
-                }
-            }
-        });
-        CoarseField {
-            columns: self.rows,
-            rows: self.columns,
-            cell: self.cell.yx(),
-            values: Cow::Owned(values),
-            ..*self
-        }
     }
 
     /// One row of values.
@@ -206,14 +185,5 @@ mod tests {
         let coarse = fine.reduced(2, &Mean);
         assert!(coarse.values[0].is_nan());
         assert_eq!(coarse.values[1], 9.5, "of column 3 in rows 0 and 1");
-    }
-
-    #[test]
-    fn rows_become_columns() {
-        let field = plane(37, 21);
-        let turned = field.transposed();
-        assert_eq!((turned.columns, turned.rows, turned.cell), (21, 37, Vec2::new(20.0, 10.0)));
-        assert!((0..37).all(|column| (0..21).all(|row| turned.line(column)[row] == field.line(row)[column])));
-        assert_eq!(turned.transposed().values, field.values);
     }
 }

@@ -18,6 +18,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use crate::light::field::{CoarseField, Mean};
+use crate::returned_memory::returned_zeros;
 use crate::vectorized::vectorized;
 
 /// The most cells along a side of the finest lattice.
@@ -70,7 +71,7 @@ pub fn visibility(heights: &CoarseField, level: u32) -> CoarseField<'static> {
     };
     let fields: Vec<&CoarseField> = std::iter::once(&finest).chain(&coarser).collect();
     let columns = finest.columns;
-    let mut sky = vec![0.0; finest.values.len()];
+    let mut sky: Vec<f32> = returned_zeros(finest.values.len());
     sky.par_chunks_mut(PORTION * columns).enumerate().for_each(|(portion, sky)| {
         let first = portion * PORTION;
         let rows = first..first + sky.len() / columns;

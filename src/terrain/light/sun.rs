@@ -112,42 +112,134 @@ fn sheet(heights: &CoarseField, level: Vec2, tangent: f32) -> CoarseField<'stati
     let casting = heights.reduced(heights.factor(MOST_CELLS), &caster);
     let steps = (level / casting.cell).abs();
     if steps.y >= steps.x {
-        return swept(casting, level, tangent);
+        swept_by_rows(casting, level, tangent)
+    } else {
+        swept_by_columns(casting, level, tangent)
     }
-    // One field at a time is held beside its transpose.
-    let turned = casting.transposed();
-    drop(casting);
-    swept(turned, level.yx(), tangent).transposed()
 }
 
-/// Sweeps from row to row away from the sun, which is `level` and more north or south than east or west in cells: the
-/// heights that cast become those in shadow.
-fn swept(mut field: CoarseField<'static>, level: Vec2, tangent: f32) -> CoarseField<'static> {
-    let per_row = field.cell.y / level.y.abs();
-    let aside = level.x * per_row / field.cell.x;
-    let (first, part) = (1.0 + aside.floor(), aside - aside.floor());
-    let drop = per_row * tangent;
+/// Sweeps away from the sun, which is `level` and more north or south than east or west in cells: the heights that cast become
+/// those in shadow.
+fn swept_by_rows(mut field: CoarseField<'static>, level: Vec2, tangent: f32) -> CoarseField<'static> {
     let (columns, rows) = (field.columns, field.rows);
+    let mut sweep = SheetSweep::new(field.cell, level, tangent, columns);
     let heights = field.values.to_mut();
-    // One value more at the western end and two at the eastern end, where nothing casts a shadow.
-    let mut before = vec![NOTHING; columns + 3];
-    let mut shadow = vec![NOTHING; columns];
-    for step in 0..rows {
-        let row = if level.y > 0.0 { rows - 1 - step } else { step };
-        let line = &mut heights[row * columns..][..columns];
-        for (shadow, pair) in shadow.iter_mut().zip(before[first as usize..].windows(2)) {
-            *shadow = between(pair[0], pair[1], part) - drop;
+    for row in away(rows, level.y) {
+        sweep.pass(&mut heights[row * columns..][..columns]);
+    }
+    field
+}
+
+/// The same where the sun is more east or west. Few columns at a time are copied into lines, so that no second field is held.
+fn swept_by_columns(mut field: CoarseField<'static>, level: Vec2, tangent: f32) -> CoarseField<'static> {
+    /// Columns that are copied together: their values in a row share lines of the cache.
+    const TOGETHER: usize = 16;
+    let (columns, rows) = (field.columns, field.rows);
+    let mut sweep = SheetSweep::new(field.cell.yx(), level.yx(), tangent, rows);
+    let heights = field.values.to_mut();
+    let mut lines = vec![0.0; TOGETHER * rows];
+    for block in away(columns.div_ceil(TOGETHER), level.x) {
+        let block = block * TOGETHER..columns.min((block + 1) * TOGETHER);
+        for (row, heights) in heights.chunks_exact(columns).enumerate() {
+            let values = lines[row..].iter_mut().step_by(rows);
+            values.zip(&heights[block.clone()]).for_each(|(value, height)| *value = *height);
         }
-        for ((before, line), shadow) in before[1..].iter_mut().zip(line).zip(&shadow) {
-            *before = line.max(*shadow);
-            *line = *shadow;
+        for column in away(block.len(), level.x) {
+            sweep.pass(&mut lines[column * rows..][..rows]);
+        }
+        for (row, heights) in heights.chunks_exact_mut(columns).enumerate() {
+            let values = lines[row..].iter().step_by(rows);
+            heights[block.clone()].iter_mut().zip(values).for_each(|(height, value)| *height = *value);
         }
     }
     field
 }
 
+/// The numbers below `count`, from the last down where the sun lies `toward` their end.
+fn away(count: usize, toward: f32) -> impl Iterator<Item = usize> {
+    (0..count).map(move |step| if toward > 0.0 { count - 1 - step } else { step })
+}
+
+/// A sheet on its way from line to line.
+struct SheetSweep {
+    /// The sheet at the last line. One value more at the beginning and two at the end, where nothing casts a shadow.
+    before: Vec<f32>,
+    shadow: Vec<f32>,
+    /// Where the rays through the first value of a line leave the last one.
+    first: usize,
+    /// How far past that, as a share of the way to the next value.
+    part: f32,
+    /// How far rays sink from line to line, meters.
+    drop: f32,
+}
+
+impl SheetSweep {
+    /// Lines follow each other along Y of `cell` and `level`, and have `count` values.
+    fn new(cell: Vec2, level: Vec2, tangent: f32, count: usize) -> Self {
+        let per_line = cell.y / level.y.abs();
+        let aside = level.x * per_line / cell.x;
+        Self {
+            before: vec![NOTHING; count + 3],
+            shadow: vec![NOTHING; count],
+            first: (1.0 + aside.floor()) as usize,
+            part: aside - aside.floor(),
+            drop: per_line * tangent,
+        }
+    }
+
+    /// Moves on to the next line, whose heights become those in shadow.
+    fn pass(&mut self, line: &mut [f32]) {
+        let Self { before, shadow, first, part, drop } = self;
+        vectorized(
+            #[inline(always)]
+            || {
+                let (near, far) = (&before[*first..], &before[*first + 1..]);
+                for ((shadow, &near), &far) in shadow.iter_mut().zip(near).zip(far) {
+                    *shadow = between(near, far, *part) - *drop;
+                }
+                for ((before, line), shadow) in before[1..].iter_mut().zip(line).zip(shadow) {
+                    *before = line.max(*shadow);
+                    *line = *shadow;
+                }
+            },
+        );
+    }
+}
+
 /// The height between two, linear where both cast a shadow; else that of the nearer.
+#[inline(always)]
 fn between(from: f32, to: f32, part: f32) -> f32 {
     let nearer = if part > 0.5 { to } else { from };
     if from.min(to) > 0.5 * NOTHING { from + (to - from) * part } else { nearer }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn field(
+        [columns, rows]: [usize; 2],
+        cell: Vec2,
+        height: impl Fn(usize, usize) -> f32,
+    ) -> CoarseField<'static> {
+        let values: Vec<f32> = (0..columns * rows).map(|at| height(at % columns, at / columns)).collect();
+        CoarseField { columns, rows, every: 1, cell, values: values.into() }
+    }
+
+    #[test]
+    fn columns_are_swept_as_the_rows_of_the_ground_turned() {
+        let height =
+            |x: usize, y: usize| ((x * 7919 + y * 104_729) % 101) as f32 + 40.0 * libm::sinf(x as f32 * 0.2);
+        for level in [Vec2::new(0.8, 0.6), Vec2::new(-0.96, 0.28), Vec2::new(0.8, -0.6), Vec2::X, Vec2::NEG_X]
+        {
+            let (columns, rows, cell) = (53, 37, Vec2::new(10.0, 12.0));
+            let swept = swept_by_columns(field([columns, rows], cell, height), level, 0.3);
+            let turned = field([rows, columns], cell.yx(), |x, y| height(y, x));
+            let turned = swept_by_rows(turned, level.yx(), 0.3);
+            for (at, value) in swept.values.iter().enumerate() {
+                let other = turned.line(at % columns)[at / columns];
+                assert_eq!(value.to_bits(), other.to_bits(), "{level}: {at}");
+            }
+        }
+    }
 }
