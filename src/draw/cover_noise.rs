@@ -29,7 +29,7 @@ pub(crate) const WAVE_PX: f32 = 5.0;
 /// Cosine and sine of the turn from one octave to the next.
 pub(crate) const TURN: Vec2 = Vec2::new(0.8, 0.6);
 /// Forms are made of octaves up to this many cells of the map wide: what is wider the map shows itself.
-pub(crate) const FORM_CELLS: f32 = 8.0;
+pub(crate) const FORM_CELLS: f32 = 4.0;
 /// How far an octave's lattice is bent by the values of the one before, in its cells: straight, it shows as a maze on rock.
 pub(crate) const BENT: f32 = 0.6;
 /// How sharp the crests of forms are: the noise below which they are round.

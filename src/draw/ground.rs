@@ -300,7 +300,11 @@ impl GroundMap {
     /// contours, under the picture `draped`.
     pub fn mirrored_land(&self, post: &GroundPost, draped: &DrapedColor) -> Vec3 {
         // Across a pixel with all heights strata are too thin to show.
-        draped.over(self.land(post, f32::MAX, Some(&CoverNoise { longest_m: f32::INFINITY, ..CoverNoise::default() })))
+        draped.over(self.land(
+            post,
+            f32::MAX,
+            Some(&CoverNoise { longest_m: f32::INFINITY, ..CoverNoise::default() }),
+        ))
     }
 
     /// The ramp with land cover, where there is `noise` for it, and undergrowth.

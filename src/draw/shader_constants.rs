@@ -8,8 +8,8 @@ use glam::Vec3;
 use crate::lighting::ReliefShading;
 use crate::water::WaterColor;
 use crate::{
-    area_texture, cover_noise, field_plots, ground_cover, ground_grain, ground_tops, hatching, lighting, water,
-    water_relief, wireframe,
+    area_texture, cover_noise, field_plots, ground_cover, ground_grain, ground_tops, hatching, lighting,
+    water, water_relief, wireframe,
 };
 
 /// A language that shaders are written in.
