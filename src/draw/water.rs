@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn low_over_water_relief_takes_the_place_of_the_sky_and_from_above_it_is_not_looked_for() {
+    fn low_over_water_relief_takes_the_place_of_the_sky() {
         let light = Lighting::default();
         let own = WaterColor::SURFACE.linear();
         let mirror = |down: f32, relief: &dyn Fn(Vec3) -> Option<Vec3>| {
