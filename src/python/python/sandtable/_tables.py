@@ -1998,10 +1998,10 @@ class SceneTables:
         imagery
             A picture of the ground over the colors by height, such as an aerial photograph. Default: no picture.
         land_cover
-            Whether the ground looks like ground: woods, fields, meadow, scree, rock and snow, inferred from the place's
-            climate and from elevation, slope, aspect and hollows, tint it by at most 12 of lightness and give it
-            texture, with plots of fields that are symbols, and near by with forms too small for the model's cells; its
-            shade is filled by the sky. Heights stay as they are. `new` switches it on. Default: false.
+            Whether the ground looks like ground: woods, fields, meadow, scree, rock and snow, inferred from the
+            place's climate and from elevation, slope, aspect and hollows, tint it by at most 12 of lightness and give
+            it texture, with plots of fields that are symbols, and near by with forms too small for the model's cells;
+            its shade is filled by the sky. Heights stay as they are. `new` switches it on. Default: false.
         light
             Where the light comes from.
         preset
