@@ -12,7 +12,6 @@
 use std::iter::successors;
 
 use glam::UVec2;
-use rayon::prelude::*;
 
 use crate::ground::GroundMap;
 use crate::ground_levels::PostCount;
@@ -80,12 +79,12 @@ impl TopLevel {
 
 fn finest(map: &GroundMap, size: UVec2) -> TopLevel {
     let mut heights_m = vec![f32::NEG_INFINITY; size.x as usize * size.y as usize];
-    heights_m.par_chunks_mut(size.x as usize).enumerate().for_each(|(row, tops)| {
-        let south = row as u32 * BLOCK;
+    // On one thread: blocks are made at first use, on a thread of a pool that must not take up another use meanwhile.
+    for (south, tops) in (0..).step_by(BLOCK as usize).zip(heights_m.chunks_mut(size.x as usize)) {
         for y in south..(south + BLOCK).min(map.rows.max(2) - 1) {
             add_row(map, y, tops);
         }
-    });
+    }
     TopLevel { size, heights_m }
 }
 
