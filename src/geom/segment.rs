@@ -15,6 +15,10 @@ pub fn distance_squared((from, to): (DVec2, DVec2), at: DVec2) -> f64 {
 
 /// The positions along two segments, 0..=1, at which they cross or touch; `None` where they do not, or are parallel.
 pub fn crossing((a, b): (DVec2, DVec2), (c, d): (DVec2, DVec2)) -> Option<[f64; 2]> {
+    // Of segments on one line apart, rounding may leave an area, and positions that mean nothing.
+    if a.max(b).cmplt(c.min(d)).any() || c.max(d).cmplt(a.min(b)).any() {
+        return None;
+    }
     let (one, other) = (b - a, d - c);
     let area = one.perp_dot(other);
     let parts = [(c - a).perp_dot(other) / area, (c - a).perp_dot(one) / area];
@@ -34,6 +38,21 @@ mod tests {
             assert_eq!(distance_squared(segment, turned(2.5, 7.0)), 49.0);
             assert_eq!(distance_squared(segment, turned(13.0, 4.0)), 25.0);
         }
+    }
+
+    #[test]
+    fn segments_on_one_line_apart_do_not_cross_however_they_are_rounded() {
+        let one = (
+            DVec2::new(9.623076923076903, 3.2769230769230973),
+            DVec2::new(9.276923076923097, 3.623076923076903),
+        );
+        let other = (
+            DVec2::new(11.56841825324288, 1.3315817467571198),
+            DVec2::new(10.331581746757122, 2.5684182532428785),
+        );
+        assert_ne!((one.1 - one.0).perp_dot(other.1 - other.0), 0.0, "by rounding");
+        assert_eq!(crossing(one, other), None);
+        assert_eq!(crossing(other, one), None);
     }
 
     #[test]
