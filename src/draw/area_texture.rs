@@ -143,6 +143,18 @@ pub(crate) struct Parcel {
     pub inside_m: f32,
 }
 
+impl Parcel {
+    /// A place by axes of which the first runs along the parcel.
+    pub fn along(&self, at: Vec2) -> Vec2 {
+        turned(at, (self.own + Vec2::new(1e-3, 0.0)).normalize())
+    }
+
+    /// Its tone, -1..=1.
+    pub fn tone(&self) -> f32 {
+        values(self.cell.wrapping_add(UVec2::splat(FIGURE_SALT))).x
+    }
+}
+
 impl AreaTexture {
     /// The numbers as shaders read them: nine times four.
     pub fn uniform(&self) -> [[f32; 4]; 9] {
@@ -214,12 +226,11 @@ impl AreaTexture {
             tone = 0.0;
             if shown > 0.0 {
                 let parcel = parcel(bent, self.parcel_m);
-                let axis = (parcel.own + Vec2::new(1e-3, 0.0)).normalize();
-                place = turned(bent, axis);
+                place = parcel.along(bent);
                 inside_m = parcel.inside_m;
                 own = parcel.cell;
                 border = border.lerp(line_cover(self.border_m, inside_m, longest_m), shown);
-                tone = shown * values(own + UVec2::splat(FIGURE_SALT)).x;
+                tone = shown * parcel.tone();
                 if self.strip_m > 0.0 {
                     let (own_tone, line) = self.strip(place, longest_m, own);
                     tone = tone.lerp(PARCEL_TONE * tone + own_tone, shown);
@@ -335,7 +346,7 @@ fn between(tone: impl Fn(f32) -> f32, past_px: f32) -> f32 {
 }
 
 /// A place by axes of which the first runs along `axis`, of length 1.
-pub(crate) fn turned(at: Vec2, axis: Vec2) -> Vec2 {
+fn turned(at: Vec2, axis: Vec2) -> Vec2 {
     Vec2::new(axis.x, -axis.y).rotate(at)
 }
 

@@ -2,10 +2,9 @@
 //!
 //! They are a symbol of farmed land. No plot is one of the place, so that none has a border that is drawn.
 
-use glam::{UVec2, Vec2};
+use glam::Vec2;
 
-use crate::area_texture::{FIGURE_SALT, PARCEL_TONE, parcel, part_shown, strip_tone, turned};
-use crate::cover_noise::values;
+use crate::area_texture::{PARCEL_TONE, parcel, part_shown, strip_tone};
 
 /// The mean width of a parcel and of its strips, meters.
 pub(crate) const FIELD_M: [f32; 2] = [560.0, 110.0];
@@ -19,12 +18,10 @@ pub(crate) fn field_tone(at: Vec2, pixel_m: f32) -> f32 {
         return 0.0;
     }
     let parcel = parcel(at, parcel_m);
-    let axis = (parcel.own + Vec2::new(1e-3, 0.0)).normalize();
-    let whole = values(parcel.cell + UVec2::splat(FIGURE_SALT)).x;
-    let strips = part_shown(strip_m, pixel_m) * strip_tone(strip_m, turned(at, axis), pixel_m, parcel.cell);
+    let strips = part_shown(strip_m, pixel_m) * strip_tone(strip_m, parcel.along(at), pixel_m, parcel.cell);
     // At its border a parcel's tone blends into the next one's.
     let inside = (parcel.inside_m / pixel_m + 0.5).clamp(0.0, 1.0);
-    shown * inside * (PARCEL_TONE * whole + strips)
+    shown * inside * (PARCEL_TONE * parcel.tone() + strips)
 }
 
 #[cfg(test)]
