@@ -37,7 +37,8 @@ fn every_scene_of_the_project_renders() {
         scenes.iter().map(fs::DirEntry::path).filter(|path| path.extension().is_some_and(|it| it == "toml"))
     {
         let scene = scene.to_string_lossy().into_owned();
-        render(&scratch, &[&scene, "-o", "out.png"]).ok();
+        // The size that scenes are drawn in unasked is that of other tests here.
+        render(&scratch, &[&scene, "-o", "out.png", "--size", "960x540"]).ok();
         assert_eq!(scratch.names(), ["out.png"], "{scene}");
     }
 }
