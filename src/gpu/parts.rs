@@ -40,6 +40,8 @@ impl ShaderParts {
     const AREA: Self = Self(65_536);
     /// Relief in water.
     pub const WATER_RELIEF: Self = Self(131_072);
+    /// Shadows of the sun by one reading of their map, with hard borders.
+    const PLAIN_SHADOWS: Self = Self(262_144);
     /// Windows of finer posts.
     pub const WINDOWS: Self = Self(32_768);
 
@@ -52,6 +54,13 @@ impl ShaderParts {
 
     pub fn without(self, other: Self) -> Self {
         Self(self.0 & !other.0)
+    }
+
+    /// These with less in them where that is hardly seen in a picture of few pixels that moves: a software driver takes the
+    /// steps of a mirrored ray, and reads all texels of a shadow's border, at every pixel that is drawn with a shader that can.
+    pub fn while_moving(self) -> Self {
+        let plain = Self::PLAIN_SHADOWS.when(self.has(Self::SUN_SHADOWS));
+        self.without(Self::WATER_RELIEF.with(Self::SKY_SHADOWS).with(Self::GRAIN)).with(plain)
     }
 
     fn has(self, part: Self) -> bool {
@@ -108,15 +117,16 @@ impl ShaderParts {
     /// The parts for what shows these of materials, in a picture that has the parts `picture`.
     pub fn in_picture(self, picture: Self) -> Self {
         let map = [Self::IMAGERY, Self::COVER, Self::CONTOURS, Self::MAP_WATER];
-        let shadows = [Self::SUN_SHADOWS, Self::SKY_SHADOWS];
+        let shadows = [Self::SUN_SHADOWS, Self::SKY_SHADOWS, Self::PLAIN_SHADOWS];
         let colored = self.has(Self::GROUND_COLOR);
         let lit = self.has(Self::GROUND_LIGHT.with(Self::OWN_LIGHT));
         let mirrors = self.has(Self::WATER) || (colored && picture.has(Self::MAP_WATER));
+        let mirrored = [Self::WATER_RELIEF, Self::IMAGERY, Self::COVER, Self::MAP_WATER];
         let all = |parts: &[Self]| parts.iter().fold(Self::NONE, |all, &part| all.with(part));
         let wanted = self
             .with(Self::HAZE)
             .with(all(&map).when(colored))
-            .with(all(&[Self::WATER_RELIEF, Self::IMAGERY, Self::COVER, Self::MAP_WATER]).when(mirrors))
+            .with(all(&mirrored).when(mirrors && picture.has(Self::WATER_RELIEF)))
             .with(Self::GRAIN.when(colored || self.has(Self::NATURAL)))
             .with(Self::WINDOWS.when(self.has(Self::GROUND)))
             .with(all(&shadows).when(lit));
@@ -144,6 +154,19 @@ mod tests {
         assert_eq!(house.in_picture(picture), ShaderParts::OWN_LIGHT.with(ShaderParts::SUN_SHADOWS));
         assert_eq!(ShaderParts::GROUND.in_picture(picture), ShaderParts::GROUND.with(picture));
         assert_eq!(ShaderParts::GROUND.in_picture(ShaderParts::NONE), ShaderParts::GROUND);
+    }
+
+    #[test]
+    fn what_moves_has_no_part_that_a_picture_at_rest_lacks_but_plain_shadows() {
+        let map = ShaderParts::COVER.with(ShaderParts::MAP_WATER);
+        let whole = map.with(ShaderParts::WATER_RELIEF).with(ShaderParts::GRAIN);
+        assert_eq!(whole.while_moving(), map);
+        let shaded = map.with(ShaderParts::SUN_SHADOWS).with(ShaderParts::SKY_SHADOWS);
+        let moving = map.with(ShaderParts::SUN_SHADOWS).with(ShaderParts::PLAIN_SHADOWS);
+        assert_eq!(shaded.while_moving(), moving);
+        let ribbon = ShaderParts::GROUND_LIGHT.with(ShaderParts::WATER);
+        let lit = ribbon.with(ShaderParts::SUN_SHADOWS).with(ShaderParts::PLAIN_SHADOWS);
+        assert_eq!(ribbon.in_picture(moving), lit, "water that mirrors the sky alone needs no ground");
     }
 
     #[test]

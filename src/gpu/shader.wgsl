@@ -141,6 +141,7 @@ const EDGES_PART = 16384u;
 const WINDOWS_PART = 32768u;
 const AREA_PART = 65536u;
 const WATER_RELIEF_PART = 131072u;
+const PLAIN_SHADOWS_PART = 262144u;
 
 struct Corner {
     @location(0) position: vec3f,
@@ -733,6 +734,12 @@ fn sun_share(world: vec3f, normal: vec3f, on_solid: bool) -> f32 {
     let rise = face_rise(turned(0u, normal)) * place.texel_m;
     let error = BIAS_TEXELS * place.texel_m + BIAS_PER_METER * length(offset);
     let bias = error * (1.0 + length(rise) / place.texel_m);
+    if has(PLAIN_SHADOWS_PART) {
+        let texel = floor(place.at);
+        let top = shadow_height(shadow_texel(place.table, vec2i(texel)), on_solid);
+        let above = top - (place.height + dot(rise, texel + 0.5 - place.at));
+        return 1.0 - clamp((above - bias) / (FULL_TEXELS * place.texel_m), 0.0, 1.0);
+    }
     let search = clamp(SPREAD * highest / place.texel_m, LEAST_RADIUS, MOST_RADIUS);
     let step = select(1, 2, search > SPARSE_RADIUS);
     let found = shadow_cover(place, search, step, rise, bias, on_solid);
@@ -966,14 +973,13 @@ fn ground_color(at: vec2f, post: Post, noise: Noise, right: vec2f, down: vec2f, 
     if has(CONTOURS_PART) {
         let per_pixel = length(vec2f(dot(post.gradient, right), dot(post.gradient, down)));
         // Contours::ink.
-        var ink = frame.contour.rgb;
-        var width = frame.contour_shape.y;
-        if frame.contour_lit.w > 0.5 {
-            let down = -post.gradient / max(length(post.gradient), 1e-30);
-            let facing = dot(down, frame.to_sun.xy / max(length(frame.to_sun.xy), 1e-30));
-            width *= frame.contour_turn.x + frame.contour_turn.y * abs(facing);
-            ink = mix(ink, frame.contour_lit.rgb, clamp(0.5 + facing * frame.contour_turn.z, 0.0, 1.0));
-        }
+        let is_lit = frame.contour_lit.w > 0.5;
+        let downhill = -post.gradient / max(length(post.gradient), 1e-30);
+        let facing = dot(downhill, frame.to_sun.xy / max(length(frame.to_sun.xy), 1e-30));
+        let width = frame.contour_shape.y
+            * select(1.0, frame.contour_turn.x + frame.contour_turn.y * abs(facing), is_lit);
+        let lit_ink = mix(frame.contour.rgb, frame.contour_lit.rgb, clamp(0.5 + facing * frame.contour_turn.z, 0.0, 1.0));
+        let ink = select(frame.contour.rgb, lit_ink, is_lit);
         let cover = contour_cover(post.height, per_pixel, width) * frame.contour.a;
         seen.color = mix(seen.color, ink, cover * land);
     }

@@ -153,7 +153,7 @@ impl FrameGraphics {
             self.open_scene(app);
         }
         let mut scene = self.scene.take()?;
-        let options = LiveOptions { wireframe: app.shows_edges() };
+        let options = LiveOptions { wireframe: app.shows_edges(), ..LiveOptions::default() };
         let is_loaded = frame.load.is_some();
         let drawn = scene.draw(self, encoder, (frame, purpose), &options);
         match drawn {

@@ -15,7 +15,7 @@ use crate::scene_load::SceneLoad;
 use sandtable_gpu::adapter::Gpu;
 use sandtable_gpu::error::GpuError;
 use sandtable_gpu::live::prepared::LiveLoader;
-use sandtable_gpu::live::{LiveOptions, LiveRenderer};
+use sandtable_gpu::live::{LiveDetail, LiveOptions, LiveRenderer};
 use sandtable_gpu::pass_timer::PassTimer;
 
 /// What the panels blend: colors as they are shown.
@@ -91,7 +91,9 @@ impl SceneGraphics {
         let size = graphics.picture_size(&frame.camera, purpose);
         let fit = if size == frame.camera.size() { PictureFit::Whole } else { PictureFit::Stretched };
         let view = self.target(graphics, size, fit);
-        let drawn = self.renderer.draw(encoder, &view, size, &frame.camera.resized(size), options)?;
+        let detail = if fit == PictureFit::Whole { LiveDetail::Whole } else { LiveDetail::Moving };
+        let options = LiveOptions { detail, ..*options };
+        let drawn = self.renderer.draw(encoder, &view, size, &frame.camera.resized(size), &options)?;
         let time = FrameTime {
             update_ms: frame.update_ms,
             upload_ms,

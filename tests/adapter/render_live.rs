@@ -394,7 +394,11 @@ fn a_wireframe_darkens_lines_of_the_ground_and_goes_again() {
         let mut renderer = loaded(gpu, &list, WINDOW);
         let window = Window::new(gpu, WINDOW);
         let before = window.frame(&mut renderer, &camera);
-        let lined = window.frame_with(&mut renderer, &camera, &LiveOptions { wireframe: true });
+        let lined = window.frame_with(
+            &mut renderer,
+            &camera,
+            &LiveOptions { wireframe: true, ..LiveOptions::default() },
+        );
         let darker = lined.iter().zip(&before).filter(|(a, b)| a[1].saturating_add(20) < b[1]).count();
         let lighter = lined.iter().zip(&before).filter(|(a, b)| a[1] > b[1].saturating_add(20)).count();
         assert!(darker > 20_000 && lighter < 100, "{darker} darker, {lighter} lighter on {}", gpu.name());

@@ -75,6 +75,18 @@ pub struct LiveQuality {
 pub struct LiveOptions {
     /// Whether the ground's triangles are outlined.
     pub wireframe: bool,
+    /// How much of the shading it has.
+    pub detail: LiveDetail,
+}
+
+/// The share of the shading that a frame has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LiveDetail {
+    /// All of it.
+    #[default]
+    Whole,
+    /// What is seen of a picture of few pixels that moves; all of it where hardware draws.
+    Moving,
 }
 
 /// The bytes sent to the device for a change.
@@ -375,7 +387,7 @@ impl LiveRenderer {
                 depth: &targets.depth,
                 timer: self.timer.as_deref(),
             };
-            let (colors, parts) = (&self.colors, scene.parts);
+            let (colors, parts) = (&self.colors, scene.parts_of(gpu, options.detail));
             let mut drawn;
             let mut pass = match &targets.depths_read {
                 Some(depths) => {
@@ -398,7 +410,7 @@ impl LiveRenderer {
                     pass
                 }
             };
-            drawn.add(scene.draw_rest(&mut pass, camera, (&calls, lines)));
+            drawn.add(scene.draw_rest(&mut pass, camera, parts, (&calls, lines)));
             drop(pass);
             if let (Some(encode), Some(linear)) = (&self.encoder, &targets.linear) {
                 encode.record(gpu, encoder, (linear, target), self.timer.as_deref());
@@ -422,13 +434,30 @@ impl LoadedScene {
 
     /// Makes the pipelines that it draws with and that are missing.
     fn make(&self, gpu: &Gpu, colors: &mut Pipelines) {
-        let [color_keys, _] = self.plan.keys(self.parts);
+        let whole = self.parts_of(gpu, LiveDetail::Whole);
+        self.make_for(gpu, colors, whole);
+        let moving = self.parts_of(gpu, LiveDetail::Moving);
+        if moving != whole {
+            self.make_for(gpu, colors, moving);
+        }
+    }
+
+    fn make_for(&self, gpu: &Gpu, colors: &mut Pipelines, parts: ShaderParts) {
+        let [color_keys, _] = self.plan.keys(parts);
         let ground = match colors.shade_pixels(gpu) {
-            true => vec![PipelineKey::PATCH_DEPTHS, ground_key(PipelineKey::GROUND_PIXELS, self.parts)],
-            false => vec![ground_key(PipelineKey::PATCH, self.parts)],
+            true => vec![PipelineKey::PATCH_DEPTHS, ground_key(PipelineKey::GROUND_PIXELS, parts)],
+            false => vec![ground_key(PipelineKey::PATCH, parts)],
         };
-        let drapes = self.patches.keys(self.parts);
+        let drapes = self.patches.keys(parts);
         colors.make(gpu, color_keys.into_iter().chain([PipelineKey::SKY]).chain(ground).chain(drapes));
+    }
+
+    /// The parts of the shading of frames of some detail.
+    fn parts_of(&self, gpu: &Gpu, detail: LiveDetail) -> ShaderParts {
+        match detail {
+            LiveDetail::Moving if gpu.is_software => self.parts.while_moving(),
+            LiveDetail::Moving | LiveDetail::Whole => self.parts,
+        }
     }
 
     fn constants(&self, camera: &Camera, size: (u32, u32)) -> FrameUniforms {
@@ -452,9 +481,9 @@ impl LoadedScene {
         &self,
         pass: &mut ScenePass<'_, '_>,
         camera: &Camera,
+        parts: ShaderParts,
         (calls, lines): (&ShownCalls, &[PatchId]),
     ) -> LiveStatistics {
-        let parts = self.parts;
         let mut drawn = self.patches.draw_drapes(pass, calls, parts);
         if !lines.is_empty() {
             drawn.add(self.patches.draw_lines(pass, lines));
