@@ -12,7 +12,9 @@ use sandtable_draw::patches::{
     DrapedPiece, GroundChanges, GroundMapPatch, PatchDrapes, PatchId, PatchTriangles, PatchVertices,
 };
 use sandtable_gpu::adapter::Gpu;
-use sandtable_gpu::live::{KeptPatches, LiveOptions, LiveQuality, LiveRenderer, LiveShadows, UploadedBytes};
+use sandtable_gpu::live::{
+    KeptPatches, LiveDetail, LiveOptions, LiveQuality, LiveRenderer, LiveShadows, UploadedBytes,
+};
 use sandtable_gpu::render_on;
 use sandtable_mesh::sink::{MeshSink, VertexId};
 use sandtable_view::camera::Camera;
@@ -402,6 +404,26 @@ fn a_wireframe_darkens_lines_of_the_ground_and_goes_again() {
         let darker = lined.iter().zip(&before).filter(|(a, b)| a[1].saturating_add(20) < b[1]).count();
         let lighter = lined.iter().zip(&before).filter(|(a, b)| a[1] > b[1].saturating_add(20)).count();
         assert!(darker > 20_000 && lighter < 100, "{darker} darker, {lighter} lighter on {}", gpu.name());
+        assert_eq!(share_apart(&window.frame(&mut renderer, &camera), &before), 0.0);
+    }
+}
+
+#[test]
+fn a_frame_that_moves_is_nearly_the_one_at_rest_and_changes_nothing() {
+    let (list, camera) = (scene(), camera(SIZE.0, SIZE.1));
+    for gpu in gpus() {
+        let mut renderer = loaded(gpu, &list, WINDOW);
+        let shadows = LiveShadows::new(&list, &camera).unwrap_or_else(|error| panic!("{error}"));
+        renderer.set_shadows(&shadows).unwrap_or_else(|error| panic!("{error}"));
+        let window = Window::new(gpu, WINDOW);
+        let before = window.frame(&mut renderer, &camera);
+        let options = LiveOptions { detail: LiveDetail::Moving, ..LiveOptions::default() };
+        let moving = window.frame_with(&mut renderer, &camera, &options);
+        let differences = moving.iter().flatten().zip(before.iter().flatten()).map(|(a, b)| a.abs_diff(*b));
+        let mean = differences.map(f64::from).sum::<f64>() / (4 * moving.len()) as f64;
+        let is_same = mean == 0.0;
+        assert_eq!(is_same, !gpu.is_software(), "hardware draws all: {mean} on {}", gpu.name());
+        assert!(mean < 3.0, "{mean} of 255 on {}", gpu.name());
         assert_eq!(share_apart(&window.frame(&mut renderer, &camera), &before), 0.0);
     }
 }
