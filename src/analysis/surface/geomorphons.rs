@@ -22,7 +22,7 @@ use crate::outcome::{Hatching, Outcome, OutcomeRaster, PostValues, ValueClass};
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::neighbors::STEPS;
 use sandtable_terrain::stop_flag::StopFlag;
-use sandtable_terrain::vectorized::vectorized;
+use sandtable_base::vectorized::vectorized;
 
 /// The codes of forms: those of `r.geomorphon`.
 #[rustfmt::skip]

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use crate::error::AnalysisError;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::stop_flag::StopFlag;
-use sandtable_terrain::vectorized::vectorized;
+use sandtable_base::vectorized::vectorized;
 
 /// The heights of a window, row by row from the south-west, meters.
 pub(super) type WindowHeights = [f32; 9];
