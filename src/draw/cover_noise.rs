@@ -10,9 +10,9 @@
 
 use glam::{UVec2, Vec2};
 
-use crate::lanes::{LANES, in_lanes, mix, unit};
-use crate::lowbias::lowbias32;
 use crate::floor::floor_each;
+use crate::lanes::{LANES, in_lanes, mix, of_each, unit};
+use crate::lowbias::lowbias32;
 
 /// The wavelength of the first octave, meters, and the factor from one to the next.
 pub(crate) const FIRST_M: f32 = 3000.0;
@@ -121,8 +121,8 @@ impl<const N: usize> NoiseLanes<N> {
     fn new(pixels: &[NoisePixel; N], cell_m: f32) -> Self {
         let none = [0.0; N];
         Self {
-            at: [pixels.map(|pixel| pixel.at.x), pixels.map(|pixel| pixel.at.y)],
-            per_pixel: pixels.map(|pixel| 2.0 / (WAVE_PX * pixel.mean_m)),
+            at: [of_each(pixels, |pixel| pixel.at.x), of_each(pixels, |pixel| pixel.at.y)],
+            per_pixel: of_each(pixels, |pixel| 2.0 / (WAVE_PX * pixel.mean_m)),
             cell_m,
             wider: [none; 2],
             uneven: none,
@@ -136,10 +136,7 @@ impl<const N: usize> NoiseLanes<N> {
     /// Adds an octave; false where no pixel shows it, nor any narrower one.
     #[inline(always)]
     fn add(&mut self, &NoiseOctave { wave_m, turn }: &NoiseOctave, is_fine: bool) -> bool {
-        let share = self.per_pixel.map(
-            #[inline(always)]
-            |per_pixel| SHARE * unit(wave_m * per_pixel - 1.0),
-        );
+        let share = of_each(&self.per_pixel, |per_pixel| SHARE * unit(wave_m * per_pixel - 1.0));
         if share.iter().all(|&share| share <= 0.0) {
             return false;
         }
@@ -326,17 +323,16 @@ mod tests {
 
     #[test]
     fn pixels_see_waves_wider_than_themselves_alone_and_forms_below_the_cells() {
-        let noise =
-            |at: Vec2, wide_m: f32| CoverNoise::new(&NoisePixel { at, mean_m: wide_m, longest_m: wide_m }, 30.0);
+        let noise = |at: Vec2, wide_m: f32| {
+            CoverNoise::new(&NoisePixel { at, mean_m: wide_m, longest_m: wide_m }, 30.0)
+        };
         for at in places() {
             let far = noise(at, 2000.0);
             assert_eq!(far, CoverNoise { at, longest_m: 2000.0, ..CoverNoise::default() });
             let overview = noise(at, 60.0);
             assert_eq!((overview.form, overview.ridge, overview.fine), (Vec2::ZERO, 0.0, 0.0));
         }
-        let sum = |pixel_m: f32| {
-            places().map(|at| noise(at, pixel_m).form.length()).sum::<f32>()
-        };
+        let sum = |pixel_m: f32| places().map(|at| noise(at, pixel_m).form.length()).sum::<f32>();
         assert!(sum(1.0) > 1.2 * sum(10.0) && sum(10.0) > 0.0);
     }
 }

@@ -17,7 +17,7 @@ use crate::cover_noise::CoverNoise;
 use crate::field_plots::field_tone;
 use crate::ground::GroundPost;
 use crate::ground_grain::{WIDE_PX, noise};
-use crate::lanes::{LANES, in_lanes, mix, unit};
+use crate::lanes::{LANES, in_lanes, mix, of_each, unit};
 use crate::shown::shown;
 
 /// How far the noise moves the borders between covers, in meters of elevation and in rise.
@@ -167,13 +167,11 @@ impl GroundCover {
                 lanes.tone[lane] = (plot + FARMED_PATCHES * noise.patch).clamp(-1.0, 1.0);
             }
             if lanes.layered[lane] > 0.0 {
-                lanes.texture[lane] += STRATA * lanes.layered[lane] * strata(post.height_m, *change_m, noise.uneven);
+                lanes.texture[lane] +=
+                    STRATA * lanes.layered[lane] * strata(post.height_m, *change_m, noise.uneven);
             }
         }
-        let [red, green, blue] = [0, 1, 2].map(
-            #[inline(always)]
-            |channel| lanes.color(self, channel),
-        );
+        let [red, green, blue] = [lanes.color(self, 0), lanes.color(self, 1), lanes.color(self, 2)];
         std::array::from_fn(|lane| Vec3::new(red[lane], green[lane], blue[lane]))
     }
 
@@ -222,16 +220,20 @@ impl<const N: usize> CoverLanes<N> {
     fn new(pixels: &[CoveredPixel; N]) -> Self {
         let none = [0.0; N];
         Self {
-            tint: [pixels.map(|at| at.tint.x), pixels.map(|at| at.tint.y), pixels.map(|at| at.tint.z)],
-            own: pixels.map(|at| luminance(at.tint)),
-            height_m: pixels.map(|at| at.post.height_m),
-            slope_east: pixels.map(|at| at.post.slope_east),
-            slope_north: pixels.map(|at| at.post.slope_north),
-            sky_visibility: pixels.map(|at| at.post.sky_visibility),
-            uneven: pixels.map(|at| at.noise.uneven),
-            patch: pixels.map(|at| at.noise.patch),
-            fine: pixels.map(|at| at.noise.fine),
-            ridge: pixels.map(|at| at.noise.ridge),
+            tint: [
+                of_each(pixels, |at| at.tint.x),
+                of_each(pixels, |at| at.tint.y),
+                of_each(pixels, |at| at.tint.z),
+            ],
+            own: of_each(pixels, |at| luminance(at.tint)),
+            height_m: of_each(pixels, |at| at.post.height_m),
+            slope_east: of_each(pixels, |at| at.post.slope_east),
+            slope_north: of_each(pixels, |at| at.post.slope_north),
+            sky_visibility: of_each(pixels, |at| at.post.sky_visibility),
+            uneven: of_each(pixels, |at| at.noise.uneven),
+            patch: of_each(pixels, |at| at.noise.patch),
+            fine: of_each(pixels, |at| at.noise.fine),
+            ridge: of_each(pixels, |at| at.noise.ridge),
             meadow: none,
             farmed: none,
             tone: none,
@@ -316,7 +318,9 @@ impl<const N: usize> CoverLanes<N> {
             let (grassy, bare) = (unit(-tone), unit(tone));
             let plots = ChannelColor {
                 hue: crops.hue + (meadow.hue - crops.hue) * grassy + (soil.hue - crops.hue) * bare,
-                light: crops.light + (meadow.light - crops.light) * grassy + (soil.light - crops.light) * bare,
+                light: crops.light
+                    + (meadow.light - crops.light) * grassy
+                    + (soil.light - crops.light) * bare,
             };
             let mut color = laid(tint, meadow, HUE, self.meadow[lane]);
             color = laid(color, plots, HUE, self.farmed[lane]);

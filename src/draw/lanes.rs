@@ -34,6 +34,16 @@ pub(crate) fn in_lanes<T: Copy, R: Copy>(
     made
 }
 
+/// A number of each item. Arrays' own `map` is not always inlined.
+#[inline(always)]
+pub(crate) fn of_each<T, const N: usize>(items: &[T; N], number: impl Fn(&T) -> f32) -> [f32; N] {
+    let mut numbers = [0.0; N];
+    for (slot, item) in numbers.iter_mut().zip(items) {
+        *slot = number(item);
+    }
+    numbers
+}
+
 /// A number clamped to 0..=1; 0 where it is none. Comparisons are compiled to shorter vectors than `clamp`.
 #[inline(always)]
 pub(crate) fn unit(value: f32) -> f32 {

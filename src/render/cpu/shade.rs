@@ -119,7 +119,9 @@ impl<'a> Shader<'a> {
     pub fn cover_mapped(pixels: &mut [MappedPixel<'_>]) {
         for pixels in pixels.chunk_by_mut(|a, b| std::ptr::eq(a.mapped.ground, b.mapped.ground)) {
             let ground = pixels[0].mapped.ground;
-            ground.cover_each(pixels.iter_mut().map(|MappedPixel { mapped, .. }| (&mut mapped.point, &mapped.hit)));
+            ground.cover_each(
+                pixels.iter_mut().map(|MappedPixel { mapped, .. }| (&mut mapped.point, &mapped.hit)),
+            );
         }
     }
 
@@ -147,10 +149,13 @@ impl<'a> Shader<'a> {
             return Shaded { color: Vec3::ZERO, alpha: 0.0 };
         }
         let hit = known.map_or_else(|| *hit, |pixel| pixel.hit);
-        let read = LazyCell::new(|| if material.reads_ground_map() { self.mapped_ground(&hit) } else { None });
+        let read =
+            LazyCell::new(|| if material.reads_ground_map() { self.mapped_ground(&hit) } else { None });
         let ground = known.map_or_else(|| read.as_ref(), |pixel| Some(&pixel.mapped));
         let (mut albedo, alpha) = match (material.albedo, ground) {
-            (Albedo::GroundMap, Some(MappedGround { ground, hit, point })) => (ground.albedo(point, hit), 1.0),
+            (Albedo::GroundMap, Some(MappedGround { ground, hit, point })) => {
+                (ground.albedo(point, hit), 1.0)
+            }
             (Albedo::Hatching, _) => {
                 let Material { base_color, .. } = material;
                 (base_color.linear(), base_color.alpha() * hatching_cover(at))

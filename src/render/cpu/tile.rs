@@ -96,8 +96,7 @@ fn mapped_pixels<'a, const N: usize>(
             FaceId::NONE => return None,
             id => frame.geometry.face(id),
         };
-        let is_whole =
-            || samples_alike(frame, visibility, (x, y), 0) == SamplePattern::<N>::FULL;
+        let is_whole = || samples_alike(frame, visibility, (x, y), 0) == SamplePattern::<N>::FULL;
         let at = || frame.pattern.centroid_in(x, y, SamplePattern::<N>::FULL);
         if frame.shader.is_mapped(face) && is_whole() { frame.shader.mapped(face, at(), x) } else { None }
     };
