@@ -34,6 +34,14 @@ pub(crate) const BENT: f32 = 0.6;
 /// How sharp the crests of forms are: the noise below which they are round.
 pub(crate) const CREST: f32 = 0.35;
 
+/// From and to which rise forms are gullies along the fall line; on gentler ground they have no direction.
+pub(crate) const GULLY_RISE: [f32; 2] = [0.06, 0.4];
+/// Waves of gullies in a cell of an octave's lattice, and their height.
+pub(crate) const GULLIES: f32 = 0.5;
+pub(crate) const GULLY_HEIGHT: f32 = 0.6;
+/// The greatest share of gullies in forms: the rest keeps them from being combed.
+pub(crate) const MOST_GULLIES: f32 = 0.8;
+
 /// The mean distance of the noise from its ridges, with [`CREST`].
 pub(crate) const MEAN_AWAY: f32 = 0.49;
 
@@ -65,11 +73,13 @@ pub struct NoisePixel {
     pub mean_m: f32,
     /// Its greatest width in plan, meters.
     pub longest_m: f32,
+    /// The rise of the map eastward and northward, true to scale.
+    pub rise: Vec2,
 }
 
 impl NoisePixel {
     /// A pixel so wide that it shows no noise.
-    pub const WIDE: Self = Self { at: Vec2::ZERO, mean_m: f32::INFINITY, longest_m: f32::INFINITY };
+    pub const WIDE: Self = Self { at: Vec2::ZERO, mean_m: f32::INFINITY, longest_m: f32::INFINITY, rise: Vec2::ZERO };
 }
 
 impl CoverNoise {
@@ -107,6 +117,9 @@ struct NoiseLanes<const N: usize> {
     /// A wave's part that shows is its length times this, less 1.
     per_pixel: [f32; N],
     cell_m: f32,
+    /// The direction along the contour, of length 1 where the ground rises, and the share of gullies in forms.
+    level: [[f32; N]; 2],
+    gullies: [f32; N],
     /// The two values of the octave before.
     wider: [[f32; N]; 2],
     uneven: [f32; N],
@@ -120,7 +133,18 @@ impl<const N: usize> NoiseLanes<N> {
     #[inline(always)]
     fn new(pixels: &[NoisePixel; N], cell_m: f32) -> Self {
         let none = [0.0; N];
+        let steep = of_each(pixels, |pixel| (pixel.rise.x * pixel.rise.x + pixel.rise.y * pixel.rise.y).sqrt());
+        let (mut level, mut gullies) = ([none; 2], none);
+        for lane in 0..N {
+            let scale = 1.0 / if steep[lane] > 1e-6 { steep[lane] } else { 1e-6 };
+            level[0][lane] = -pixels[lane].rise.y * scale;
+            level[1][lane] = pixels[lane].rise.x * scale;
+            let part = unit((steep[lane] - GULLY_RISE[0]) / (GULLY_RISE[1] - GULLY_RISE[0]));
+            gullies[lane] = MOST_GULLIES * part * part * (3.0 - 2.0 * part);
+        }
         Self {
+            level,
+            gullies,
             at: [of_each(pixels, |pixel| pixel.at.x), of_each(pixels, |pixel| pixel.at.y)],
             per_pixel: of_each(pixels, |pixel| 2.0 / (WAVE_PX * pixel.mean_m)),
             cell_m,
@@ -141,14 +165,13 @@ impl<const N: usize> NoiseLanes<N> {
             return false;
         }
         let along = turn * wave_m.recip();
-        let [mut first, mut second, mut rise_x, mut rise_y] = [[0.0; N]; 4];
+        let [mut place_x, mut place_y, mut first, mut second, mut rise_x, mut rise_y] = [[0.0; N]; 6];
         for lane in 0..N {
             let [x, y] = [self.at[0][lane], self.at[1][lane]];
-            let place = [
-                along.x * x - along.y * y + BENT * self.wider[0][lane],
-                along.y * x + along.x * y + BENT * self.wider[1][lane],
-            ];
-            ([first[lane], second[lane]], [rise_x[lane], rise_y[lane]]) = pair_within_reach(place);
+            place_x[lane] = along.x * x - along.y * y + BENT * self.wider[0][lane];
+            place_y[lane] = along.y * x + along.x * y + BENT * self.wider[1][lane];
+            ([first[lane], second[lane]], [rise_x[lane], rise_y[lane]]) =
+                pair_in_cell(&CellPlace::of([place_x[lane], place_y[lane]]));
         }
         self.wider = [first, second];
         let patches = if is_fine { &mut self.fine } else { &mut self.patch };
@@ -160,11 +183,17 @@ impl<const N: usize> NoiseLanes<N> {
         let within = unit((widest_m - wave_m) / (0.75 * widest_m));
         if within > 0.0 {
             for lane in 0..N {
-                let (value, share) = (first[lane], share[lane] * within);
+                let [east, north] = [self.level[0][lane], self.level[1][lane]];
+                let level = [turn.x * east - turn.y * north, turn.y * east + turn.x * north];
+                let (gully, gully_rise) = gullies(&CellPlace::of([place_x[lane], place_y[lane]]), level);
+                let part = self.gullies[lane];
+                let value = mix(first[lane], gully, part);
+                let (x, y) = (mix(rise_x[lane], gully_rise[0], part), mix(rise_y[lane], gully_rise[1], part));
+                let share = share[lane] * within;
                 let away = (value * value + CREST * CREST).sqrt();
                 let crest = share * -value / away;
-                self.form[0][lane] += crest * (turn.x * rise_x[lane] + turn.y * rise_y[lane]);
-                self.form[1][lane] += crest * (turn.x * rise_y[lane] - turn.y * rise_x[lane]);
+                self.form[0][lane] += crest * (turn.x * x + turn.y * y);
+                self.form[1][lane] += crest * (turn.x * y - turn.y * x);
                 self.ridge[lane] += share * 2.0 * (MEAN_AWAY - away);
             }
         }
@@ -211,42 +240,96 @@ pub(crate) fn pair(at: Vec2) -> (Vec2, Vec2) {
     let corner = floor_each(at);
     let part = at - corner;
     let corner = corner.as_ivec2().as_uvec2();
-    let (values, rise) = pair_in_cell(corner.to_array(), part.to_array());
+    let (values, rise) = pair_in_cell(&CellPlace { corner: corner.to_array(), part: part.to_array() });
     (values.into(), rise.into())
 }
 
-/// The same within ±2²² cells, further than an octave's lattice reaches on Earth, compiled to vectors.
-#[inline(always)]
-fn pair_within_reach(at: [f32; 2]) -> ([f32; 2], [f32; 2]) {
-    // Its last bit is 1, so that a sum with it is rounded to a whole number: a conversion of vectors takes more.
-    const UNIT: f32 = 12_582_912.0;
-    let corner = at.map(
-        #[inline(always)]
-        |value| {
-            let rounded = (value + UNIT) - UNIT;
-            if rounded > value { rounded - 1.0 } else { rounded }
-        },
-    );
-    let whole = corner.map(
-        #[inline(always)]
-        |corner| (corner + UNIT).to_bits().wrapping_sub(UNIT.to_bits()),
-    );
-    pair_in_cell(whole, [unit(at[0] - corner[0]), unit(at[1] - corner[1])])
+/// A place in a cell of a lattice.
+struct CellPlace {
+    /// The south-western corner.
+    corner: [u32; 2],
+    /// Where in the cell it is, 0..=1.
+    part: [f32; 2],
 }
 
-/// The same in the cell with this south-western corner, at this part of it.
+impl CellPlace {
+    /// A place within ±2²² cells, further than an octave's lattice reaches on Earth, compiled to vectors.
+    #[inline(always)]
+    fn of(at: [f32; 2]) -> Self {
+        // Its last bit is 1, so that a sum with it is rounded to a whole number: a conversion of vectors takes more.
+        const UNIT: f32 = 12_582_912.0;
+        let [(x, east), (y, north)] = [0, 1].map(
+            #[inline(always)]
+            |axis| {
+                let value: f32 = at[axis];
+                let rounded = (value + UNIT) - UNIT;
+                let corner = if rounded > value { rounded - 1.0 } else { rounded };
+                (unit(value - corner), (corner + UNIT).to_bits().wrapping_sub(UNIT.to_bits()))
+            },
+        );
+        Self { corner: [east, north], part: [x, y] }
+    }
+
+    /// Two numbers from 0 to 2¹⁶ of each corner: south-west, south-east, north-west, north-east.
+    #[inline(always)]
+    fn halves(&self) -> [[f32; 2]; 4] {
+        let [east, north] = self.corner;
+        let sw = east.wrapping_mul(FACTORS[0]).wrapping_add(north.wrapping_mul(FACTORS[1]));
+        let nw = sw.wrapping_add(FACTORS[1]);
+        [halves(sw), halves(sw.wrapping_add(FACTORS[0])), halves(nw), halves(nw.wrapping_add(FACTORS[0]))]
+    }
+
+    /// The shares of the corners east and north, and their rise.
+    #[inline(always)]
+    fn smooth(&self) -> ([f32; 2], [f32; 2]) {
+        let [x, y] = self.part;
+        (
+            [x * x * (3.0 - 2.0 * x), y * y * (3.0 - 2.0 * y)],
+            [6.0 * x * (1.0 - x), 6.0 * y * (1.0 - y)],
+        )
+    }
+}
+
+/// [`pair`] at a place in a cell.
 #[inline(always)]
-fn pair_in_cell(corner: [u32; 2], [x, y]: [f32; 2]) -> ([f32; 2], [f32; 2]) {
-    let sw_sum = corner[0].wrapping_mul(FACTORS[0]).wrapping_add(corner[1].wrapping_mul(FACTORS[1]));
-    let nw_sum = sw_sum.wrapping_add(FACTORS[1]);
-    let (sw, se) = (halves(sw_sum), halves(sw_sum.wrapping_add(FACTORS[0])));
-    let (nw, ne) = (halves(nw_sum), halves(nw_sum.wrapping_add(FACTORS[0])));
-    let [u, v] = [x * x * (3.0 - 2.0 * x), y * y * (3.0 - 2.0 * y)];
+fn pair_in_cell(at: &CellPlace) -> ([f32; 2], [f32; 2]) {
+    let [sw, se, nw, ne] = at.halves();
+    let ([u, v], [steep_x, steep_y]) = at.smooth();
     let (south, north) = (mix(sw[0], se[0], u), mix(nw[0], ne[0], u));
     let second = mix(mix(sw[1], se[1], u), mix(nw[1], ne[1], u), v);
-    let rise_x = mix(se[0] - sw[0], ne[0] - nw[0], v) * (PER_HALF * 6.0) * (x * (1.0 - x));
-    let rise_y = (north - south) * (PER_HALF * 6.0) * (y * (1.0 - y));
+    let rise_x = mix(se[0] - sw[0], ne[0] - nw[0], v) * PER_HALF * steep_x;
+    let rise_y = (north - south) * PER_HALF * steep_y;
     ([mix(south, north, v) * PER_HALF - 1.0, second * PER_HALF - 1.0], [rise_x, rise_y])
+}
+
+/// Waves of gullies that run across the direction `level`, of length 1 at the most, and their rise: each corner of the cell has
+/// waves of its own phase, which blend into each other, so that gullies fork and join.
+#[inline(always)]
+fn gullies(at: &CellPlace, level: [f32; 2]) -> (f32, [f32; 2]) {
+    let [x, y] = at.part;
+    let corners = at.halves();
+    let (mut waves, mut slopes) = ([0.0; 4], [0.0; 4]);
+    for (index, (east, north)) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)].into_iter().enumerate() {
+        let along = (x - east) * level[0] + (y - north) * level[1];
+        (waves[index], slopes[index]) = wave(GULLIES * along + corners[index][0] * (0.5 * PER_HALF));
+    }
+    let ([u, v], [steep_x, steep_y]) = at.smooth();
+    let [sw, se, nw, ne] = waves;
+    let (south, north) = (mix(sw, se, u), mix(nw, ne, u));
+    let slope = GULLIES * mix(mix(slopes[0], slopes[1], u), mix(slopes[2], slopes[3], u), v);
+    let rise_x = mix(se - sw, ne - nw, v) * steep_x + slope * level[0];
+    let rise_y = (north - south) * steep_y + slope * level[1];
+    (GULLY_HEIGHT * mix(south, north, v), [GULLY_HEIGHT * rise_x, GULLY_HEIGHT * rise_y])
+}
+
+/// About the cosine of so many turns from -1 to 2^20, and its rise per turn.
+#[inline(always)]
+fn wave(turns: f32) -> (f32, f32) {
+    const UNIT: f32 = 12_582_912.0;
+    let past = turns - ((turns + UNIT) - UNIT);
+    let part = 2.0 * past.abs();
+    let rise = -24.0 * (part * (1.0 - part));
+    (1.0 - 2.0 * (part * part * (3.0 - 2.0 * part)), if past < 0.0 { -rise } else { rise })
 }
 
 /// Two numbers from -1 to 1 for a lattice point.
@@ -279,7 +362,7 @@ mod tests {
     fn pixels_together_have_the_noise_that_each_has_alone() {
         let pixels: Vec<NoisePixel> = places()
             .zip([0.4, 3.0, 25.0, 90.0, 700.0, 5000.0, f32::NAN].into_iter().cycle())
-            .map(|(at, mean_m)| NoisePixel { at, mean_m, longest_m: 2.0 * mean_m })
+            .map(|(at, mean_m)| NoisePixel { at, mean_m, longest_m: 2.0 * mean_m, rise: at / 9000.0 })
             .collect();
         let alone = pixels.iter().map(|pixel| CoverNoise::new(pixel, 30.0));
         let bits = |noise: CoverNoise| {
@@ -292,7 +375,7 @@ mod tests {
     #[test]
     fn the_lattice_within_reach_is_that_of_all_places() {
         for at in places().flat_map(|at| [at / 7.3, at * 40.0, -at, at.floor()]) {
-            let (values, rise) = pair_within_reach(at.to_array());
+            let (values, rise) = pair_in_cell(&CellPlace::of(at.to_array()));
             assert_eq!((Vec2::from(values), Vec2::from(rise)), pair(at), "{at}");
         }
     }
@@ -324,7 +407,7 @@ mod tests {
     #[test]
     fn pixels_see_waves_wider_than_themselves_alone_and_forms_below_the_cells() {
         let noise = |at: Vec2, wide_m: f32| {
-            CoverNoise::new(&NoisePixel { at, mean_m: wide_m, longest_m: wide_m }, 30.0)
+            CoverNoise::new(&NoisePixel { at, mean_m: wide_m, longest_m: wide_m, rise: Vec2::ZERO }, 30.0)
         };
         for at in places() {
             let far = noise(at, 2000.0);

@@ -126,7 +126,7 @@ impl<'a> GroundShader<'a> {
     pub fn at(&self, hit: &FacePoint, most_taps: u32) -> GroundPoint {
         let mut point = self.read(hit, most_taps);
         if self.map.cover.is_some() && self.shows_land(&point, hit) {
-            point.noise = CoverNoise::new(&self.noise_pixel(hit), self.cell_m());
+            point.noise = CoverNoise::new(&self.noise_pixel(&point, hit), self.cell_m());
         }
         point
     }
@@ -137,7 +137,7 @@ impl<'a> GroundShader<'a> {
             return;
         }
         let mut points: Vec<_> = points.filter(|(point, hit)| self.shows_land(point, hit)).collect();
-        let pixels: Vec<_> = points.iter().map(|(_, hit)| self.noise_pixel(hit)).collect();
+        let pixels: Vec<_> = points.iter().map(|(point, hit)| self.noise_pixel(point, hit)).collect();
         for ((point, _), noise) in points.iter_mut().zip(CoverNoise::of_each(&pixels, self.cell_m())) {
             point.noise = noise;
         }
@@ -156,9 +156,15 @@ impl<'a> GroundShader<'a> {
         self.map.cell.max_element()
     }
 
-    fn noise_pixel(&self, hit: &FacePoint) -> NoisePixel {
-        let at = hit.world.truncate() + self.noise_origin;
-        NoisePixel { at, mean_m: hit.mean_pixel_m(), longest_m: hit.pixel_m() }
+    fn noise_pixel(&self, point: &GroundPoint, hit: &FacePoint) -> NoisePixel {
+        let rise = Vec2::new(point.post.slope_east, point.post.slope_north);
+        let true_rise = self.map.cover.map_or(1.0, |cover| cover.true_rise);
+        NoisePixel {
+            at: hit.world.truncate() + self.noise_origin,
+            mean_m: hit.mean_pixel_m(),
+            longest_m: hit.pixel_m(),
+            rise: rise * true_rise,
+        }
     }
 
     fn land_pixel(&self, point: &GroundPoint, hit: &FacePoint) -> LandPixel {
