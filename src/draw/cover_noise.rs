@@ -5,6 +5,9 @@
 //! wide: from afar borders and patches of kilometers show, near by those of meters. A pixel that looks along the ground is
 //! long and narrow; its mean width counts, so that the ground before the eye does not turn to paint.
 //!
+//! Forms on slopes are gullies down the fall line: waves across it around each point of the lattice, blended into each other (the
+//! idea of Lagae et al. 2009, "Procedural noise using sparse Gabor convolution"). Ridges of value noise alone look like worms.
+//!
 //! The octaves of a pixel follow one from the other, so that a processor waits for each. Those of [`LANES`] pixels are computed
 //! together, as vectors, in a third of the time: loops over pixels have no branch.
 
@@ -79,7 +82,8 @@ pub struct NoisePixel {
 
 impl NoisePixel {
     /// A pixel so wide that it shows no noise.
-    pub const WIDE: Self = Self { at: Vec2::ZERO, mean_m: f32::INFINITY, longest_m: f32::INFINITY, rise: Vec2::ZERO };
+    pub const WIDE: Self =
+        Self { at: Vec2::ZERO, mean_m: f32::INFINITY, longest_m: f32::INFINITY, rise: Vec2::ZERO };
 }
 
 impl CoverNoise {
@@ -133,7 +137,8 @@ impl<const N: usize> NoiseLanes<N> {
     #[inline(always)]
     fn new(pixels: &[NoisePixel; N], cell_m: f32) -> Self {
         let none = [0.0; N];
-        let steep = of_each(pixels, |pixel| (pixel.rise.x * pixel.rise.x + pixel.rise.y * pixel.rise.y).sqrt());
+        let steep =
+            of_each(pixels, |pixel| (pixel.rise.x * pixel.rise.x + pixel.rise.y * pixel.rise.y).sqrt());
         let (mut level, mut gullies) = ([none; 2], none);
         for lane in 0..N {
             let scale = 1.0 / if steep[lane] > 1e-6 { steep[lane] } else { 1e-6 };
@@ -283,10 +288,7 @@ impl CellPlace {
     #[inline(always)]
     fn smooth(&self) -> ([f32; 2], [f32; 2]) {
         let [x, y] = self.part;
-        (
-            [x * x * (3.0 - 2.0 * x), y * y * (3.0 - 2.0 * y)],
-            [6.0 * x * (1.0 - x), 6.0 * y * (1.0 - y)],
-        )
+        ([x * x * (3.0 - 2.0 * x), y * y * (3.0 - 2.0 * y)], [6.0 * x * (1.0 - x), 6.0 * y * (1.0 - y)])
     }
 }
 
@@ -394,6 +396,23 @@ mod tests {
                 assert!((change - part).abs() < 0.02, "{at}: {change} {part}");
             }
         }
+    }
+
+    #[test]
+    fn gullies_run_down_the_fall_line_and_their_rise_is_their_change() {
+        let level = Vec2::new(0.6, -0.8);
+        let gully = |at: Vec2| gullies(&CellPlace::of(at.to_array()), level.to_array());
+        let (mut along, mut across) = (0.0, 0.0);
+        for at in places().map(|at| at / 211.0) {
+            let (value, rise) = gully(at);
+            for (axis, part) in [(Vec2::X, rise[0]), (Vec2::Y, rise[1])] {
+                let change = (gully(at + axis * 1e-3).0 - value) / 1e-3;
+                assert!((change - part).abs() < 0.03, "{at}: {change} {part}");
+            }
+            across += Vec2::from(rise).dot(level).abs();
+            along += Vec2::from(rise).perp_dot(level).abs();
+        }
+        assert!(across > 1.5 * along, "{across} {along}");
     }
 
     #[test]
