@@ -309,7 +309,7 @@ impl<const N: usize> CoverLanes<N> {
             |color| ChannelColor { hue: color.hue[channel], light: color.light },
         );
         let mut made = [0.0; N];
-        for lane in 0..N {
+        for (lane, made) in made.iter_mut().enumerate() {
             let (tint, own) = (self.tint[channel][lane], self.own[lane]);
             let laid = |color: f32, cover: ChannelColor, hue_share: f32, share: f32| {
                 mix(color, mix(tint, cover.hue * own, hue_share) * cover.light, MOST * share)
@@ -331,7 +331,7 @@ impl<const N: usize> CoverLanes<N> {
             color = laid(color, snow, 1.0, self.snow[lane]);
             color = mix(color, woods.hue * own * woods.light, SHRUB_SHARE * self.shrubs[lane]);
             let light = 1.0 + self.texture[lane];
-            made[lane] = color * if light > 0.3 { light } else { 0.3 };
+            *made = color * if light > 0.3 { light } else { 0.3 };
         }
         made
     }
