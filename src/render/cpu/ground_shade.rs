@@ -147,6 +147,11 @@ impl<'a> GroundShader<'a> {
         }
     }
 
+    /// Whether the map has a cover: only then are pixels drawn faster together.
+    pub fn has_cover(&self) -> bool {
+        self.map.cover.is_some()
+    }
+
     /// Whether a pixel shows land: open water hides it, and so does a picture, with all that the noise is for.
     fn shows_land(&self, point: &GroundPoint, hit: &FacePoint) -> bool {
         point.draped.share < 1.0 && !self.shore(point, hit).is_open()

@@ -107,6 +107,12 @@ impl<'a> Shader<'a> {
         self.list.lighting.backdrop_color(self.screen.ray_at(at), down)
     }
 
+    /// Whether the ground has a cover.
+    pub fn has_cover(&self) -> bool {
+        let mut grounds = self.insets.iter().map(|inset| &inset.ground).chain(&self.ground);
+        grounds.any(GroundShader::has_cover)
+    }
+
     /// The pixel at `at` in a column, of a face that [is mapped](Self::is_mapped); `None` where there is no map.
     pub fn mapped<'b>(&'b self, face: &'b ScreenFace, at: [f32; 2], column: u32) -> Option<MappedPixel<'b>> {
         let hit = FacePoint::new(face, self.screen, at);

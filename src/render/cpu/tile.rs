@@ -100,7 +100,8 @@ fn mapped_pixels<'a, const N: usize>(
         let at = || frame.pattern.centroid_in(x, y, SamplePattern::<N>::FULL);
         if frame.shader.is_mapped(face) && is_whole() { frame.shader.mapped(face, at(), x) } else { None }
     };
-    let mut pixels: Vec<_> = if frame.is_colored { columns.filter_map(mapped).collect() } else { Vec::new() };
+    let is_covered = frame.is_colored && frame.shader.has_cover();
+    let mut pixels: Vec<_> = if is_covered { columns.filter_map(mapped).collect() } else { Vec::new() };
     Shader::cover_mapped(&mut pixels);
     pixels
 }
