@@ -5,14 +5,16 @@
 //! wide: from afar borders and patches of kilometers show, near by those of meters. A pixel that looks along the ground is
 //! long and narrow; its mean width counts, so that the ground before the eye does not turn to paint.
 //!
-//! Most of the time is that of hashes, and next to a pixel lies one in the same cells of the lattices: each thread keeps the
-//! corners of the last cell of each octave.
-
-use std::cell::Cell;
+//! Forms on slopes are gullies down the fall line: waves across it around each point of the lattice, blended into each other (the
+//! idea of Lagae et al. 2009, "Procedural noise using sparse Gabor convolution"). Ridges of value noise alone look like worms.
+//!
+//! The octaves of a pixel follow one from the other, so that a processor waits for each. Those of [`LANES`] pixels are computed
+//! together, as vectors, in a third of the time: loops over pixels have no branch.
 
 use glam::{UVec2, Vec2};
 
 use crate::floor::floor_each;
+use crate::lanes::{LANES, in_lanes, mix, of_each, unit};
 use crate::lowbias::lowbias32;
 
 /// The wavelength of the first octave, meters, and the factor from one to the next.
@@ -34,6 +36,14 @@ pub(crate) const FORM_CELLS: f32 = 4.0;
 pub(crate) const BENT: f32 = 0.6;
 /// How sharp the crests of forms are: the noise below which they are round.
 pub(crate) const CREST: f32 = 0.35;
+
+/// From and to which rise forms are gullies along the fall line; on gentler ground they have no direction.
+pub(crate) const GULLY_RISE: [f32; 2] = [0.06, 0.4];
+/// Waves of gullies in a cell of an octave's lattice, and their height.
+pub(crate) const GULLIES: f32 = 0.5;
+pub(crate) const GULLY_HEIGHT: f32 = 0.6;
+/// The greatest share of gullies in forms: the rest keeps them from being combed.
+pub(crate) const MOST_GULLIES: f32 = 0.8;
 
 /// The mean distance of the noise from its ridges, with [`CREST`].
 pub(crate) const MEAN_AWAY: f32 = 0.49;
@@ -57,45 +67,155 @@ pub struct CoverNoise {
     pub longest_m: f32,
 }
 
+/// A pixel, as its noise depends on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NoisePixel {
+    /// World X and Y.
+    pub at: Vec2,
+    /// Its mean width in plan, meters.
+    pub mean_m: f32,
+    /// Its greatest width in plan, meters.
+    pub longest_m: f32,
+    /// The rise of the map eastward and northward, true to scale.
+    pub rise: Vec2,
+}
+
+impl NoisePixel {
+    /// A pixel so wide that it shows no noise.
+    pub const WIDE: Self =
+        Self { at: Vec2::ZERO, mean_m: f32::INFINITY, longest_m: f32::INFINITY, rise: Vec2::ZERO };
+}
+
 impl CoverNoise {
-    /// The noise at world X and Y, over a pixel of a mean and a greatest width of `pixel_m` meters, on a map of cells `cell_m`
-    /// meters wide.
-    pub fn new(at: Vec2, [pixel_m, longest_m]: [f32; 2], cell_m: f32) -> Self {
-        Self { at, longest_m, ..LAST_CELLS.with(|cells| Self::with_cells(at, pixel_m, cell_m, cells)) }
+    /// The noise at a pixel of a map of cells `cell_m` meters wide.
+    pub fn new(pixel: &NoisePixel, cell_m: f32) -> Self {
+        let [noise] = Self::together(&[*pixel], cell_m);
+        noise
     }
 
-    fn with_cells(
-        at: Vec2,
-        pixel_m: f32,
-        cell_m: f32,
-        cells: &[Cell<LatticeCell>; OCTAVES as usize],
-    ) -> Self {
-        let (mut sum, mut wider) = (Self::default(), Vec2::ZERO);
-        let [per_pixel, per_cell] = [2.0 / (WAVE_PX * pixel_m), 1.0 / (0.75 * FORM_CELLS * cell_m)];
-        for (index, (NoiseOctave { wave_m, turn }, cell)) in OCTAVE_TABLE.into_iter().zip(cells).enumerate() {
-            let shown = (wave_m * per_pixel - 1.0).clamp(0.0, 1.0);
-            if shown > 0.0 {
-                let place = turn.rotate(at) * wave_m.recip() + BENT * wider;
-                let (value, rise) = pair_near(place, cell);
-                wider = value;
-                sum.uneven += SHARE * shown * value.x;
-                if index < FIRST_FINE as usize {
-                    sum.patch += SHARE * shown * value.y;
-                } else {
-                    sum.fine += SHARE * shown * value.y;
-                }
-                let within = ((FORM_CELLS * cell_m - wave_m) * per_cell).clamp(0.0, 1.0);
-                if within > 0.0 {
-                    let away = (value.x * value.x + CREST * CREST).sqrt();
-                    let crest = -value.x / away;
-                    let back =
-                        Vec2::new(turn.x * rise.x + turn.y * rise.y, turn.x * rise.y - turn.y * rise.x);
-                    sum.form += back * (SHARE * shown * within * crest);
-                    sum.ridge += SHARE * shown * within * 2.0 * (MEAN_AWAY - away);
-                }
+    /// [`Self::new`] of each of `pixels`, in less time.
+    pub fn of_each(pixels: &[NoisePixel], cell_m: f32) -> Vec<Self> {
+        in_lanes(
+            pixels,
+            NoisePixel::WIDE,
+            #[inline(always)]
+            |pixels: &[NoisePixel; LANES]| Self::together(pixels, cell_m),
+        )
+    }
+
+    #[inline(always)]
+    fn together<const N: usize>(pixels: &[NoisePixel; N], cell_m: f32) -> [Self; N] {
+        let mut lanes = NoiseLanes::new(pixels, cell_m);
+        for (index, octave) in OCTAVE_TABLE.iter().enumerate() {
+            if !lanes.add(octave, index >= FIRST_FINE as usize) {
+                break;
             }
         }
-        sum
+        std::array::from_fn(|lane| lanes.noise(lane, &pixels[lane]))
+    }
+}
+
+/// The sums of octaves at several pixels.
+struct NoiseLanes<const N: usize> {
+    at: [[f32; N]; 2],
+    /// A wave's part that shows is its length times this, less 1.
+    per_pixel: [f32; N],
+    cell_m: f32,
+    /// The direction along the contour, of length 1 where the ground rises, and the share of gullies in forms.
+    level: [[f32; N]; 2],
+    gullies: [f32; N],
+    /// The two values of the octave before.
+    wider: [[f32; N]; 2],
+    uneven: [f32; N],
+    patch: [f32; N],
+    fine: [f32; N],
+    form: [[f32; N]; 2],
+    ridge: [f32; N],
+}
+
+impl<const N: usize> NoiseLanes<N> {
+    #[inline(always)]
+    fn new(pixels: &[NoisePixel; N], cell_m: f32) -> Self {
+        let none = [0.0; N];
+        let steep =
+            of_each(pixels, |pixel| (pixel.rise.x * pixel.rise.x + pixel.rise.y * pixel.rise.y).sqrt());
+        let (mut level, mut gullies) = ([none; 2], none);
+        for lane in 0..N {
+            let scale = 1.0 / if steep[lane] > 1e-6 { steep[lane] } else { 1e-6 };
+            level[0][lane] = -pixels[lane].rise.y * scale;
+            level[1][lane] = pixels[lane].rise.x * scale;
+            let part = unit((steep[lane] - GULLY_RISE[0]) / (GULLY_RISE[1] - GULLY_RISE[0]));
+            gullies[lane] = MOST_GULLIES * part * part * (3.0 - 2.0 * part);
+        }
+        Self {
+            level,
+            gullies,
+            at: [of_each(pixels, |pixel| pixel.at.x), of_each(pixels, |pixel| pixel.at.y)],
+            per_pixel: of_each(pixels, |pixel| 2.0 / (WAVE_PX * pixel.mean_m)),
+            cell_m,
+            wider: [none; 2],
+            uneven: none,
+            patch: none,
+            fine: none,
+            form: [none; 2],
+            ridge: none,
+        }
+    }
+
+    /// Adds an octave; false where no pixel shows it, nor any narrower one.
+    #[inline(always)]
+    fn add(&mut self, &NoiseOctave { wave_m, turn }: &NoiseOctave, is_fine: bool) -> bool {
+        let share = of_each(&self.per_pixel, |per_pixel| SHARE * unit(wave_m * per_pixel - 1.0));
+        if share.iter().all(|&share| share <= 0.0) {
+            return false;
+        }
+        let along = turn * wave_m.recip();
+        let [mut place_x, mut place_y, mut first, mut second, mut rise_x, mut rise_y] = [[0.0; N]; 6];
+        for lane in 0..N {
+            let [x, y] = [self.at[0][lane], self.at[1][lane]];
+            place_x[lane] = along.x * x - along.y * y + BENT * self.wider[0][lane];
+            place_y[lane] = along.y * x + along.x * y + BENT * self.wider[1][lane];
+            ([first[lane], second[lane]], [rise_x[lane], rise_y[lane]]) =
+                pair_in_cell(&CellPlace::of([place_x[lane], place_y[lane]]));
+        }
+        self.wider = [first, second];
+        let patches = if is_fine { &mut self.fine } else { &mut self.patch };
+        for lane in 0..N {
+            self.uneven[lane] += share[lane] * first[lane];
+            patches[lane] += share[lane] * second[lane];
+        }
+        let widest_m = FORM_CELLS * self.cell_m;
+        let within = unit((widest_m - wave_m) / (0.75 * widest_m));
+        if within > 0.0 {
+            for lane in 0..N {
+                let [east, north] = [self.level[0][lane], self.level[1][lane]];
+                let level = [turn.x * east - turn.y * north, turn.y * east + turn.x * north];
+                let (gully, gully_rise) = gullies(&CellPlace::of([place_x[lane], place_y[lane]]), level);
+                let part = self.gullies[lane];
+                let value = mix(first[lane], gully, part);
+                let (x, y) = (mix(rise_x[lane], gully_rise[0], part), mix(rise_y[lane], gully_rise[1], part));
+                let share = share[lane] * within;
+                let away = (value * value + CREST * CREST).sqrt();
+                let crest = share * -value / away;
+                self.form[0][lane] += crest * (turn.x * x + turn.y * y);
+                self.form[1][lane] += crest * (turn.x * y - turn.y * x);
+                self.ridge[lane] += share * 2.0 * (MEAN_AWAY - away);
+            }
+        }
+        true
+    }
+
+    #[inline(always)]
+    fn noise(&self, lane: usize, pixel: &NoisePixel) -> CoverNoise {
+        CoverNoise {
+            uneven: self.uneven[lane],
+            patch: self.patch[lane],
+            fine: self.fine[lane],
+            form: Vec2::new(self.form[0][lane], self.form[1][lane]),
+            ridge: self.ridge[lane],
+            at: pixel.at,
+            longest_m: pixel.longest_m,
+        }
     }
 }
 
@@ -120,64 +240,120 @@ const OCTAVE_TABLE: [NoiseOctave; OCTAVES as usize] = {
     octaves
 };
 
-/// A cell of a lattice: its south-western corner, and the values at it, the south-eastern, the north-western and the
-/// north-eastern.
-#[derive(Clone, Copy, Debug)]
-struct LatticeCell {
-    corner: Vec2,
-    values: [Vec2; 4],
-}
-
-impl LatticeCell {
-    /// A cell that no place lies in.
-    const NONE: Self = Self { corner: Vec2::NAN, values: [Vec2::ZERO; 4] };
-
-    fn new(corner: Vec2) -> Self {
-        let at = corner.as_ivec2().as_uvec2();
-        let value =
-            |east: u32, north: u32| values(UVec2::new(at.x.wrapping_add(east), at.y.wrapping_add(north)));
-        Self { corner, values: [value(0, 0), value(1, 0), value(0, 1), value(1, 1)] }
-    }
-
-    /// The noises at a place in it.
-    fn pair(&self, at: Vec2) -> (Vec2, Vec2) {
-        let part = at - self.corner;
-        let smooth = part * part * (Vec2::splat(3.0) - 2.0 * part);
-        let steep = 6.0 * part * (Vec2::ONE - part);
-        let [sw, se, nw, ne] = self.values;
-        let (south, north) = (sw + (se - sw) * smooth.x, nw + (ne - nw) * smooth.x);
-        let east = (se.x - sw.x) + ((ne.x - nw.x) - (se.x - sw.x)) * smooth.y;
-        (south + (north - south) * smooth.y, Vec2::new(east * steep.x, (north.x - south.x) * steep.y))
-    }
-}
-
-thread_local! {
-    /// The last cell of each octave that the thread looked at.
-    static LAST_CELLS: [Cell<LatticeCell>; OCTAVES as usize] =
-        const { [const { Cell::new(LatticeCell::NONE) }; OCTAVES as usize] };
-}
-
 /// Two value noises, -1..=1, and the rise of the first.
 pub(crate) fn pair(at: Vec2) -> (Vec2, Vec2) {
-    LatticeCell::new(floor_each(at)).pair(at)
+    let corner = floor_each(at);
+    let part = at - corner;
+    let corner = corner.as_ivec2().as_uvec2();
+    let (values, rise) = pair_in_cell(&CellPlace { corner: corner.to_array(), part: part.to_array() });
+    (values.into(), rise.into())
 }
 
-/// The same where `last` is the cell of the place before.
-fn pair_near(at: Vec2, last: &Cell<LatticeCell>) -> (Vec2, Vec2) {
-    let corner = floor_each(at);
-    if last.get().corner != corner {
-        last.set(LatticeCell::new(corner));
+/// A place in a cell of a lattice.
+struct CellPlace {
+    /// The south-western corner.
+    corner: [u32; 2],
+    /// Where in the cell it is, 0..=1.
+    part: [f32; 2],
+}
+
+impl CellPlace {
+    /// A place within ±2²² cells, further than an octave's lattice reaches on Earth, compiled to vectors.
+    #[inline(always)]
+    fn of(at: [f32; 2]) -> Self {
+        // Its last bit is 1, so that a sum with it is rounded to a whole number: a conversion of vectors takes more.
+        const UNIT: f32 = 12_582_912.0;
+        let [(x, east), (y, north)] = [0, 1].map(
+            #[inline(always)]
+            |axis| {
+                let value: f32 = at[axis];
+                let rounded = (value + UNIT) - UNIT;
+                let corner = if rounded > value { rounded - 1.0 } else { rounded };
+                (unit(value - corner), (corner + UNIT).to_bits().wrapping_sub(UNIT.to_bits()))
+            },
+        );
+        Self { corner: [east, north], part: [x, y] }
     }
-    last.get().pair(at)
+
+    /// Two numbers from 0 to 2¹⁶ of each corner: south-west, south-east, north-west, north-east.
+    #[inline(always)]
+    fn halves(&self) -> [[f32; 2]; 4] {
+        let [east, north] = self.corner;
+        let sw = east.wrapping_mul(FACTORS[0]).wrapping_add(north.wrapping_mul(FACTORS[1]));
+        let nw = sw.wrapping_add(FACTORS[1]);
+        [halves(sw), halves(sw.wrapping_add(FACTORS[0])), halves(nw), halves(nw.wrapping_add(FACTORS[0]))]
+    }
+
+    /// The shares of the corners east and north, and their rise.
+    #[inline(always)]
+    fn smooth(&self) -> ([f32; 2], [f32; 2]) {
+        let [x, y] = self.part;
+        ([x * x * (3.0 - 2.0 * x), y * y * (3.0 - 2.0 * y)], [6.0 * x * (1.0 - x), 6.0 * y * (1.0 - y)])
+    }
+}
+
+/// [`pair`] at a place in a cell.
+#[inline(always)]
+fn pair_in_cell(at: &CellPlace) -> ([f32; 2], [f32; 2]) {
+    let [sw, se, nw, ne] = at.halves();
+    let ([u, v], [steep_x, steep_y]) = at.smooth();
+    let (south, north) = (mix(sw[0], se[0], u), mix(nw[0], ne[0], u));
+    let second = mix(mix(sw[1], se[1], u), mix(nw[1], ne[1], u), v);
+    let rise_x = mix(se[0] - sw[0], ne[0] - nw[0], v) * PER_HALF * steep_x;
+    let rise_y = (north - south) * PER_HALF * steep_y;
+    ([mix(south, north, v) * PER_HALF - 1.0, second * PER_HALF - 1.0], [rise_x, rise_y])
+}
+
+/// Waves of gullies that run across the direction `level`, of length 1 at the most, and their rise: each corner of the cell has
+/// waves of its own phase, which blend into each other, so that gullies fork and join.
+#[inline(always)]
+fn gullies(at: &CellPlace, level: [f32; 2]) -> (f32, [f32; 2]) {
+    let [x, y] = at.part;
+    let corners = at.halves();
+    let (mut waves, mut slopes) = ([0.0; 4], [0.0; 4]);
+    for (index, (east, north)) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)].into_iter().enumerate() {
+        let along = (x - east) * level[0] + (y - north) * level[1];
+        (waves[index], slopes[index]) = wave(GULLIES * along + corners[index][0] * (0.5 * PER_HALF));
+    }
+    let ([u, v], [steep_x, steep_y]) = at.smooth();
+    let [sw, se, nw, ne] = waves;
+    let (south, north) = (mix(sw, se, u), mix(nw, ne, u));
+    let slope = GULLIES * mix(mix(slopes[0], slopes[1], u), mix(slopes[2], slopes[3], u), v);
+    let rise_x = mix(se - sw, ne - nw, v) * steep_x + slope * level[0];
+    let rise_y = (north - south) * steep_y + slope * level[1];
+    (GULLY_HEIGHT * mix(south, north, v), [GULLY_HEIGHT * rise_x, GULLY_HEIGHT * rise_y])
+}
+
+/// About the cosine of so many turns from -1 to 2^20, and its rise per turn.
+#[inline(always)]
+fn wave(turns: f32) -> (f32, f32) {
+    const UNIT: f32 = 12_582_912.0;
+    let past = turns - ((turns + UNIT) - UNIT);
+    let part = 2.0 * past.abs();
+    let rise = -24.0 * (part * (1.0 - part));
+    (1.0 - 2.0 * (part * part * (3.0 - 2.0 * part)), if past < 0.0 { -rise } else { rise })
 }
 
 /// Two numbers from -1 to 1 for a lattice point.
 ///
 /// A weighted sum of the coordinates, mixed: it takes half the products of the hash of the grain.
 pub(crate) fn values(at: UVec2) -> Vec2 {
-    let bits = lowbias32(at.x.wrapping_mul(0x8da6_b343).wrapping_add(at.y.wrapping_mul(0xd816_3841)));
-    // 16 bits are exact in an f32.
-    Vec2::new((bits & 0xffff) as f32, (bits >> 16) as f32) / 32_768.0 - 1.0
+    let sum = at.x.wrapping_mul(FACTORS[0]).wrapping_add(at.y.wrapping_mul(FACTORS[1]));
+    Vec2::from(halves(sum)) * PER_HALF - 1.0
+}
+
+/// The weights of a lattice point's coordinates in the number that is hashed.
+const FACTORS: [u32; 2] = [0x8da6_b343, 0xd816_3841];
+
+/// The factor on [`halves`] that makes them numbers from 0 to 2.
+const PER_HALF: f32 = 1.0 / 32_768.0;
+
+/// Two numbers from 0 to 2¹⁶ of a lattice point's weighted sum of coordinates, exact in an f32.
+#[inline(always)]
+fn halves(sum: u32) -> [f32; 2] {
+    let bits = lowbias32(sum);
+    // Vectors of signed numbers are converted faster.
+    [(bits & 0xffff) as i32 as f32, (bits >> 16) as i32 as f32]
 }
 
 #[cfg(test)]
@@ -185,13 +361,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_cells_that_a_thread_keeps_change_nothing() {
-        let fresh = |at: Vec2| {
-            let cells = [const { Cell::new(LatticeCell::NONE) }; OCTAVES as usize];
-            CoverNoise { at, longest_m: 1.0, ..CoverNoise::with_cells(at, 1.0, 30.0, &cells) }
+    fn pixels_together_have_the_noise_that_each_has_alone() {
+        let pixels: Vec<NoisePixel> = places()
+            .zip([0.4, 3.0, 25.0, 90.0, 700.0, 5000.0, f32::NAN].into_iter().cycle())
+            .map(|(at, mean_m)| NoisePixel { at, mean_m, longest_m: 2.0 * mean_m, rise: at / 9000.0 })
+            .collect();
+        let alone = pixels.iter().map(|pixel| CoverNoise::new(pixel, 30.0));
+        let bits = |noise: CoverNoise| {
+            let CoverNoise { uneven, patch, fine, form, ridge, .. } = noise;
+            [uneven, patch, fine, form.x, form.y, ridge].map(f32::to_bits)
         };
-        for at in places().flat_map(|at| [at, at + Vec2::new(0.7, 0.0), -at]) {
-            assert_eq!(CoverNoise::new(at, [1.0; 2], 30.0), fresh(at), "{at}");
+        assert!(alone.map(bits).eq(CoverNoise::of_each(&pixels, 30.0).into_iter().map(bits)));
+    }
+
+    #[test]
+    fn the_lattice_within_reach_is_that_of_all_places() {
+        for at in places().flat_map(|at| [at / 7.3, at * 40.0, -at, at.floor()]) {
+            let (values, rise) = pair_in_cell(&CellPlace::of(at.to_array()));
+            assert_eq!((Vec2::from(values), Vec2::from(rise)), pair(at), "{at}");
         }
     }
 
@@ -212,6 +399,23 @@ mod tests {
     }
 
     #[test]
+    fn gullies_run_down_the_fall_line_and_their_rise_is_their_change() {
+        let level = Vec2::new(0.6, -0.8);
+        let gully = |at: Vec2| gullies(&CellPlace::of(at.to_array()), level.to_array());
+        let (mut along, mut across) = (0.0, 0.0);
+        for at in places().map(|at| at / 211.0) {
+            let (value, rise) = gully(at);
+            for (axis, part) in [(Vec2::X, rise[0]), (Vec2::Y, rise[1])] {
+                let change = (gully(at + axis * 1e-3).0 - value) / 1e-3;
+                assert!((change - part).abs() < 0.03, "{at}: {change} {part}");
+            }
+            across += Vec2::from(rise).dot(level).abs();
+            along += Vec2::from(rise).perp_dot(level).abs();
+        }
+        assert!(across > 1.5 * along, "{across} {along}");
+    }
+
+    #[test]
     fn the_two_values_have_no_mean_and_nothing_in_common() {
         let all: Vec<Vec2> = places().map(|at| pair(at / 3.3).0).collect();
         let mean = all.iter().sum::<Vec2>() / all.len() as f32;
@@ -221,15 +425,16 @@ mod tests {
 
     #[test]
     fn pixels_see_waves_wider_than_themselves_alone_and_forms_below_the_cells() {
+        let noise = |at: Vec2, wide_m: f32| {
+            CoverNoise::new(&NoisePixel { at, mean_m: wide_m, longest_m: wide_m, rise: Vec2::ZERO }, 30.0)
+        };
         for at in places() {
-            let far = CoverNoise::new(at, [2000.0; 2], 30.0);
+            let far = noise(at, 2000.0);
             assert_eq!(far, CoverNoise { at, longest_m: 2000.0, ..CoverNoise::default() });
-            let overview = CoverNoise::new(at, [60.0; 2], 30.0);
+            let overview = noise(at, 60.0);
             assert_eq!((overview.form, overview.ridge, overview.fine), (Vec2::ZERO, 0.0, 0.0));
         }
-        let sum = |pixel_m: f32| {
-            places().map(|at| CoverNoise::new(at, [pixel_m; 2], 30.0).form.length()).sum::<f32>()
-        };
+        let sum = |pixel_m: f32| places().map(|at| noise(at, pixel_m).form.length()).sum::<f32>();
         assert!(sum(1.0) > 1.2 * sum(10.0) && sum(10.0) > 0.0);
     }
 }

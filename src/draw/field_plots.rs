@@ -18,7 +18,10 @@ pub(crate) fn field_tone(at: Vec2, pixel_m: f32) -> f32 {
         return 0.0;
     }
     let parcel = parcel(at, parcel_m);
-    let strips = part_shown(strip_m, pixel_m) * strip_tone(strip_m, parcel.along(at), pixel_m, parcel.cell);
+    let strips = match part_shown(strip_m, pixel_m) {
+        shown if shown > 0.0 => shown * strip_tone(strip_m, parcel.along(at), pixel_m, parcel.cell),
+        _ => 0.0,
+    };
     // At its border a parcel's tone blends into the next one's.
     let inside = (parcel.inside_m / pixel_m + 0.5).clamp(0.0, 1.0);
     shown * inside * (PARCEL_TONE * parcel.tone() + strips)

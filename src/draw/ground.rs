@@ -9,7 +9,7 @@ use glam::{UVec2, Vec2, Vec3};
 
 use crate::color::Srgba;
 use crate::cover_noise::CoverNoise;
-use crate::ground_cover::GroundCover;
+use crate::ground_cover::{CoveredPixel, GroundCover};
 use crate::ground_imagery::{DrapedColor, GroundImagery};
 use crate::lighting::ReliefShading;
 use crate::undergrowth::Undergrowth;
@@ -202,13 +202,38 @@ impl Contours {
     }
 }
 
+/// A pixel of land.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LandPixel {
+    /// The map's values.
+    pub post: GroundPost,
+    /// The change of the elevation across the pixel, in meters.
+    pub change_m: f32,
+    /// The noise of the place; read where the map has a cover.
+    pub noise: CoverNoise,
+}
+
+impl LandPixel {
+    fn covered(&self, tint: Vec3) -> CoveredPixel {
+        let Self { post, change_m, noise } = *self;
+        CoveredPixel { tint, post, change_m, noise }
+    }
+}
+
+/// `land` with the undergrowth of the woods there.
+fn undergrown(land: Vec3, post: &GroundPost) -> Vec3 {
+    // Nearly everywhere there are no trees, and no share of undergrowth changes nothing.
+    let woods = Undergrowth::cover(post.water);
+    if woods > 0.0 { Undergrowth::over(land, woods) } else { land }
+}
+
 /// The values of a pixel of the ground besides the map's own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundDetail {
     /// The factor of [`ground_grain`](crate::ground_grain::ground_grain).
     pub grain: f32,
-    /// The noise of the place; read where the map has a cover.
-    pub cover: CoverNoise,
+    /// The color of its land in linear light: see [`GroundMap::land`].
+    pub land: Vec3,
     /// The picture over the map.
     pub draped: DrapedColor,
     /// The cosine of the angle between the directions in plan down the slope and to the light; 0 where there is none.
@@ -283,11 +308,10 @@ impl GroundMap {
     }
 
     /// The color of a pixel of ground in linear light, from the map's values `post` at its center and their `change`
-    /// across it: the ramp with land cover and [`Undergrowth`], or water, under a draped picture and contours.
+    /// across it: land or water, under a draped picture and contours.
     pub fn albedo(&self, post: &GroundPost, change: PixelChange, detail: &GroundDetail) -> Vec3 {
         let shore = ShorePixel::new(post.water, change.water);
-        let noise = (!shore.is_open()).then_some(&detail.cover);
-        let land = self.land(post, change.height_m, noise) * detail.grain;
+        let land = detail.land * detail.grain;
         let is_dry = shore.cover <= 0.0 && shore.line <= 0.0 && shore.wet <= 0.0;
         let bare = if is_dry { land } else { WaterColor::over(land, post.height_m, &shore) };
         let bare = detail.draped.over(bare);
@@ -300,23 +324,39 @@ impl GroundMap {
     /// contours, under the picture `draped`.
     pub fn mirrored_land(&self, post: &GroundPost, draped: &DrapedColor) -> Vec3 {
         // Across a pixel with all heights strata are too thin to show.
-        draped.over(self.land(
-            post,
-            f32::MAX,
-            Some(&CoverNoise { longest_m: f32::INFINITY, ..CoverNoise::default() }),
-        ))
+        draped.over(self.land(&LandPixel {
+            post: *post,
+            change_m: f32::MAX,
+            noise: CoverNoise { longest_m: f32::INFINITY, ..CoverNoise::default() },
+        }))
     }
 
-    /// The ramp with land cover, where there is `noise` for it, and undergrowth.
-    fn land(&self, post: &GroundPost, change_m: f32, noise: Option<&CoverNoise>) -> Vec3 {
-        let tint = self.ramp.linear_at(post.height_m);
-        let land = match (&self.cover, noise) {
-            (Some(cover), Some(noise)) => cover.over(tint, post, change_m, noise),
-            _ => tint,
+    /// The color of a pixel of dry land in linear light: the ramp with its cover and [`Undergrowth`].
+    pub fn land(&self, pixel: &LandPixel) -> Vec3 {
+        let tint = self.ramp.linear_at(pixel.post.height_m);
+        let land = self.cover.map_or(tint, |cover| cover.over(&pixel.covered(tint)));
+        undergrown(land, &pixel.post)
+    }
+
+    /// [`Self::land`] of each of `pixels`, in less time.
+    pub fn land_each(&self, pixels: &[LandPixel]) -> Vec<Vec3> {
+        let tint = |pixel: &LandPixel| self.ramp.linear_at(pixel.post.height_m);
+        let mut colors = match &self.cover {
+            Some(cover) => {
+                let covered: Vec<_> = pixels.iter().map(|pixel| pixel.covered(tint(pixel))).collect();
+                cover.over_each(&covered)
+            }
+            None => pixels.iter().map(tint).collect(),
         };
-        // Nearly everywhere there are no trees, and no share of undergrowth changes nothing.
-        let woods = Undergrowth::cover(post.water);
-        if woods > 0.0 { Undergrowth::over(land, woods) } else { land }
+        for (color, pixel) in colors.iter_mut().zip(pixels) {
+            *color = undergrown(*color, &pixel.post);
+        }
+        colors
+    }
+
+    /// The color of land that does not show: the ramp's.
+    pub fn hidden_land(&self, post: &GroundPost) -> Vec3 {
+        self.ramp.linear_at(post.height_m)
     }
 
     /// The upward unit normal by which `post` is shaded.

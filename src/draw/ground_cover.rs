@@ -10,13 +10,14 @@
 //! readable. Near the eye crowns make woods rough, strata run through rock, and ridges too small for the model's cells shade
 //! the ground: symbols of what such ground looks like, which change no height.
 
-use glam::{FloatExt, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 
 use crate::color::{Srgba, luminance};
 use crate::cover_noise::CoverNoise;
 use crate::field_plots::field_tone;
 use crate::ground::GroundPost;
 use crate::ground_grain::{WIDE_PX, noise};
+use crate::lanes::{LANES, in_lanes, mix, of_each, unit};
 use crate::shown::shown;
 
 /// How far the noise moves the borders between covers, in meters of elevation and in rise.
@@ -115,72 +116,63 @@ impl CoverColor {
 
     /// The mean of two colors, weighted by `share` for `other`.
     pub fn lerp(&self, other: &Self, share: f32) -> Self {
-        Self { hue: self.hue.lerp(other.hue, share), light: self.light.lerp(other.light, share) }
+        Self { hue: self.hue.lerp(other.hue, share), light: mix(self.light, other.light, share) }
     }
 }
 
+/// A pixel of ground, as its cover depends on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CoveredPixel {
+    /// The color of the ramp in linear light.
+    pub tint: Vec3,
+    /// Where the map reads it.
+    pub post: GroundPost,
+    /// The change of its height across the pixel, meters.
+    pub change_m: f32,
+    /// The noise of the place.
+    pub noise: CoverNoise,
+}
+
 impl GroundCover {
-    /// The color of covered ground in linear light, over the ramp's `tint` where the map reads `post`, whose height changes by
-    /// `change_m` across the pixel; `noise` is that of the place.
-    pub fn over(&self, tint: Vec3, post: &GroundPost, change_m: f32, noise: &CoverNoise) -> Vec3 {
-        let CoverNoise { uneven, patch, fine, ridge, .. } = *noise;
-        let slope = Vec2::new(post.slope_east, post.slope_north) * self.true_rise;
-        let shade = (-slope.y * self.shady_north).clamp(-1.0, 1.0);
-        let height = post.height_m + UNEVEN_M * uneven + ASPECT_M * shade;
-        let steep = slope.length();
-        let rise = steep + UNEVEN_RISE * uneven;
-        let hollow = (1.0 - post.sky_visibility).clamp(0.0, 1.0);
-        let [higher, shadier, hollower, noisier] = MOISTER;
-        let moist =
-            self.moisture + higher * post.height_m + shadier * shade + hollower * hollow + noisier * uneven;
-        let [below_trees, below_snow, half] = MEADOW_M;
-        let above_trees = step(height, [self.tree_m - below_trees, self.tree_m]);
-        let below_snow = 1.0 - step(height, [self.snow_m - below_snow, self.snow_m]);
-        let green = step(moist, WOODS_MOISTURE);
-        let copses = step(patch + fine, COPSES);
-        let wild = step(height, WILD.map(|share| share * self.tree_m));
-        let woods =
-            (1.0 - above_trees) * green * copses.lerp(1.0, step(rise, WOODS_RISE).max(WILD_WOODS * wild));
-        let fields = FIELD_MEADOW * green * (1.0 - wild) * (0.5 + patch).clamp(0.0, 1.0);
-        let meadow = fields.lerp(below_snow, above_trees);
-        let bare = DRY_RISE.lerp(1.0, step(moist, [0.0, WOODS_MOISTURE[1]]));
-        let scree = above_trees.max(1.0 - green) * step(rise, SCREE_RISE.map(|rise| rise * bare));
-        let rock = step(rise, ROCK_RISE.map(|rise| rise * bare));
-        let snow = step(height, [self.snow_m - half, self.snow_m + half]) * (1.0 - rock);
-        let own = luminance(tint);
-        let farmed = step(moist, FARMED_MOISTURE)
-            * (1.0 - step(rise, FARMED_RISE))
-            * (1.0 - wild)
-            * (1.0 - above_trees);
-        let [of_woods, of_meadow, of_scree, of_rock, of_snow, of_crops, of_soil] = self.colors;
-        let mut color = tint;
-        let mut lay = |cover: &CoverColor, hue_share: f32, share: f32| {
-            color = color.lerp(tint.lerp(cover.hue * own, hue_share) * cover.light, MOST * share);
+    /// The color of a covered pixel in linear light.
+    pub fn over(&self, pixel: &CoveredPixel) -> Vec3 {
+        let [color] = self.together(&[*pixel]);
+        color
+    }
+
+    /// [`Self::over`] of each of `pixels`, in less time.
+    pub fn over_each(&self, pixels: &[CoveredPixel]) -> Vec<Vec3> {
+        let filler = CoveredPixel {
+            tint: Vec3::ZERO,
+            post: GroundPost::default(),
+            change_m: f32::INFINITY,
+            noise: CoverNoise { longest_m: f32::INFINITY, ..CoverNoise::default() },
         };
-        lay(&of_meadow, HUE, meadow);
-        if farmed > 0.0 {
-            let plot = field_tone(noise.at, noise.longest_m.max(LEAST_PIXEL_M));
-            let tone = (plot + FARMED_PATCHES * patch).clamp(-1.0, 1.0);
-            let other = if tone < 0.0 { of_meadow } else { of_soil };
-            lay(&of_crops.lerp(&other, tone.abs()), HUE, farmed);
+        in_lanes(
+            pixels,
+            filler,
+            #[inline(always)]
+            |pixels: &[CoveredPixel; LANES]| self.together(pixels),
+        )
+    }
+
+    #[inline(always)]
+    fn together<const N: usize>(&self, pixels: &[CoveredPixel; N]) -> [Vec3; N] {
+        let mut lanes = CoverLanes::new(pixels);
+        lanes.share_out(self);
+        // Nearly everywhere there are no fields, and no rock, whose layers would be noise for nothing.
+        for (lane, CoveredPixel { post, change_m, noise, .. }) in pixels.iter().enumerate() {
+            if lanes.farmed[lane] > 0.0 {
+                let plot = field_tone(noise.at, noise.longest_m.max(LEAST_PIXEL_M));
+                lanes.tone[lane] = (plot + FARMED_PATCHES * noise.patch).clamp(-1.0, 1.0);
+            }
+            if lanes.layered[lane] > 0.0 {
+                lanes.texture[lane] +=
+                    STRATA * lanes.layered[lane] * strata(post.height_m, *change_m, noise.uneven);
+            }
         }
-        lay(&of_woods, HUE, woods);
-        lay(&of_scree, HUE, scree);
-        lay(&of_rock, HUE, rock);
-        // Snow hides the ground that heights color.
-        lay(&of_snow, 1.0, snow);
-        let open = (1.0 - snow).max(0.0);
-        let wooded = woods * (1.0 - rock) * open;
-        let layered = rock.max(scree * (1.0 - green)) * open;
-        let ridges = if self.has_forms { RIDGES * ridge * steep.min(1.0) } else { 0.0 };
-        let bushy = (1.0 - above_trees) * (1.0 - woods) * (1.0 - rock) * (1.0 - farmed) * open;
-        let shrubs = bushy * step(fine + 0.5 * patch, SHRUBS);
-        color = color.lerp(of_woods.hue * (own * of_woods.light), SHRUB_SHARE * shrubs);
-        let rough = TUFTS.lerp(CROWNS, wooded);
-        let texture = (PATCHES * patch + rough * fine) * open + ridges;
-        // Nearly everywhere there is no rock, whose layers would be noise for nothing.
-        let layers = if layered > 0.0 { layered * strata(post.height_m, change_m, uneven) } else { 0.0 };
-        color * (1.0 + texture + STRATA * layers).max(0.3)
+        let [red, green, blue] = [lanes.color(self, 0), lanes.color(self, 1), lanes.color(self, 2)];
+        std::array::from_fn(|lane| Vec3::new(red[lane], green[lane], blue[lane]))
     }
 
     /// The rise eastward and northward of the drawn forms that are too small for the cells of the map, where it reads `post`;
@@ -195,16 +187,179 @@ impl GroundCover {
     }
 }
 
-/// Layers of rock at a height that changes by `change_m` across a pixel, -1..=1; `uneven` bends them.
-fn strata(height_m: f32, change_m: f32, uneven: f32) -> f32 {
-    let layers = |wave_m: f32| {
-        shown(wave_m, WIDE_PX, change_m.max(1e-6)) * noise(Vec2::new(height_m / wave_m + 2.0 * uneven, 0.5))
-    };
-    STRATA_M.into_iter().map(layers).sum()
+/// The covers of several pixels.
+struct CoverLanes<const N: usize> {
+    tint: [[f32; N]; 3],
+    /// The luminance of the tint.
+    own: [f32; N],
+    height_m: [f32; N],
+    slope_east: [f32; N],
+    slope_north: [f32; N],
+    sky_visibility: [f32; N],
+    uneven: [f32; N],
+    patch: [f32; N],
+    fine: [f32; N],
+    ridge: [f32; N],
+    meadow: [f32; N],
+    farmed: [f32; N],
+    /// The tone of plots, from grass at -1 to soil at 1.
+    tone: [f32; N],
+    woods: [f32; N],
+    scree: [f32; N],
+    rock: [f32; N],
+    snow: [f32; N],
+    shrubs: [f32; N],
+    /// The share of rock and scree that shows its layers.
+    layered: [f32; N],
+    /// By how much the light differs from the mean.
+    texture: [f32; N],
 }
 
+impl<const N: usize> CoverLanes<N> {
+    #[inline(always)]
+    fn new(pixels: &[CoveredPixel; N]) -> Self {
+        let none = [0.0; N];
+        Self {
+            tint: [
+                of_each(pixels, |at| at.tint.x),
+                of_each(pixels, |at| at.tint.y),
+                of_each(pixels, |at| at.tint.z),
+            ],
+            own: of_each(pixels, |at| luminance(at.tint)),
+            height_m: of_each(pixels, |at| at.post.height_m),
+            slope_east: of_each(pixels, |at| at.post.slope_east),
+            slope_north: of_each(pixels, |at| at.post.slope_north),
+            sky_visibility: of_each(pixels, |at| at.post.sky_visibility),
+            uneven: of_each(pixels, |at| at.noise.uneven),
+            patch: of_each(pixels, |at| at.noise.patch),
+            fine: of_each(pixels, |at| at.noise.fine),
+            ridge: of_each(pixels, |at| at.noise.ridge),
+            meadow: none,
+            farmed: none,
+            tone: none,
+            woods: none,
+            scree: none,
+            rock: none,
+            snow: none,
+            shrubs: none,
+            layered: none,
+            texture: none,
+        }
+    }
+
+    /// The share of each cover, and its texture but for the layers of rock.
+    #[inline(always)]
+    fn share_out(&mut self, cover: &GroundCover) {
+        let ridges = if cover.has_forms { RIDGES } else { 0.0 };
+        let [higher, shadier, hollower, noisier] = MOISTER;
+        let [below_trees, below_snow, half] = MEADOW_M;
+        for lane in 0..N {
+            let [uneven, patch, fine] = [self.uneven[lane], self.patch[lane], self.fine[lane]];
+            let [east, north] = [self.slope_east[lane], self.slope_north[lane]];
+            let shade = 1.0 - 2.0 * unit(0.5 + 0.5 * cover.true_rise * cover.shady_north * north);
+            let height = self.height_m[lane] + UNEVEN_M * uneven + ASPECT_M * shade;
+            let steep = cover.true_rise * (east * east + north * north).sqrt();
+            let rise = steep + UNEVEN_RISE * uneven;
+            let hollow = unit(1.0 - self.sky_visibility[lane]);
+            let moist = cover.moisture
+                + higher * self.height_m[lane]
+                + shadier * shade
+                + hollower * hollow
+                + noisier * uneven;
+            let above_trees = step(height, [cover.tree_m - below_trees, cover.tree_m]);
+            let below_snow = 1.0 - step(height, [cover.snow_m - below_snow, cover.snow_m]);
+            let green = step(moist, WOODS_MOISTURE);
+            let wild = step(height, [WILD[0] * cover.tree_m, WILD[1] * cover.tree_m]);
+            let sloping = step(rise, WOODS_RISE);
+            let alone = if sloping > WILD_WOODS * wild { sloping } else { WILD_WOODS * wild };
+            let woods = (1.0 - above_trees) * green * mix(step(patch + fine, COPSES), 1.0, alone);
+            let fields = FIELD_MEADOW * green * (1.0 - wild) * unit(0.5 + patch);
+            let bare = mix(DRY_RISE, 1.0, step(moist, [0.0, WOODS_MOISTURE[1]]));
+            let grown = if above_trees > 1.0 - green { above_trees } else { 1.0 - green };
+            let scree = grown * step(rise, [SCREE_RISE[0] * bare, SCREE_RISE[1] * bare]);
+            let rock = step(rise, [ROCK_RISE[0] * bare, ROCK_RISE[1] * bare]);
+            let snow = step(height, [cover.snow_m - half, cover.snow_m + half]) * (1.0 - rock);
+            let farmed = step(moist, FARMED_MOISTURE)
+                * (1.0 - step(rise, FARMED_RISE))
+                * (1.0 - wild)
+                * (1.0 - above_trees);
+            let open = 1.0 - snow;
+            let stony = scree * (1.0 - green);
+            let layered = if rock > stony { rock } else { stony };
+            let bushy = (1.0 - above_trees) * (1.0 - woods) * (1.0 - rock) * (1.0 - farmed) * open;
+            let rough = mix(TUFTS, CROWNS, woods * (1.0 - rock) * open);
+            self.meadow[lane] = mix(fields, below_snow, above_trees);
+            self.farmed[lane] = farmed;
+            self.woods[lane] = woods;
+            self.scree[lane] = scree;
+            self.rock[lane] = rock;
+            self.snow[lane] = snow;
+            self.shrubs[lane] = bushy * step(fine + 0.5 * patch, SHRUBS);
+            self.layered[lane] = layered * open;
+            self.texture[lane] =
+                (PATCHES * patch + rough * fine) * open + ridges * self.ridge[lane] * unit(steep);
+        }
+    }
+
+    /// The red, green or blue of all covers laid one over the other.
+    #[inline(always)]
+    fn color(&self, cover: &GroundCover, channel: usize) -> [f32; N] {
+        let [woods, meadow, scree, rock, snow, crops, soil] = cover.colors.map(
+            #[inline(always)]
+            |color| ChannelColor { hue: color.hue[channel], light: color.light },
+        );
+        let mut made = [0.0; N];
+        for (lane, made) in made.iter_mut().enumerate() {
+            let (tint, own) = (self.tint[channel][lane], self.own[lane]);
+            let laid = |color: f32, cover: ChannelColor, hue_share: f32, share: f32| {
+                mix(color, mix(tint, cover.hue * own, hue_share) * cover.light, MOST * share)
+            };
+            let tone = self.tone[lane];
+            let (grassy, bare) = (unit(-tone), unit(tone));
+            let plots = ChannelColor {
+                hue: crops.hue + (meadow.hue - crops.hue) * grassy + (soil.hue - crops.hue) * bare,
+                light: crops.light
+                    + (meadow.light - crops.light) * grassy
+                    + (soil.light - crops.light) * bare,
+            };
+            let mut color = laid(tint, meadow, HUE, self.meadow[lane]);
+            color = laid(color, plots, HUE, self.farmed[lane]);
+            color = laid(color, woods, HUE, self.woods[lane]);
+            color = laid(color, scree, HUE, self.scree[lane]);
+            color = laid(color, rock, HUE, self.rock[lane]);
+            // Snow hides the ground that heights color.
+            color = laid(color, snow, 1.0, self.snow[lane]);
+            color = mix(color, woods.hue * own * woods.light, SHRUB_SHARE * self.shrubs[lane]);
+            let light = 1.0 + self.texture[lane];
+            *made = color * if light > 0.3 { light } else { 0.3 };
+        }
+        made
+    }
+}
+
+/// One channel of a [`CoverColor`].
+#[derive(Clone, Copy)]
+struct ChannelColor {
+    hue: f32,
+    light: f32,
+}
+
+/// Layers of rock at a height that changes by `change_m` across a pixel, -1..=1; `uneven` bends them.
+fn strata(height_m: f32, change_m: f32, uneven: f32) -> f32 {
+    let mut sum = 0.0;
+    for wave_m in STRATA_M {
+        let shown = shown(wave_m, WIDE_PX, change_m.max(1e-6));
+        if shown > 0.0 {
+            sum += shown * noise(Vec2::new(height_m / wave_m + 2.0 * uneven, 0.5));
+        }
+    }
+    sum
+}
+
+#[inline(always)]
 fn step(value: f32, [from, to]: [f32; 2]) -> f32 {
-    value.smoothstep(from, to)
+    let part = unit((value - from) / (to - from));
+    part * part * (3.0 - 2.0 * part)
 }
 
 #[cfg(test)]
@@ -235,6 +390,10 @@ mod tests {
         }
     }
 
+    fn seen(cover: &GroundCover, post: GroundPost, noise: CoverNoise) -> Vec3 {
+        cover.over(&CoveredPixel { tint: TINT, post, change_m: 1e3, noise })
+    }
+
     fn post(height_m: f32, slope_north: f32) -> GroundPost {
         GroundPost { height_m, slope_north, sky_visibility: 1.0, ..GroundPost::default() }
     }
@@ -245,7 +404,7 @@ mod tests {
             for rise in -15..15 {
                 for uneven in [-1.0, 0.0, 1.0] {
                     let noise = CoverNoise { uneven, ..CoverNoise::default() };
-                    let shown = alps().over(TINT, &post(height as f32, rise as f32 * 0.1), 1e3, &noise);
+                    let shown = seen(&alps(), post(height as f32, rise as f32 * 0.1), noise);
                     let change = lightness(shown) - lightness(TINT);
                     assert!(change.abs() <= 12.0, "{height} m, rise {rise}: {change}");
                 }
@@ -256,7 +415,7 @@ mod tests {
     #[test]
     fn woods_lie_under_meadows_under_snow_and_walls_are_rock() {
         let noise = CoverNoise { patch: -0.6, ..CoverNoise::default() };
-        let seen = |height: f32, rise: f32| alps().over(TINT, &post(height, rise), 1e3, &noise);
+        let seen = |height: f32, rise: f32| seen(&alps(), post(height, rise), noise);
         assert!(seen(1000.0, 0.3).y > 1.15 * seen(1000.0, 0.3).x, "woods on slopes");
         assert!(lightness(seen(500.0, 0.0)) > lightness(seen(500.0, 0.3)) + 4.0, "fields in valleys");
         assert!(lightness(seen(1300.0, 0.0)) < lightness(seen(500.0, 0.0)) - 3.0, "woods on plateaus");
@@ -271,7 +430,7 @@ mod tests {
     fn deserts_have_trees_on_high_and_shady_ground_alone() {
         let desert = GroundCover { moisture: 0.15, tree_m: 3500.0, snow_m: 4500.0, ..alps() };
         let green = |height: f32, rise: f32| {
-            let shown = desert.over(TINT, &post(height, rise), 1e3, &CoverNoise::default());
+            let shown = seen(&desert, post(height, rise), CoverNoise::default());
             shown.y / shown.x
         };
         assert!((green(300.0, 0.2) - TINT.y / TINT.x).abs() < 0.02, "{}", green(300.0, 0.2));
@@ -286,6 +445,29 @@ mod tests {
         assert!(rise(&post(0.0, 0.5)) > 3.0 * rise(&post(0.0, 0.0)));
         assert_eq!(rise(&GroundPost { water: 0.6, ..post(0.0, 0.5) }), 0.0);
         assert_eq!(GroundCover { has_forms: false, ..alps() }.form(&post(0.0, 0.5), &noise), Vec2::ZERO);
+    }
+
+    #[test]
+    fn pixels_together_have_the_colors_that_each_has_alone() {
+        let pixels: Vec<CoveredPixel> = (0..997)
+            .map(|index| {
+                let [a, b, c, d] = [7, 11, 13, 17].map(|every| (index % every) as f32 / every as f32);
+                let noise = CoverNoise {
+                    uneven: a - 0.5,
+                    patch: 1.4 * b - 0.7,
+                    fine: 1.4 * c - 0.7,
+                    ridge: d - 0.5,
+                    at: Vec2::new(31.0 * index as f32, 900.0 * a),
+                    longest_m: 3.0,
+                    ..CoverNoise::default()
+                };
+                let post = GroundPost { slope_east: 2.0 * c - 1.0, ..post(3000.0 * d, 1.8 * a - 0.6) };
+                CoveredPixel { tint: TINT * (0.5 + b), post, change_m: 3.0 * b, noise }
+            })
+            .collect();
+        let bits = |color: Vec3| color.to_array().map(f32::to_bits);
+        let alone = pixels.iter().map(|pixel| bits(alps().over(pixel)));
+        assert!(alone.eq(alps().over_each(&pixels).into_iter().map(bits)));
     }
 
     #[test]

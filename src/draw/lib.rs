@@ -20,6 +20,7 @@ pub mod ground_levels;
 pub mod ground_tops;
 pub mod ground_window;
 pub mod hatching;
+mod lanes;
 pub mod lighting;
 pub mod list;
 pub mod lowbias;

@@ -4,8 +4,8 @@ use glam::Vec2;
 use rayon::prelude::*;
 
 use sandtable_draw::color::Srgba;
-use sandtable_draw::cover_noise::CoverNoise;
-use sandtable_draw::ground::{GroundDetail, GroundMap, GroundPost, PixelChange};
+use sandtable_draw::cover_noise::{CoverNoise, NoisePixel};
+use sandtable_draw::ground::{GroundDetail, GroundMap, GroundPost, LandPixel, PixelChange};
 use sandtable_draw::pixels::Pixels;
 
 /// The longest side in pixels: the most that every graphics adapter supports.
@@ -58,10 +58,17 @@ fn color(map: &GroundMap, at: Vec2, step: Vec2) -> Srgba {
         |of: fn(&GroundPost) -> f32| Vec2::new(of(&east) - of(&west), of(&north) - of(&south)).length();
     let change = PixelChange { height_m: change(|post| post.height_m), water: change(|post| post.water) };
     let draped = map.imagery.as_deref().map(|imagery| imagery.at(at)).unwrap_or_default();
-    let noise = |_| CoverNoise::new(at, [step.max_element(); 2], map.cell.max_element());
-    let detail =
-        GroundDetail { grain: 1.0, cover: map.cover.map(noise).unwrap_or_default(), draped, facing: 0.0 };
-    Srgba::from_linear(map.albedo(&map.sample(at), change, &detail))
+    let post = map.sample(at);
+    let wide_m = step.max_element();
+    let noise = |_| {
+        CoverNoise::new(
+            &NoisePixel { at, mean_m: wide_m, longest_m: wide_m, rise: Vec2::ZERO },
+            map.cell.max_element(),
+        )
+    };
+    let noise = map.cover.map(noise).unwrap_or_default();
+    let land = map.land(&LandPixel { post, change_m: change.height_m, noise });
+    Srgba::from_linear(map.albedo(&post, change, &GroundDetail { grain: 1.0, land, draped, facing: 0.0 }))
 }
 
 #[cfg(test)]

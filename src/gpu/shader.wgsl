@@ -489,7 +489,18 @@ fn noise_values(at: vec2u) -> vec2f {
     return vec2f(vec2u(bits & 65535u, bits >> 16u)) / 32768.0 - 1.0;
 }
 
-fn cover_noise(at: vec2f, mean_pixel_m: f32, longest_m: f32) -> Noise {
+// About the cosine of so many turns, and its rise per turn.
+fn gully_wave(turns: f32) -> vec2f {
+    let past = turns - round(turns);
+    let part = 2.0 * abs(past);
+    let rise = 24.0 * part * (1.0 - part);
+    return vec2f(1.0 - 2.0 * part * part * (3.0 - 2.0 * part), select(-rise, rise, past < 0.0));
+}
+
+fn cover_noise(at: vec2f, mean_pixel_m: f32, longest_m: f32, ground_rise: vec2f) -> Noise {
+    let ground_steep = length(ground_rise);
+    let contour = vec2f(-ground_rise.y, ground_rise.x) / max(ground_steep, 1e-6);
+    let gullies = NOISE_MOST_GULLIES * smoothstep(NOISE_GULLY_RISE.x, NOISE_GULLY_RISE.y, ground_steep);
     var sum = Noise(0.0, 0.0, 0.0, vec2f(0.0), 0.0, at, longest_m);
     var wave_m = NOISE_FIRST_M;
     var turn = vec2f(1.0, 0.0);
@@ -519,9 +530,25 @@ fn cover_noise(at: vec2f, mean_pixel_m: f32, longest_m: f32) -> Noise {
             sum.patches += select(share * value.y, 0.0, is_fine);
             sum.fine += select(0.0, share * value.y, is_fine);
             let within = clamp((widest - wave_m) / (0.75 * widest), 0.0, 1.0);
-            let away = sqrt(value.x * value.x + NOISE_CREST * NOISE_CREST);
-            let crest = -value.x / away;
-            let back = vec2f(turn.x * rise.x + turn.y * rise.y, turn.x * rise.y - turn.y * rise.x);
+            let level = vec2f(turn.x * contour.x - turn.y * contour.y, turn.y * contour.x + turn.x * contour.y);
+            let along = NOISE_GULLIES * (part.x * level.x + part.y * level.y);
+            let waves_sw = gully_wave(along + 0.5 * (sw.x + 1.0));
+            let waves_se = gully_wave(along - NOISE_GULLIES * level.x + 0.5 * (se.x + 1.0));
+            let waves_nw = gully_wave(along - NOISE_GULLIES * level.y + 0.5 * (nw.x + 1.0));
+            let waves_ne = gully_wave(along - NOISE_GULLIES * (level.x + level.y) + 0.5 * (ne.x + 1.0));
+            let waves_south = mix(waves_sw, waves_se, smoothed.x);
+            let waves_north = mix(waves_nw, waves_ne, smoothed.x);
+            let wave = mix(waves_south, waves_north, smoothed.y);
+            let blend = vec2f(mix(waves_se.x - waves_sw.x, waves_ne.x - waves_nw.x, smoothed.y), waves_north.x - waves_south.x);
+            let gully_rise = NOISE_GULLY_HEIGHT * (blend * steep + NOISE_GULLIES * wave.y * level);
+            let ridged = mix(value.x, NOISE_GULLY_HEIGHT * wave.x, gullies);
+            let ridged_rise = mix(rise, gully_rise, gullies);
+            let away = sqrt(ridged * ridged + NOISE_CREST * NOISE_CREST);
+            let crest = -ridged / away;
+            let back = vec2f(
+                turn.x * ridged_rise.x + turn.y * ridged_rise.y,
+                turn.x * ridged_rise.y - turn.y * ridged_rise.x,
+            );
             sum.form += back * (share * within * crest);
             sum.ridge += share * within * 2.0 * (NOISE_MEAN_AWAY - away);
         }
@@ -1026,7 +1053,7 @@ fn on_ground(color: vec4f, flags: u32, world: vec3f, span: Footprint) -> Shaded 
     var noise = Noise(0.0, 0.0, 0.0, vec2f(0.0), 0.0, vec2f(0.0), 0.0);
     var small = vec2f(0.0);
     if has(COVER_PART) {
-        noise = cover_noise(world.xy, sqrt(length(span.right.xy) * length(span.down.xy)), pixel_m(span));
+        noise = cover_noise(world.xy, sqrt(length(span.right.xy) * length(span.down.xy)), pixel_m(span), post.slope * frame.cover.z);
         small = small_form(post, noise);
     }
     var unlit = 0.0;

@@ -3,7 +3,7 @@
 use crate::errors::scan::larger;
 use crate::field::{FieldRow, HeightField};
 use crate::levels::{ChildPlaces, StridedColumns, both_sides};
-use sandtable_terrain::vectorized::vectorized;
+use sandtable_base::vectorized::vectorized;
 
 /// Spheres grow by this share from child to parent, so that rounding of f32 radii and f64 distances can never let a child's
 /// sphere reach out of its parent's. Smaller than any error that shows, a thousand times the rounding.

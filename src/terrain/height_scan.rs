@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::vectorized::vectorized;
+use sandtable_base::vectorized::vectorized;
 
 /// Heights that a thread scans together: some tens of microseconds.
 const SCANNED_TOGETHER: usize = 1 << 16;

@@ -23,7 +23,6 @@ pub mod stop_flag;
 pub mod support_surface;
 pub mod terraces;
 pub mod triangle_surface;
-pub mod vectorized;
 pub mod volumes;
 pub mod water_cover;
 pub mod water_shore;

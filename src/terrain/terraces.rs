@@ -10,7 +10,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use crate::lattice::{HIGHEST_M, Lattice, Post};
-use crate::vectorized::vectorized;
+use sandtable_base::vectorized::vectorized;
 use sandtable_raster::raster::SampleFloat;
 
 /// Half the widths of the neighborhoods, in posts: a much wider terrace keeps a level middle. Wider neighborhoods first

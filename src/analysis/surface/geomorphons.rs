@@ -19,10 +19,10 @@ use crate::arguments::AnalysisArguments;
 use crate::error::AnalysisError;
 use crate::land::Land;
 use crate::outcome::{Hatching, Outcome, OutcomeRaster, PostValues, ValueClass};
+use sandtable_base::vectorized::vectorized;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::neighbors::STEPS;
 use sandtable_terrain::stop_flag::StopFlag;
-use sandtable_terrain::vectorized::vectorized;
 
 /// The codes of forms: those of `r.geomorphon`.
 #[rustfmt::skip]

@@ -15,9 +15,9 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::error::AnalysisError;
+use sandtable_base::vectorized::vectorized;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::stop_flag::StopFlag;
-use sandtable_terrain::vectorized::vectorized;
 
 /// The heights of a window, row by row from the south-west, meters.
 pub(super) type WindowHeights = [f32; 9];

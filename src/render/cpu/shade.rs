@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::cpu::cutout::Cutout;
 use crate::cpu::geometry::ScreenFace;
-use crate::cpu::ground_shade::GroundShader;
+use crate::cpu::ground_shade::{GroundPoint, GroundShader};
 use crate::cpu::hit::{Barycentric, FacePoint};
 use crate::cpu::screen::Screen;
 use crate::cpu::texture::{Reading, Texel, TexelFootprint, Texture, Weighting};
@@ -46,6 +46,26 @@ struct InsetShader<'a> {
 struct FaceVertices<'a> {
     corners: [&'a DrawVertex; 3],
     weights: Barycentric,
+}
+
+/// The finest ground map at a pixel.
+#[derive(Debug)]
+struct MappedGround<'a> {
+    ground: &'a GroundShader<'a>,
+    /// The pixel in the map's world space.
+    hit: FacePoint,
+    point: GroundPoint,
+}
+
+/// A pixel of a face that is colored and lit by the ground map alone, in a row of others.
+#[derive(Debug)]
+pub struct MappedPixel<'a> {
+    /// Its column in the picture.
+    pub column: u32,
+    face: &'a ScreenFace,
+    at: [f32; 2],
+    hit: FacePoint,
+    mapped: MappedGround<'a>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -87,7 +107,40 @@ impl<'a> Shader<'a> {
         self.list.lighting.backdrop_color(self.screen.ray_at(at), down)
     }
 
+    /// Whether the ground has a cover.
+    pub fn has_cover(&self) -> bool {
+        let mut grounds = self.insets.iter().map(|inset| &inset.ground).chain(&self.ground);
+        grounds.any(GroundShader::has_cover)
+    }
+
+    /// The pixel at `at` in a column, of a face that [is mapped](Self::is_mapped); `None` where there is no map.
+    pub fn mapped<'b>(&'b self, face: &'b ScreenFace, at: [f32; 2], column: u32) -> Option<MappedPixel<'b>> {
+        let hit = FacePoint::new(face, self.screen, at);
+        let (ground, map_hit) = self.finest_ground(&hit)?;
+        let point = ground.read(&map_hit, self.most_taps);
+        Some(MappedPixel { column, face, at, hit, mapped: MappedGround { ground, hit: map_hit, point } })
+    }
+
+    /// Covers the ground of pixels that are to be [shaded](Self::shade_mapped): those of one map together.
+    pub fn cover_mapped(pixels: &mut [MappedPixel<'_>]) {
+        for pixels in pixels.chunk_by_mut(|a, b| std::ptr::eq(a.mapped.ground, b.mapped.ground)) {
+            let ground = pixels[0].mapped.ground;
+            ground.cover_each(
+                pixels.iter_mut().map(|MappedPixel { mapped, .. }| (&mut mapped.point, &mapped.hit)),
+            );
+        }
+    }
+
+    /// [`Self::shade`] of a pixel whose ground is known; it is opaque.
+    pub fn shade_mapped(&self, pixel: &MappedPixel<'_>) -> Vec3 {
+        self.shade_known(pixel.face, pixel.at, Some(pixel)).color
+    }
+
     pub fn shade(&self, face: &ScreenFace, at: [f32; 2]) -> Shaded {
+        self.shade_known(face, at, None)
+    }
+
+    fn shade_known(&self, face: &ScreenFace, at: [f32; 2], known: Option<&MappedPixel<'_>>) -> Shaded {
         let item = self.item(face);
         let material = self.material(item);
         let vertices = LazyCell::new(|| FaceVertices {
@@ -101,29 +154,31 @@ impl<'a> Shader<'a> {
             // Nothing shows of it: most of a tint of the ground that has none there.
             return Shaded { color: Vec3::ZERO, alpha: 0.0 };
         }
-        let hit = *hit;
-        let outer = self.ground.as_ref().filter(|_| material.reads_ground_map());
-        let (finest, map_hit) = outer.map_or((None, hit), |outer| self.finest_ground(outer, hit));
-        let ground = finest.map(|ground| (ground, ground.at(&map_hit, self.most_taps)));
-        let (mut albedo, alpha) = match (material.albedo, &ground) {
-            (Albedo::GroundMap, Some((ground, point))) => (ground.albedo(point, &map_hit), 1.0),
+        let hit = known.map_or_else(|| *hit, |pixel| pixel.hit);
+        let read =
+            LazyCell::new(|| if material.reads_ground_map() { self.mapped_ground(&hit) } else { None });
+        let ground = known.map_or_else(|| read.as_ref(), |pixel| Some(&pixel.mapped));
+        let (mut albedo, alpha) = match (material.albedo, ground) {
+            (Albedo::GroundMap, Some(MappedGround { ground, hit, point })) => {
+                (ground.albedo(point, hit), 1.0)
+            }
             (Albedo::Hatching, _) => {
                 let Material { base_color, .. } = material;
                 (base_color.linear(), base_color.alpha() * hatching_cover(at))
             }
             _ => surface.unwrap_or_else(|| self.surface_color(material, &vertices, &hit)),
         };
-        if let (true, Some((ground, point))) = (material.is_natural, &ground) {
-            albedo *= ground.grain(point, &map_hit);
+        if let (true, Some(MappedGround { ground, hit, point })) = (material.is_natural, ground) {
+            albedo *= ground.grain(point, hit);
         }
         let lighting = &self.list.lighting;
-        let mut color = match (material.normals, &ground) {
-            (NormalSource::Ground, Some((ground, point))) => {
+        let mut color = match (material.normals, ground) {
+            (NormalSource::Ground, Some(MappedGround { ground, point, .. })) => {
                 let unlit =
                     if material.albedo == Albedo::GroundMap { ground.unlit_share(point) } else { 0.0 };
                 if unlit < 1.0 {
                     let received = self.received(&hit, ShadowReceiver::Ground, true);
-                    let form = outer.unwrap_or(ground).form(hit.world.truncate());
+                    let form = self.ground.as_ref().unwrap_or(ground).form(hit.world.truncate());
                     ground.lit(albedo, point, &form, received).lerp(albedo, unlit)
                 } else {
                     albedo
@@ -141,9 +196,9 @@ impl<'a> Shader<'a> {
                 lighting.shade_received(albedo, normal, received)
             }
         };
-        let water = match (material.albedo, &ground) {
-            (Albedo::GroundMap, Some((ground, point))) => {
-                ground.water_cover(point, &map_hit) * (1.0 - point.draped.share)
+        let water = match (material.albedo, ground) {
+            (Albedo::GroundMap, Some(MappedGround { ground, hit, point })) => {
+                ground.water_cover(point, hit) * (1.0 - point.draped.share)
             }
             _ => f32::from(u8::from(material.is_water)),
         };
@@ -171,19 +226,20 @@ impl<'a> Shader<'a> {
     }
 
     /// The finest map at a place, and the place in its world space.
-    fn finest_ground<'b>(
-        &'b self,
-        outer: &'b GroundShader<'a>,
-        hit: FacePoint,
-    ) -> (Option<&'b GroundShader<'a>>, FacePoint) {
+    fn finest_ground(&self, hit: &FacePoint) -> Option<(&GroundShader<'a>, FacePoint)> {
         let at = hit.world.truncate();
         match self.insets.iter().find(|inset| inset.holds(at)) {
             Some(inset) => {
                 let world = hit.world - inset.origin.extend(0.0);
-                (Some(&inset.ground), FacePoint { world, ..hit })
+                Some((&inset.ground, FacePoint { world, ..*hit }))
             }
-            None => (Some(outer), hit),
+            None => Some((self.ground.as_ref()?, *hit)),
         }
+    }
+
+    fn mapped_ground(&self, hit: &FacePoint) -> Option<MappedGround<'_>> {
+        let (ground, hit) = self.finest_ground(hit)?;
+        Some(MappedGround { ground, hit, point: ground.at(&hit, self.most_taps) })
     }
 
     /// The light of the ground that a ray meets which water at a point mirrors, as it reaches the water through the haze;

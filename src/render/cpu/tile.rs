@@ -1,5 +1,7 @@
 //! Draws the pieces of one tile to finished pixels.
 
+use std::ops::Range;
+
 use glam::Vec3;
 
 use crate::cpu::blend::Blend;
@@ -7,7 +9,7 @@ use crate::cpu::geometry::{FaceId, FacePiece, ScreenFace, ScreenGeometry};
 use crate::cpu::pattern::{SampleMask, SamplePattern};
 use crate::cpu::raster::PixelWindow;
 use crate::cpu::screen::Screen;
-use crate::cpu::shade::Shader;
+use crate::cpu::shade::{MappedPixel, Shader};
 use crate::cpu::visibility::{Visibility, samples_of};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DepthLayer, FeatureId};
@@ -68,10 +70,40 @@ pub fn draw_tile<const N: usize>(
     for piece in transparent {
         scratch.blend.draw(frame, piece, &scratch.visibility);
     }
-    let rows = window.from[1]..window.to[1];
-    rows.flat_map(|y| (window.from[0]..window.to[0]).map(move |x| (x, y)))
-        .map(|at| resolve(frame, scratch, at))
-        .collect()
+    let columns = window.from[0]..window.to[0];
+    let mut pixels = Vec::with_capacity(columns.len() * (window.to[1] - window.from[1]) as usize);
+    for y in window.from[1]..window.to[1] {
+        let mapped = mapped_pixels(frame, &scratch.visibility, columns.clone(), y);
+        let mut mapped = mapped.iter().peekable();
+        pixels.extend(columns.clone().map(|x| {
+            let mapped = mapped.next_if(|pixel| pixel.column == x);
+            resolve(frame, scratch, (x, y), mapped)
+        }));
+    }
+    pixels
+}
+
+/// The pixels of a row that show nothing but ground colored and lit by the map, on one slope: most of a picture's. What covers it
+/// is computed for all of them together.
+fn mapped_pixels<'a, const N: usize>(
+    frame: &'a TileContext<N>,
+    visibility: &Visibility<N>,
+    columns: Range<u32>,
+    y: u32,
+) -> Vec<MappedPixel<'a>> {
+    let mapped = |x: u32| {
+        let face = match visibility.faces(x, y)[0] {
+            FaceId::NONE => return None,
+            id => frame.geometry.face(id),
+        };
+        let is_whole = || samples_alike(frame, visibility, (x, y), 0) == SamplePattern::<N>::FULL;
+        let at = || frame.pattern.centroid_in(x, y, SamplePattern::<N>::FULL);
+        if frame.shader.is_mapped(face) && is_whole() { frame.shader.mapped(face, at(), x) } else { None }
+    };
+    let is_covered = frame.is_colored && frame.shader.has_cover();
+    let mut pixels: Vec<_> = if is_covered { columns.filter_map(mapped).collect() } else { Vec::new() };
+    Shader::cover_mapped(&mut pixels);
+    pixels
 }
 
 /// Draws solids, the nearest first: hidden ones are skipped, and masks are read only where nothing is in front. The
@@ -103,11 +135,12 @@ fn draw_piece<const N: usize>(
     }
 }
 
-/// One pixel: each face it shows is shaded once and averaged over the samples.
+/// One pixel: each face it shows is shaded once and averaged over the samples; `mapped` is what is known of it.
 fn resolve<const N: usize>(
     frame: &TileContext<N>,
     scratch: &TileScratch<N>,
     (x, y): (u32, u32),
+    mapped: Option<&MappedPixel<'_>>,
 ) -> ResolvedPixel {
     let faces = scratch.visibility.faces(x, y);
     let center = [x as f32 + 0.5, y as f32 + 0.5];
@@ -115,8 +148,8 @@ fn resolve<const N: usize>(
         FaceId::NONE => frame.shader.backdrop(center),
         id => frame.shader.shade(frame.geometry.face(id), frame.pattern.centroid_in(x, y, mask)).color,
     };
-    let mut colors = [Vec3::ZERO; N];
-    let mut left = if frame.is_colored { SamplePattern::<N>::FULL } else { 0 };
+    let mut colors = mapped.map_or([Vec3::ZERO; N], |pixel| [frame.shader.shade_mapped(pixel); N]);
+    let mut left = if frame.is_colored && mapped.is_none() { SamplePattern::<N>::FULL } else { 0 };
     while left != 0 {
         let first = left.trailing_zeros() as usize;
         let mask = left & samples_alike(frame, &scratch.visibility, (x, y), first);

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::lattice::Lattice;
 use crate::returned_memory::returned_zeros;
-use crate::vectorized::vectorized;
+use sandtable_base::vectorized::vectorized;
 
 /// Values at every `every`-th post of a lattice, row by row from the south-west. The last row and the last column may
 /// lie beyond the lattice's border.

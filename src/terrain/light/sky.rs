@@ -19,7 +19,7 @@ use rayon::prelude::*;
 
 use crate::light::field::{CoarseField, Mean};
 use crate::returned_memory::returned_zeros;
-use crate::vectorized::vectorized;
+use sandtable_base::vectorized::vectorized;
 
 /// The most cells along a side of the finest lattice.
 const MOST_NEAR_CELLS: usize = 2048;

@@ -17,7 +17,7 @@
 use glam::{Vec2, Vec2Swizzles, Vec3, Vec3Swizzles};
 
 use crate::light::field::{CoarseField, Reduction};
-use crate::vectorized::vectorized;
+use sandtable_base::vectorized::vectorized;
 
 /// Half the sun's breadth, radians: 0.75°. The true sun's is 0.27°, whose penumbra a picture of the whole ground shows as
 /// a hard edge with the stairs of the lattice.

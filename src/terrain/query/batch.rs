@@ -29,7 +29,7 @@ use crate::lattice::Lattice;
 use crate::query::source::raster_height;
 use crate::query::tiles::{HeightTiles, TileSlot};
 use crate::query::{Interpolation, ground_height};
-use crate::vectorized::vectorized;
+use sandtable_base::vectorized::vectorized;
 use sandtable_raster::answer::{Answer, Status};
 use sandtable_raster::raster::{Raster, Samples};
 use sandtable_raster::sample::ON_CENTER;

@@ -253,7 +253,17 @@ vec2 noise_values(uvec2 at) {
 }
 
 ${AREA_SHADER}
-Noise cover_noise(vec2 at, float mean_pixel_m, float longest_m) {
+vec2 gully_wave(float turns) {
+  float past = turns - floor(turns + 0.5);
+  float part = 2.0 * abs(past);
+  float rise = 24.0 * part * (1.0 - part);
+  return vec2(1.0 - 2.0 * part * part * (3.0 - 2.0 * part), past < 0.0 ? rise : -rise);
+}
+
+Noise cover_noise(vec2 at, float mean_pixel_m, float longest_m, vec2 ground_rise) {
+  float ground_steep = length(ground_rise);
+  vec2 contour = vec2(-ground_rise.y, ground_rise.x) / max(ground_steep, 1e-6);
+  float gullies = NOISE_MOST_GULLIES * smoothstep(NOISE_GULLY_RISE.x, NOISE_GULLY_RISE.y, ground_steep);
   Noise sum = Noise(0.0, 0.0, 0.0, vec2(0.0), 0.0, at, longest_m);
   float wave_m = NOISE_FIRST_M;
   vec2 turn = vec2(1.0, 0.0);
@@ -281,9 +291,25 @@ Noise cover_noise(vec2 at, float mean_pixel_m, float longest_m) {
       sum.uneven += share * value.x;
       if (octave < NOISE_FIRST_FINE) sum.patches += share * value.y; else sum.fine += share * value.y;
       float within = clamp((widest - wave_m) / (0.75 * widest), 0.0, 1.0);
-      float away = sqrt(value.x * value.x + NOISE_CREST * NOISE_CREST);
-      float crest = -value.x / away;
-      vec2 back = vec2(turn.x * rise.x + turn.y * rise.y, turn.x * rise.y - turn.y * rise.x);
+      vec2 level = vec2(turn.x * contour.x - turn.y * contour.y, turn.y * contour.x + turn.x * contour.y);
+      float along = NOISE_GULLIES * dot(part, level);
+      vec2 waves_sw = gully_wave(along + 0.5 * (sw.x + 1.0));
+      vec2 waves_se = gully_wave(along - NOISE_GULLIES * level.x + 0.5 * (se.x + 1.0));
+      vec2 waves_nw = gully_wave(along - NOISE_GULLIES * level.y + 0.5 * (nw.x + 1.0));
+      vec2 waves_ne = gully_wave(along - NOISE_GULLIES * (level.x + level.y) + 0.5 * (ne.x + 1.0));
+      vec2 waves_south = mix(waves_sw, waves_se, smoothed.x);
+      vec2 waves_north = mix(waves_nw, waves_ne, smoothed.x);
+      vec2 waves = mix(waves_south, waves_north, smoothed.y);
+      vec2 blend = vec2(mix(waves_se.x - waves_sw.x, waves_ne.x - waves_nw.x, smoothed.y), waves_north.x - waves_south.x);
+      vec2 gully_rise = NOISE_GULLY_HEIGHT * (blend * steep + NOISE_GULLIES * waves.y * level);
+      float ridged = mix(value.x, NOISE_GULLY_HEIGHT * waves.x, gullies);
+      vec2 ridged_rise = mix(rise, gully_rise, gullies);
+      float away = sqrt(ridged * ridged + NOISE_CREST * NOISE_CREST);
+      float crest = -ridged / away;
+      vec2 back = vec2(
+        turn.x * ridged_rise.x + turn.y * ridged_rise.y,
+        turn.x * ridged_rise.y - turn.y * ridged_rise.x
+      );
       sum.form += back * (share * within * crest);
       sum.ridge += share * within * 2.0 * (NOISE_MEAN_AWAY - away);
     }
@@ -451,7 +477,7 @@ void main() {
   Noise here = Noise(0.0, 0.0, 0.0, vec2(0.0), 0.0, vec2(0.0), 0.0);
   vec4 shaded = post;
   if (cover.z > 0.0) {
-    here = cover_noise(world.xy, sqrt(length(right_m) * length(down_m)), pixel_m);
+    here = cover_noise(world.xy, sqrt(length(right_m) * length(down_m)), pixel_m, post.xy * cover.z);
     shaded.xy += small_form(post, here);
   }
   if (is_map > 0.5) {

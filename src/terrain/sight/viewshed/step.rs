@@ -12,7 +12,7 @@
 use std::ops::Range;
 
 use crate::sight::viewshed::ring::PostRing;
-use crate::vectorized::vectorized;
+use sandtable_base::vectorized::vectorized;
 
 /// How the posts, edges and cells of a ring stand to the ring before; of blocks that may rise alone.
 ///
