@@ -163,6 +163,7 @@ impl Furniture {
         let (title, subtitle) = (annotations.title.as_deref(), annotations.subtitle.as_deref());
         let has_title = title.is_some() || subtitle.is_some();
         let (bar, arrow, legend) = (&annotations.scale_bar, &annotations.north, &annotations.legend);
+        let highest_px = composer.sheet.size.y * LARGEST_SHARE.y;
         let note = annotations.grid.as_ref().and_then(|grid| grid.note.as_deref());
         for (kind, piece) in [
             (FurnitureKind::Title, has_title.then(|| title::compose(title, subtitle, composer))),
@@ -171,7 +172,10 @@ impl Furniture {
                 FurnitureKind::NorthArrow,
                 arrow.as_ref().map(|arrow| north::compose(arrow, CaptionPlace::Below, composer)),
             ),
-            (FurnitureKind::Legend, legend.as_ref().map(|legend| legend::compose(legend, composer))),
+            (
+                FurnitureKind::Legend,
+                legend.as_ref().map(|legend| legend::compose(legend, highest_px, composer)),
+            ),
         ] {
             piece.into_iter().for_each(|drawing| furniture.place(kind, drawing, annotations.cover.as_ref()));
         }
@@ -196,15 +200,19 @@ impl Furniture {
         self.drawings.iter().map(|(_, drawing)| drawing)
     }
 
-    /// Moves a piece into its corner, or into the upper one on its side where its own is not free and the upper one covers
-    /// less than half as much of the scene, and keeps it where it fits.
+    /// Moves a piece into its corner, or to the first free place of [`Self::elsewhere`] where its own is not free; where none
+    /// is, to that which covers least of the scene, if it covers less than half as much as its own corner. Keeps it where it
+    /// fits.
     fn place(&mut self, kind: FurnitureKind, drawing: Option<Drawing>, cover: Option<&SceneCover>) {
-        let covered = |drawing: &Drawing| cover.map_or(0.0, |cover| cover.share(&drawing.bounds()));
+        let covered =
+            |drawing: &Drawing| cover.map_or(0.0, |cover| cover.weighted_share(&drawing.bounds())).max(FREE);
         let moved = drawing.map(|drawing| {
             let own = self.in_corner(kind, drawing);
             let share = covered(&own);
-            let upper = if share <= FREE { None } else { self.below_upper(kind, &own) };
-            upper.filter(|upper| covered(upper) <= FREE.max(share / 2.0)).unwrap_or(own)
+            let other = if share <= FREE { Vec::new() } else { self.elsewhere(kind, &own) };
+            let fitting = other.into_iter().filter(|other| self.fits(kind, other));
+            let least = fitting.min_by(|a, b| covered(a).total_cmp(&covered(b)));
+            least.filter(|other| covered(other) <= FREE.max(share / 2.0)).unwrap_or(own)
         });
         self.keep(kind, moved);
     }
@@ -228,7 +236,7 @@ impl Furniture {
             });
             let share = |at: &Vec2| {
                 let area = PixelBox::at(inner.min + *at, bounds.size());
-                cover.map_or(0.0, |cover| cover.share(&area))
+                cover.map_or(0.0, |cover| cover.weighted_share(&area))
             };
             let at = free.min_by(|a, b| share(a).total_cmp(&share(b)))?;
             Some(drawing.moved((inner.min + at - bounds.min).round()))
@@ -236,19 +244,23 @@ impl Furniture {
         self.keep(kind, best);
     }
 
-    /// A piece of a lower corner moved up, below what stands in the upper corner on its side; `None` for other pieces.
-    fn below_upper(&self, kind: FurnitureKind, own: &Drawing) -> Option<Drawing> {
+    /// A piece of a lower corner moved up, below what stands in the upper corner on its side, and a scale bar also beside
+    /// that; nothing for other pieces.
+    fn elsewhere(&self, kind: FurnitureKind, own: &Drawing) -> Vec<Drawing> {
         let above = match kind {
             FurnitureKind::ScaleBar => FurnitureKind::Title,
             FurnitureKind::Legend => FurnitureKind::NorthArrow,
-            _ => return None,
+            _ => return Vec::new(),
         };
-        let above = self.drawings.iter().find(|(other, _)| *other == above);
-        let top = match above {
-            Some((_, above)) => above.bounds().max.y + self.sheet.px(GAP),
-            None => self.sheet.inner().min.y,
-        };
-        Some(own.clone().moved(Vec2::new(0.0, top - own.bounds().min.y).round()))
+        let above = self.drawings.iter().find(|(other, _)| *other == above).map(|(_, above)| above.bounds());
+        let (gap, inner, from) = (self.sheet.px(GAP), self.sheet.inner(), own.bounds().min);
+        let top = above.map_or(inner.min.y, |above| above.max.y + gap);
+        let below = own.clone().moved(Vec2::new(0.0, top - from.y).round());
+        let beside = above.filter(|_| kind == FurnitureKind::ScaleBar).map(|above| {
+            let corner = Vec2::new(above.max.x + gap, inner.min.y);
+            own.clone().moved((corner - from).round())
+        });
+        std::iter::once(below).chain(beside).collect()
     }
 
     /// A piece moved into its corner.
@@ -273,19 +285,21 @@ impl Furniture {
 
     /// Keeps a piece where it is, if it fits there.
     fn keep(&mut self, kind: FurnitureKind, drawing: Option<Drawing>) {
-        let fits = |drawing: &Drawing| {
-            let bounds = drawing.bounds();
-            let is_small =
-                kind == FurnitureKind::Credit || bounds.size().cmple(self.sheet.size * LARGEST_SHARE).all();
-            let spaced = bounds.grown(self.sheet.px(6.0));
-            is_small
-                && self.sheet.bounds().holds(&bounds)
-                && !self.pieces().any(|other| other.bounds().overlaps(&spaced))
-        };
-        match drawing.filter(fits) {
+        match drawing.filter(|drawing| self.fits(kind, drawing)) {
             Some(drawing) => self.drawings.push((kind, drawing)),
             None => self.left_out.push(kind),
         }
+    }
+
+    /// Whether a piece is small enough for the picture, and where it is lies within it and clear of all others.
+    fn fits(&self, kind: FurnitureKind, drawing: &Drawing) -> bool {
+        let bounds = drawing.bounds();
+        let is_small =
+            kind == FurnitureKind::Credit || bounds.size().cmple(self.sheet.size * LARGEST_SHARE).all();
+        let spaced = bounds.grown(self.sheet.px(6.0));
+        is_small
+            && self.sheet.bounds().holds(&bounds)
+            && !self.pieces().any(|other| other.bounds().overlaps(&spaced))
     }
 
     /// The part inside the margins that no panel at the lower border takes.
