@@ -55,8 +55,13 @@ pub(crate) const FARMED_PATCHES: f32 = 0.8;
 /// The greatest share of a cover over the tint.
 pub(crate) const MOST: f32 = 0.85;
 /// The share of a cover's own hue: the rest is the tint's, which tells heights through all covers, as in the cross-blended
-/// hypsometric tints of Patterson and Jenny (2011).
-pub(crate) const HUE: f32 = 0.58;
+/// hypsometric tints of Patterson and Jenny (2011). In a moist climate, whose tints are green and tan
+/// themselves, what grows has the second share from the tree line on: mountain woods and meadows are thinner.
+pub(crate) const HUE: [f32; 2] = [0.58, 0.24];
+/// The part of that change which meadows take: above the trees nothing else is green.
+pub(crate) const MEADOW_CLIMB: f32 = 0.5;
+/// From and to which moisture of the climate it changes with height: tints of a desert are all tan, and woods alone are green.
+pub(crate) const HUE_MOISTURE: [f32; 2] = [0.32, 0.60];
 /// By how much the light of a cover's patches, of crowns, of strata in rock differs from the mean at the most.
 pub(crate) const PATCHES: f32 = 0.17;
 pub(crate) const CROWNS: f32 = 0.50;
@@ -148,6 +153,9 @@ impl GroundCover {
         let rock = step(rise, ROCK_RISE.map(|rise| rise * bare));
         let snow = step(height, [self.snow_m - half, self.snow_m + half]) * (1.0 - rock);
         let own = luminance(tint);
+        let [hue, high] = HUE;
+        let climb = (height / self.tree_m.max(1.0)).clamp(0.0, 1.0) * step(self.moisture, HUE_MOISTURE);
+        let grown = hue.lerp(high, climb);
         let farmed = step(moist, FARMED_MOISTURE)
             * (1.0 - step(rise, FARMED_RISE))
             * (1.0 - wild)
@@ -157,16 +165,16 @@ impl GroundCover {
         let mut lay = |cover: &CoverColor, hue_share: f32, share: f32| {
             color = color.lerp(tint.lerp(cover.hue * own, hue_share) * cover.light, MOST * share);
         };
-        lay(&of_meadow, HUE, meadow);
+        lay(&of_meadow, hue.lerp(grown, MEADOW_CLIMB), meadow);
         if farmed > 0.0 {
             let plot = field_tone(noise.at, noise.longest_m.max(LEAST_PIXEL_M));
             let tone = (plot + FARMED_PATCHES * patch).clamp(-1.0, 1.0);
             let other = if tone < 0.0 { of_meadow } else { of_soil };
-            lay(&of_crops.lerp(&other, tone.abs()), HUE, farmed);
+            lay(&of_crops.lerp(&other, tone.abs()), hue, farmed);
         }
-        lay(&of_woods, HUE, woods);
-        lay(&of_scree, HUE, scree);
-        lay(&of_rock, HUE, rock);
+        lay(&of_woods, grown, woods);
+        lay(&of_scree, hue, scree);
+        lay(&of_rock, hue, rock);
         // Snow hides the ground that heights color.
         lay(&of_snow, 1.0, snow);
         let open = (1.0 - snow).max(0.0);
@@ -265,6 +273,20 @@ mod tests {
         assert!(lightness(seen(1000.0, 1.5)) < lightness(TINT) - 3.0, "rock is dark");
         assert_eq!(seen(3500.0, 1.5), seen(4500.0, 1.5), "and holds no snow");
         assert!(seen(2900.0, -0.4).z > seen(2900.0, 0.4).z, "shady slopes keep snow longer");
+    }
+
+    #[test]
+    fn heights_show_through_woods_of_moist_climates() {
+        let desert = GroundCover { moisture: 0.3, ..alps() };
+        let green = |cover: &GroundCover, height: f32| {
+            let shown = cover.over(TINT, &post(height, -0.3), 1e3, &CoverNoise::default());
+            shown.y / shown.x
+        };
+        assert!(green(&alps(), 100.0) > green(&alps(), 1700.0) + 0.08);
+        assert!(
+            green(&desert, 1700.0) > green(&alps(), 1700.0) + 0.05,
+            "woods of dry climates keep their green"
+        );
     }
 
     #[test]
