@@ -59,8 +59,8 @@ pub struct Annotations {
     pub credit: Option<String>,
     /// The content of the margin around the picture; furniture is then in the margin, and not on the picture.
     pub margin: Option<MarginNotes>,
-    /// What the picture shows where; the scale bar and the legend move from a lower corner to a place at the top if they would
-    /// cover the ground or the walls of the block in the lower corner, and less than half as much there.
+    /// The part of the picture that shows the scene; scale bar and legend move from a lower corner to the top if they would cover
+    /// the scene in the lower corner and less of it there.
     pub cover: Option<SceneCover>,
 }
 

@@ -150,6 +150,9 @@ const GAP: f32 = 14.0;
 /// panel is seen, however small.
 const FREE: f32 = 0.01;
 
+/// The share that a scale bar beside the title may cover: more would hide the skyline, which tells more than the foreground.
+const NEARLY_FREE: f32 = 0.1;
+
 struct Furniture {
     sheet: Sheet,
     drawings: Vec<(FurnitureKind, Drawing)>,
@@ -200,19 +203,17 @@ impl Furniture {
         self.drawings.iter().map(|(_, drawing)| drawing)
     }
 
-    /// Moves a piece into its corner, or to the first free place of [`Self::elsewhere`] where its own is not free; where none
-    /// is, to that which covers least of the scene, if it covers less than half as much as its own corner. Keeps it where it
-    /// fits.
+    /// Moves a piece into its corner or, where that is not free, to the first place of [`Self::elsewhere`] that fits and covers
+    /// less of the scene than it may, and keeps it where it fits.
     fn place(&mut self, kind: FurnitureKind, drawing: Option<Drawing>, cover: Option<&SceneCover>) {
-        let covered =
-            |drawing: &Drawing| cover.map_or(0.0, |cover| cover.weighted_share(&drawing.bounds())).max(FREE);
+        let covered = |drawing: &Drawing| cover.map_or(0.0, |cover| cover.share(&drawing.bounds()));
         let moved = drawing.map(|drawing| {
             let own = self.in_corner(kind, drawing);
             let share = covered(&own);
-            let other = if share <= FREE { Vec::new() } else { self.elsewhere(kind, &own) };
-            let fitting = other.into_iter().filter(|other| self.fits(kind, other));
-            let least = fitting.min_by(|a, b| covered(a).total_cmp(&covered(b)));
-            least.filter(|other| covered(other) <= FREE.max(share / 2.0)).unwrap_or(own)
+            let other = if share <= FREE { Vec::new() } else { self.elsewhere(kind, &own, share) };
+            let better =
+                other.into_iter().find(|(most, other)| covered(other) <= *most && self.fits(kind, other));
+            better.map_or(own, |(_, other)| other)
         });
         self.keep(kind, moved);
     }
@@ -236,7 +237,7 @@ impl Furniture {
             });
             let share = |at: &Vec2| {
                 let area = PixelBox::at(inner.min + *at, bounds.size());
-                cover.map_or(0.0, |cover| cover.weighted_share(&area))
+                cover.map_or(0.0, |cover| cover.share(&area))
             };
             let at = free.min_by(|a, b| share(a).total_cmp(&share(b)))?;
             Some(drawing.moved((inner.min + at - bounds.min).round()))
@@ -244,9 +245,10 @@ impl Furniture {
         self.keep(kind, best);
     }
 
-    /// A piece of a lower corner moved up, below what stands in the upper corner on its side, and a scale bar also beside
-    /// that; nothing for other pieces.
-    fn elsewhere(&self, kind: FurnitureKind, own: &Drawing) -> Vec<Drawing> {
+    /// Other places for a piece of a lower corner that covers `share` of its area of the scene there, each with the share that
+    /// it covers at most. Below what is in the upper corner on its side it covers nothing; else a scale bar is beside that, where
+    /// it may cover [`NEARLY_FREE`]; else the piece is in the first of these and covers half as much as in its own.
+    fn elsewhere(&self, kind: FurnitureKind, own: &Drawing, share: f32) -> Vec<(f32, Drawing)> {
         let above = match kind {
             FurnitureKind::ScaleBar => FurnitureKind::Title,
             FurnitureKind::Legend => FurnitureKind::NorthArrow,
@@ -258,9 +260,10 @@ impl Furniture {
         let below = own.clone().moved(Vec2::new(0.0, top - from.y).round());
         let beside = above.filter(|_| kind == FurnitureKind::ScaleBar).map(|above| {
             let corner = Vec2::new(above.max.x + gap, inner.min.y);
-            own.clone().moved((corner - from).round())
+            (NEARLY_FREE.min(share / 2.0), own.clone().moved((corner - from).round()))
         });
-        std::iter::once(below).chain(beside).collect()
+        let free = (FREE, below.clone());
+        std::iter::once(free).chain(beside).chain([(FREE.max(share / 2.0), below)]).collect()
     }
 
     /// A piece moved into its corner.

@@ -174,15 +174,12 @@ impl<'a> PreparedSkylineName<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cover::ShownPart;
     use sandtable_draw::color::Srgba;
 
     fn drawn(names: &[SkylineName], ground_below: u32) -> AnnotationReport {
         let (mut composer, mut report) = (Composer::new(1600, 400), AnnotationReport::default());
         let ground = Pixels::filled(1600, 400, Srgba::opaque(170, 200, 230));
-        let cover = SceneCover::new(1600, 400, |_, y| {
-            if y >= ground_below { ShownPart::Ground } else { ShownPart::Background }
-        });
+        let cover = SceneCover::new(1600, 400, |_, y| y >= ground_below);
         draw(names, (&ground, Some(&cover)), &mut Vec::new(), &mut composer, &mut report);
         report
     }

@@ -56,10 +56,12 @@ pub(crate) const FARMED_PATCHES: f32 = 0.8;
 pub(crate) const MOST: f32 = 0.85;
 /// The share of a cover's own hue: the rest is the tint's, which tells heights through all covers, as in the cross-blended
 /// hypsometric tints of Patterson and Jenny (2011). In a moist climate, whose tints are green and tan
-/// themselves, what grows has the second share from the tree line on: mountain woods and meadows are thinner.
+/// themselves, what grows has the second share at the tree line: mountain woods and meadows are thinner.
 pub(crate) const HUE: [f32; 2] = [0.58, 0.24];
 /// The part of that change which meadows take: above the trees nothing else is green.
 pub(crate) const MEADOW_CLIMB: f32 = 0.5;
+/// From and to which share of the tree line's elevation it changes: woods of hills are whole.
+pub(crate) const HUE_CLIMB: [f32; 2] = [0.72, 1.0];
 /// From and to which moisture of the climate it changes with height: tints of a desert are all tan, and woods alone are green.
 pub(crate) const HUE_MOISTURE: [f32; 2] = [0.32, 0.60];
 /// By how much the light of a cover's patches, of crowns, of strata in rock differs from the mean at the most.
@@ -154,7 +156,8 @@ impl GroundCover {
         let snow = step(height, [self.snow_m - half, self.snow_m + half]) * (1.0 - rock);
         let own = luminance(tint);
         let [hue, high] = HUE;
-        let climb = (height / self.tree_m.max(1.0)).clamp(0.0, 1.0) * step(self.moisture, HUE_MOISTURE);
+        let climb =
+            step(height, HUE_CLIMB.map(|share| share * self.tree_m)) * step(self.moisture, HUE_MOISTURE);
         let grown = hue.lerp(high, climb);
         let farmed = step(moist, FARMED_MOISTURE)
             * (1.0 - step(rise, FARMED_RISE))
@@ -282,9 +285,9 @@ mod tests {
             let shown = cover.over(TINT, &post(height, -0.3), 1e3, &CoverNoise::default());
             shown.y / shown.x
         };
-        assert!(green(&alps(), 100.0) > green(&alps(), 1700.0) + 0.08);
+        assert!(green(&alps(), 100.0) > green(&alps(), 1850.0) + 0.08);
         assert!(
-            green(&desert, 1700.0) > green(&alps(), 1700.0) + 0.05,
+            green(&desert, 1850.0) > green(&alps(), 1850.0) + 0.05,
             "woods of dry climates keep their green"
         );
     }

@@ -178,7 +178,7 @@ impl ReliefShading {
     /// By how much this light deepens colors: 0 leaves them as they are, which the cool light makes gray.
     pub const FILL_CHROMA: f32 = 0.35;
     /// The share of gray in the color of the brightest natural ground: without it lit woods are lime.
-    pub const GLARE: f32 = 0.3;
+    pub const GLARE: f32 = 0.25;
     /// Brightness where no sky is seen.
     pub const CLOSED: f32 = 0.5;
     /// The contrast of the lowest ground; that of the highest quarter is 1.

@@ -96,6 +96,7 @@ pub fn shader_constants() -> Vec<(&'static str, Vec<f32>)> {
         ("COVER_MOST", vec![ground_cover::MOST]),
         ("COVER_HUE", ground_cover::HUE.to_vec()),
         ("COVER_MEADOW_CLIMB", vec![ground_cover::MEADOW_CLIMB]),
+        ("COVER_HUE_CLIMB", ground_cover::HUE_CLIMB.to_vec()),
         ("COVER_HUE_MOISTURE", ground_cover::HUE_MOISTURE.to_vec()),
         ("COVER_PATCHES", vec![ground_cover::PATCHES]),
         ("COVER_CROWNS", vec![ground_cover::CROWNS]),

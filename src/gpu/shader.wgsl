@@ -576,7 +576,7 @@ fn with_cover(tint: vec3f, post: Post, change: f32, noise: Noise) -> vec3f {
     let snow = smoothstep(frame.cover.y - half, frame.cover.y + half, height) * (1.0 - rock);
     let own = dot(tint, vec3f(0.2126, 0.7152, 0.0722));
     let wet = smoothstep(COVER_HUE_MOISTURE.x, COVER_HUE_MOISTURE.y, frame.cover_more.x);
-    let climb = clamp(height / max(frame.cover.x, 1.0), 0.0, 1.0) * wet;
+    let climb = smoothstep(COVER_HUE_CLIMB.x * frame.cover.x, COVER_HUE_CLIMB.y * frame.cover.x, height) * wet;
     let grown = mix(COVER_HUE.x, COVER_HUE.y, climb);
     var color = covered_by(tint, tint, own, frame.cover_colors[1], mix(COVER_HUE.x, grown, COVER_MEADOW_CLIMB), meadow);
     let farmed = smoothstep(COVER_FARMED_MOISTURE.x, COVER_FARMED_MOISTURE.y, moist)

@@ -13,7 +13,7 @@ use crate::picture_middle::{ground_in_middle, north_arrow};
 use crate::rim::rim_marks;
 use crate::rock_hachures::rock_strokes;
 use sandtable_annotate::annotation::{Annotations, PictureLabel};
-use sandtable_annotate::cover::{SceneCover, ShownPart};
+use sandtable_annotate::cover::SceneCover;
 use sandtable_annotate::legend::Legend;
 use sandtable_annotate::scale_bar::ScaleBar;
 use sandtable_annotate::sheet_frame::SheetFrame;
@@ -105,14 +105,10 @@ pub(crate) fn is_bare(scene: &SceneModel) -> bool {
     scene.furniture.layout == SheetLayout::None
 }
 
-/// What the picture shows where.
+/// Where the picture shows the scene and not its background.
 pub(crate) fn cover(picture: &Rendering) -> SceneCover {
     let (width, height) = (picture.pixels.width(), picture.pixels.height());
-    SceneCover::new(width, height, |x, y| match picture.features[(y * width + x) as usize] {
-        FeatureId::NONE => ShownPart::Background,
-        FeatureId::PLINTH => ShownPart::Wall,
-        _ => ShownPart::Ground,
-    })
+    SceneCover::new(width, height, |x, y| picture.features[(y * width + x) as usize] != FeatureId::NONE)
 }
 
 fn project(label: &SceneLabel, camera: &Camera, picture: &Rendering) -> Option<PictureLabel> {

@@ -334,7 +334,7 @@ vec3 with_cover(vec3 tint, float height_m, float change, vec2 slope, float sky_s
   float snow = smoothstep(cover.y - COVER_MEADOW_M.z, cover.y + COVER_MEADOW_M.z, height) * (1.0 - rock);
   float own = dot(tint, vec3(0.2126, 0.7152, 0.0722));
   float wet = smoothstep(COVER_HUE_MOISTURE.x, COVER_HUE_MOISTURE.y, cover_more.x);
-  float climb = clamp(height / max(cover.x, 1.0), 0.0, 1.0) * wet;
+  float climb = smoothstep(COVER_HUE_CLIMB.x * cover.x, COVER_HUE_CLIMB.y * cover.x, height) * wet;
   float grown = mix(COVER_HUE.x, COVER_HUE.y, climb);
   vec3 color = covered_by(tint, tint, own, cover_colors[1], mix(COVER_HUE.x, grown, COVER_MEADOW_CLIMB), meadow);
   float farmed = smoothstep(COVER_FARMED_MOISTURE.x, COVER_FARMED_MOISTURE.y, moist)
