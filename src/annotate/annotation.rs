@@ -59,8 +59,8 @@ pub struct Annotations {
     pub credit: Option<String>,
     /// The content of the margin around the picture; furniture is then in the margin, and not on the picture.
     pub margin: Option<MarginNotes>,
-    /// The part of the picture that shows the scene; scale bar and legend move from a lower to an upper corner if they
-    /// would cover the scene in the lower corner and not in the upper one.
+    /// The part of the picture that shows the scene; scale bar and legend move from a lower corner to the top if they would cover
+    /// the scene in the lower corner and less of it there.
     pub cover: Option<SceneCover>,
 }
 

@@ -19,6 +19,16 @@ use sandtable_draw::hatching::{PITCH_PX, WIDTH_PX};
 const RAMP_HEIGHT: f32 = 190.0;
 /// The greatest height of the ramp as a share of the picture's: it shrinks before it is left out.
 const RAMP_SHARE: f32 = 0.24;
+/// The least height of the ramp, in sizes of its figures, two of which stand beside it: notes are left out before it is lower.
+const LEAST_RAMP_EM: f32 = 3.0;
+/// Size of the figures and of notes in design pixels.
+const FIGURE_SIZE: f32 = 15.0;
+const NOTE_SIZE: f32 = 14.0;
+/// From the ramp to the baseline of the first note, from note to note, and from the last to the foot of the swatch of places
+/// without data, in sizes of notes.
+const FIRST_NOTE_EM: f32 = CAP_HEIGHT + 0.85;
+const NEXT_NOTE_EM: f32 = 1.3;
+const VOIDS_EM: f32 = 1.9;
 /// The widest note, in ems: longer ones are cut.
 const WIDEST_NOTE_EM: f32 = 16.0;
 
@@ -47,16 +57,22 @@ pub struct Legend {
 
 /// The legend on its panel with the upper left corner at the origin; `None` where the range of heights is empty or not
 /// finite.
-pub(crate) fn compose(legend: &Legend, composer: &mut Composer) -> Option<Drawing> {
+///
+/// Where it would be higher than `most_px`, the ramp is lower, and then the last notes are left out.
+pub(crate) fn compose(legend: &Legend, most_px: f32, composer: &mut Composer) -> Option<Drawing> {
     if !(legend.low_m < legend.high_m && (legend.high_m - legend.low_m).is_finite()) {
         return None;
     }
     let sheet = composer.sheet;
     let padding = sheet.padding();
-    let height = sheet.px(RAMP_HEIGHT).min(sheet.size.y * RAMP_SHARE).round().max(8.0);
     let head = composer.line("Elevation (m)", composer.style(16.0, TextStyle::MEDIUM));
     let head_at = Vec2::new(padding, padding + head.style.cap_px().round());
     let top = head_at.y + (head.style.size_px * 0.72).round();
+    let mut notes = notes(legend, composer);
+    let beside_px = top
+        + padding
+        + if legend.has_voids { (sheet.type_px(NOTE_SIZE) * VOIDS_EM).ceil() + 1.0 } else { 0.0 };
+    let height = fit_height(&mut notes, most_px - beside_px, &sheet);
     let ramp = PixelBox::at(Vec2::new(padding, top), Vec2::new(sheet.whole_px(20.0), height));
     let mut drawing = Drawing::default();
     draw_ramp(&mut drawing, legend, ramp, &sheet);
@@ -64,15 +80,15 @@ pub(crate) fn compose(legend: &Legend, composer: &mut Composer) -> Option<Drawin
     let figures_right = draw_figures(&mut drawing, legend, &figures, ramp, &sheet);
     drawing.write(&head, head_at, INK);
     let (mut bottom, mut notes_width) = (ramp.max.y, head.advance);
-    for (number, (text, note)) in notes(legend, composer).into_iter().enumerate() {
-        let leading = if number == 0 { CAP_HEIGHT + 0.85 } else { 1.3 };
+    for (number, (text, note)) in notes.into_iter().enumerate() {
+        let leading = if number == 0 { FIRST_NOTE_EM } else { NEXT_NOTE_EM };
         bottom = (bottom + note.style.size_px * leading).round();
         notes_width = notes_width.max(note.advance);
         drawing.write(&note, Vec2::new(padding, bottom), SOFT_INK);
         drawing.record_text(&text, note.missing, note.shortened);
     }
     if legend.has_voids {
-        let style = composer.style(14.0, TextStyle::REGULAR);
+        let style = composer.style(NOTE_SIZE, TextStyle::REGULAR);
         let text = composer.line("No data", style);
         bottom = (bottom + style.size_px * 1.7).round();
         let swatch = PixelBox::at(
@@ -90,15 +106,34 @@ pub(crate) fn compose(legend: &Legend, composer: &mut Composer) -> Option<Drawin
     Some(drawing.on_panel(corner, &sheet))
 }
 
+/// The height of the ramp where `free_px` are free for it and for `notes` under it, the last of which are left out where it
+/// would be too low.
+fn fit_height(notes: &mut Vec<(String, TypesetLine)>, free_px: f32, sheet: &Sheet) -> f32 {
+    let full = sheet.px(RAMP_HEIGHT).min(sheet.size.y * RAMP_SHARE).round().max(8.0);
+    let least = (sheet.type_px(FIGURE_SIZE) * LEAST_RAMP_EM).round().min(full);
+    let note_px = sheet.type_px(NOTE_SIZE);
+    // Each baseline is rounded.
+    let over = |count: usize| match count {
+        0 => free_px,
+        _ => {
+            free_px
+                - ((count - 1) as f32 * (note_px * NEXT_NOTE_EM).ceil() + (note_px * FIRST_NOTE_EM).ceil())
+        }
+    };
+    let kept = (0..=notes.len()).rev().find(|&count| over(count) >= least).unwrap_or(0);
+    notes.truncate(kept);
+    full.min(over(kept).floor()).max(least)
+}
+
 fn figures(legend: &Legend, ramp_px: f32, composer: &mut Composer) -> Vec<(f64, TypesetLine)> {
-    let style = composer.style(15.0, TextStyle::REGULAR);
+    let style = composer.style(FIGURE_SIZE, TextStyle::REGULAR);
     let most = ((ramp_px / (style.size_px * 1.9)) as usize + 1).clamp(2, 7);
     composer.figures(&Ticks::new(legend.low_m.into(), legend.high_m.into(), most), style)
 }
 
 /// Notes below the ramp, each with its text as given.
 fn notes(legend: &Legend, composer: &mut Composer) -> Vec<(String, TypesetLine)> {
-    let style = composer.style(14.0, TextStyle::REGULAR);
+    let style = composer.style(NOTE_SIZE, TextStyle::REGULAR);
     let mut texts = Vec::new();
     if let Some(interval) = legend.contour_interval.filter(|interval| interval.is_finite() && *interval > 0.0)
     {
@@ -202,7 +237,7 @@ mod tests {
     }
 
     fn draw(legend: &Legend) -> Option<Drawing> {
-        compose(legend, &mut Composer::new(1920, 1080))
+        compose(legend, 560.0, &mut Composer::new(1920, 1080))
     }
 
     #[test]
@@ -235,6 +270,23 @@ mod tests {
         let hatched = draw(&Legend { has_voids: true, ..legend() }).expect("a range");
         assert!(hatched.bounds().max.y > plain.bounds().max.y + 10.0);
         assert!(hatched.marks.len() > plain.marks.len() + 3);
+    }
+
+    #[test]
+    fn the_ramp_is_lower_and_notes_are_left_out_before_the_panel_is_too_high() {
+        let all =
+            Legend { model_enlargement: Some(60.0), has_inferred_cover: true, has_voids: true, ..legend() };
+        let composed = |most_px: f32| {
+            let drawing = compose(&all, most_px, &mut Composer::new(480, 270)).expect("a range");
+            (drawing.bounds().size().y, drawing.texts.len())
+        };
+        let [(whole_px, whole), (lower_px, lower), (least_px, least)] = [400.0, 165.0, 110.0].map(composed);
+        assert!(
+            whole_px > 165.0 && lower_px <= 165.0 && least_px <= 110.0,
+            "{whole_px} {lower_px} {least_px}"
+        );
+        assert_eq!((whole, lower), (5, 5));
+        assert!((1..5).contains(&least), "{least}");
     }
 
     #[test]

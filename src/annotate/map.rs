@@ -166,7 +166,7 @@ fn draw_column(drawing: &mut Drawing, furniture: &MapFurniture, column: PixelBox
     let parts = [
         north::compose(&arrow, CaptionPlace::Beside, composer),
         Some(tints(&furniture.tints, width, composer)),
-        legend::compose(&furniture.legend, composer),
+        legend::compose(&furniture.legend, column.size().y, composer),
         scale_bar::compose_on_map(furniture.pixels_per_meter, width * 0.72, composer),
     ];
     let mut top = column.min.y;

@@ -162,7 +162,7 @@ fn fill_columns(
         north::compose(&arrow, CaptionPlace::Beside, composer)
     });
     let norths = notes.norths.as_ref().map(|norths| Some(norths::compose(norths, composer)));
-    let ramp = annotations.legend.as_ref().map(|legend| legend::compose(legend, composer));
+    let ramp = annotations.legend.as_ref().map(|legend| legend::compose(legend, height, composer));
     let of_one = [(FurnitureKind::NorthArrow, arrow), (FurnitureKind::Legend, ramp)];
     let mut pieces: Vec<(FurnitureKind, Option<Drawing>)> =
         of_one.into_iter().filter_map(|(kind, piece)| Some((kind, piece?))).collect();

@@ -150,6 +150,9 @@ const GAP: f32 = 14.0;
 /// panel is seen, however small.
 const FREE: f32 = 0.01;
 
+/// The share that a scale bar beside the title may cover: more would hide the skyline, which tells more than the foreground.
+const NEARLY_FREE: f32 = 0.1;
+
 struct Furniture {
     sheet: Sheet,
     drawings: Vec<(FurnitureKind, Drawing)>,
@@ -163,6 +166,7 @@ impl Furniture {
         let (title, subtitle) = (annotations.title.as_deref(), annotations.subtitle.as_deref());
         let has_title = title.is_some() || subtitle.is_some();
         let (bar, arrow, legend) = (&annotations.scale_bar, &annotations.north, &annotations.legend);
+        let highest_px = composer.sheet.size.y * LARGEST_SHARE.y;
         let note = annotations.grid.as_ref().and_then(|grid| grid.note.as_deref());
         for (kind, piece) in [
             (FurnitureKind::Title, has_title.then(|| title::compose(title, subtitle, composer))),
@@ -171,7 +175,10 @@ impl Furniture {
                 FurnitureKind::NorthArrow,
                 arrow.as_ref().map(|arrow| north::compose(arrow, CaptionPlace::Below, composer)),
             ),
-            (FurnitureKind::Legend, legend.as_ref().map(|legend| legend::compose(legend, composer))),
+            (
+                FurnitureKind::Legend,
+                legend.as_ref().map(|legend| legend::compose(legend, highest_px, composer)),
+            ),
         ] {
             piece.into_iter().for_each(|drawing| furniture.place(kind, drawing, annotations.cover.as_ref()));
         }
@@ -196,15 +203,17 @@ impl Furniture {
         self.drawings.iter().map(|(_, drawing)| drawing)
     }
 
-    /// Moves a piece into its corner, or into the upper one on its side where its own is not free and the upper one covers
-    /// less than half as much of the scene, and keeps it where it fits.
+    /// Moves a piece into its corner or, where that is not free, to the first place of [`Self::elsewhere`] that fits and covers
+    /// less of the scene than it may, and keeps it where it fits.
     fn place(&mut self, kind: FurnitureKind, drawing: Option<Drawing>, cover: Option<&SceneCover>) {
         let covered = |drawing: &Drawing| cover.map_or(0.0, |cover| cover.share(&drawing.bounds()));
         let moved = drawing.map(|drawing| {
             let own = self.in_corner(kind, drawing);
             let share = covered(&own);
-            let upper = if share <= FREE { None } else { self.below_upper(kind, &own) };
-            upper.filter(|upper| covered(upper) <= FREE.max(share / 2.0)).unwrap_or(own)
+            let other = if share <= FREE { Vec::new() } else { self.elsewhere(kind, &own, share) };
+            let better =
+                other.into_iter().find(|(most, other)| covered(other) <= *most && self.fits(kind, other));
+            better.map_or(own, |(_, other)| other)
         });
         self.keep(kind, moved);
     }
@@ -236,19 +245,25 @@ impl Furniture {
         self.keep(kind, best);
     }
 
-    /// A piece of a lower corner moved up, below what stands in the upper corner on its side; `None` for other pieces.
-    fn below_upper(&self, kind: FurnitureKind, own: &Drawing) -> Option<Drawing> {
+    /// Other places for a piece of a lower corner that covers `share` of its area of the scene there, each with the share that
+    /// it covers at most. Below what is in the upper corner on its side it covers nothing; else a scale bar is beside that, where
+    /// it may cover [`NEARLY_FREE`]; else the piece is in the first of these and covers half as much as in its own.
+    fn elsewhere(&self, kind: FurnitureKind, own: &Drawing, share: f32) -> Vec<(f32, Drawing)> {
         let above = match kind {
             FurnitureKind::ScaleBar => FurnitureKind::Title,
             FurnitureKind::Legend => FurnitureKind::NorthArrow,
-            _ => return None,
+            _ => return Vec::new(),
         };
-        let above = self.drawings.iter().find(|(other, _)| *other == above);
-        let top = match above {
-            Some((_, above)) => above.bounds().max.y + self.sheet.px(GAP),
-            None => self.sheet.inner().min.y,
-        };
-        Some(own.clone().moved(Vec2::new(0.0, top - own.bounds().min.y).round()))
+        let above = self.drawings.iter().find(|(other, _)| *other == above).map(|(_, above)| above.bounds());
+        let (gap, inner, from) = (self.sheet.px(GAP), self.sheet.inner(), own.bounds().min);
+        let top = above.map_or(inner.min.y, |above| above.max.y + gap);
+        let below = own.clone().moved(Vec2::new(0.0, top - from.y).round());
+        let beside = above.filter(|_| kind == FurnitureKind::ScaleBar).map(|above| {
+            let corner = Vec2::new(above.max.x + gap, inner.min.y);
+            (NEARLY_FREE.min(share / 2.0), own.clone().moved((corner - from).round()))
+        });
+        let free = (FREE, below.clone());
+        std::iter::once(free).chain(beside).chain([(FREE.max(share / 2.0), below)]).collect()
     }
 
     /// A piece moved into its corner.
@@ -273,19 +288,21 @@ impl Furniture {
 
     /// Keeps a piece where it is, if it fits there.
     fn keep(&mut self, kind: FurnitureKind, drawing: Option<Drawing>) {
-        let fits = |drawing: &Drawing| {
-            let bounds = drawing.bounds();
-            let is_small =
-                kind == FurnitureKind::Credit || bounds.size().cmple(self.sheet.size * LARGEST_SHARE).all();
-            let spaced = bounds.grown(self.sheet.px(6.0));
-            is_small
-                && self.sheet.bounds().holds(&bounds)
-                && !self.pieces().any(|other| other.bounds().overlaps(&spaced))
-        };
-        match drawing.filter(fits) {
+        match drawing.filter(|drawing| self.fits(kind, drawing)) {
             Some(drawing) => self.drawings.push((kind, drawing)),
             None => self.left_out.push(kind),
         }
+    }
+
+    /// Whether a piece is small enough for the picture, and where it is lies within it and clear of all others.
+    fn fits(&self, kind: FurnitureKind, drawing: &Drawing) -> bool {
+        let bounds = drawing.bounds();
+        let is_small =
+            kind == FurnitureKind::Credit || bounds.size().cmple(self.sheet.size * LARGEST_SHARE).all();
+        let spaced = bounds.grown(self.sheet.px(6.0));
+        is_small
+            && self.sheet.bounds().holds(&bounds)
+            && !self.pieces().any(|other| other.bounds().overlaps(&spaced))
     }
 
     /// The part inside the margins that no panel at the lower border takes.

@@ -2,9 +2,9 @@
 //! tints over the ramp's, with the texture of each.
 //!
 //! Trees grow where it is moist enough: it is moister on high ground, on shady slopes and in hollows. They leave level low
-//! ground to fields, which lie in plots of grass, dry crops and soil, and end at the tree line; snow begins at the snow line; both lie higher on slopes toward the equator. Scree
-//! lies up to its angle of repose, about 36°; what is steeper is rock, and holds no snow. [`CoverNoise`] moves all borders, so
-//! that they look grown and not drawn.
+//! ground to fields, which lie in plots of grass, dry crops and soil, and end at the tree line; snow begins at the snow line; both
+//! lie higher on slopes toward the equator. Scree lies up to its angle of repose, about 36°; what is steeper is rock, and holds no
+//! snow. [`CoverNoise`] moves all borders, so that they look grown and not drawn.
 //!
 //! Each cover keeps the tint's luminance but for a factor that is at most 12 of lightness L*: relief and tint by height stay
 //! readable. Near the eye crowns make woods rough, strata run through rock, and ridges too small for the model's cells shade
@@ -56,8 +56,15 @@ pub(crate) const FARMED_PATCHES: f32 = 0.8;
 /// The greatest share of a cover over the tint.
 pub(crate) const MOST: f32 = 0.85;
 /// The share of a cover's own hue: the rest is the tint's, which tells heights through all covers, as in the cross-blended
-/// hypsometric tints of Patterson and Jenny (2011).
-pub(crate) const HUE: f32 = 0.58;
+/// hypsometric tints of Patterson and Jenny (2011). In a moist climate, whose tints are green and tan themselves, what grows has the
+/// second share at the tree line: mountain woods and meadows are thinner.
+pub(crate) const HUE: [f32; 2] = [0.58, 0.24];
+/// The part of that change which meadows take: above the trees nothing else is green.
+pub(crate) const MEADOW_CLIMB: f32 = 0.5;
+/// From and to which share of the tree line's elevation it changes: woods of hills are whole.
+pub(crate) const HUE_CLIMB: [f32; 2] = [0.72, 1.0];
+/// From and to which moisture of the climate it changes with height: tints of a desert are all tan, and woods alone are green.
+pub(crate) const HUE_MOISTURE: [f32; 2] = [0.32, 0.60];
 /// By how much the light of a cover's patches, of crowns, of strata in rock differs from the mean at the most.
 pub(crate) const PATCHES: f32 = 0.17;
 pub(crate) const CROWNS: f32 = 0.50;
@@ -205,6 +212,8 @@ struct CoverLanes<const N: usize> {
     /// The tone of plots, from grass at -1 to soil at 1.
     tone: [f32; N],
     woods: [f32; N],
+    /// The share of their own hue that woods have.
+    wooded_hue: [f32; N],
     scree: [f32; N],
     rock: [f32; N],
     snow: [f32; N],
@@ -238,6 +247,7 @@ impl<const N: usize> CoverLanes<N> {
             farmed: none,
             tone: none,
             woods: none,
+            wooded_hue: none,
             scree: none,
             rock: none,
             snow: none,
@@ -253,6 +263,8 @@ impl<const N: usize> CoverLanes<N> {
         let ridges = if cover.has_forms { RIDGES } else { 0.0 };
         let [higher, shadier, hollower, noisier] = MOISTER;
         let [below_trees, below_snow, half] = MEADOW_M;
+        let [hue, high] = HUE;
+        let thinner = (high - hue) * step(cover.moisture, HUE_MOISTURE);
         for lane in 0..N {
             let [uneven, patch, fine] = [self.uneven[lane], self.patch[lane], self.fine[lane]];
             let [east, north] = [self.slope_east[lane], self.slope_north[lane]];
@@ -291,6 +303,8 @@ impl<const N: usize> CoverLanes<N> {
             self.meadow[lane] = mix(fields, below_snow, above_trees);
             self.farmed[lane] = farmed;
             self.woods[lane] = woods;
+            let climb = step(height, [HUE_CLIMB[0] * cover.tree_m, HUE_CLIMB[1] * cover.tree_m]);
+            self.wooded_hue[lane] = hue + thinner * climb;
             self.scree[lane] = scree;
             self.rock[lane] = rock;
             self.snow[lane] = snow;
@@ -322,11 +336,12 @@ impl<const N: usize> CoverLanes<N> {
                     + (meadow.light - crops.light) * grassy
                     + (soil.light - crops.light) * bare,
             };
-            let mut color = laid(tint, meadow, HUE, self.meadow[lane]);
-            color = laid(color, plots, HUE, self.farmed[lane]);
-            color = laid(color, woods, HUE, self.woods[lane]);
-            color = laid(color, scree, HUE, self.scree[lane]);
-            color = laid(color, rock, HUE, self.rock[lane]);
+            let (hue, wooded) = (HUE[0], self.wooded_hue[lane]);
+            let mut color = laid(tint, meadow, mix(hue, wooded, MEADOW_CLIMB), self.meadow[lane]);
+            color = laid(color, plots, hue, self.farmed[lane]);
+            color = laid(color, woods, wooded, self.woods[lane]);
+            color = laid(color, scree, hue, self.scree[lane]);
+            color = laid(color, rock, hue, self.rock[lane]);
             // Snow hides the ground that heights color.
             color = laid(color, snow, 1.0, self.snow[lane]);
             color = mix(color, woods.hue * own * woods.light, SHRUB_SHARE * self.shrubs[lane]);
@@ -424,6 +439,20 @@ mod tests {
         assert!(lightness(seen(1000.0, 1.5)) < lightness(TINT) - 3.0, "rock is dark");
         assert_eq!(seen(3500.0, 1.5), seen(4500.0, 1.5), "and holds no snow");
         assert!(seen(2900.0, -0.4).z > seen(2900.0, 0.4).z, "shady slopes keep snow longer");
+    }
+
+    #[test]
+    fn heights_show_through_woods_of_moist_climates() {
+        let desert = GroundCover { moisture: 0.3, ..alps() };
+        let green = |cover: &GroundCover, height: f32| {
+            let shown = seen(cover, post(height, -0.3), CoverNoise::default());
+            shown.y / shown.x
+        };
+        assert!(green(&alps(), 100.0) > green(&alps(), 1850.0) + 0.08);
+        assert!(
+            green(&desert, 1850.0) > green(&alps(), 1850.0) + 0.05,
+            "woods of dry climates keep their green"
+        );
     }
 
     #[test]

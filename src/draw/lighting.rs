@@ -115,7 +115,8 @@ impl Lighting {
 ///
 /// Natural ground also returns in its shade the light of the sky and of the slopes opposite,
 /// `fill · FILL · max(albedo + FILL_CHROMA · (albedo − gray), 0) · (1 − soft)`, `gray` being as light as the albedo. Much of it has
-/// met ground of the same color before, which deepens the tint: dark slopes keep their hues under the cool light.
+/// met ground of the same color before, which deepens the tint: dark slopes keep their hues under the cool light. In its light it
+/// is paler, `mix(albedo, gray, fill · GLARE · (soft − 1) / (BRIGHTEST − 1))`: leaves and grass mirror the white of the sun besides.
 ///
 /// `gain` is [`Self::GAIN`] in light and [`Self::shade_gain`] in shade, so that the darkest slopes of gentle ground are as
 /// dark as those of mountains. Shadows need no such help: they are as dark on every ground. Ground that lies under symbols and
@@ -176,6 +177,8 @@ impl ReliefShading {
     pub const FILL: Vec3 = Vec3::new(0.105, 0.117, 0.144);
     /// By how much this light deepens colors: 0 leaves them as they are, which the cool light makes gray.
     pub const FILL_CHROMA: f32 = 0.35;
+    /// The share of gray in the color of the brightest natural ground: without it lit woods are lime.
+    pub const GLARE: f32 = 0.25;
     /// Brightness where no sky is seen.
     pub const CLOSED: f32 = 0.5;
     /// The contrast of the lowest ground; that of the highest quarter is 1.
@@ -229,7 +232,8 @@ impl ReliefShading {
         let gray = Vec3::splat(luminance(albedo));
         let deep = (albedo + (albedo - gray) * Self::FILL_CHROMA).max(Vec3::ZERO);
         let fill = deep * Self::FILL * (self.fill * (1.0 - brightness).clamp(0.0, 1.0));
-        (albedo * tint / level * brightness + fill) * sky
+        let glare = self.fill * Self::GLARE * ((brightness - 1.0) / (Self::BRIGHTEST - 1.0)).max(0.0);
+        (albedo.lerp(gray, glare) * tint / level * brightness + fill) * sky
     }
 
     /// A brightness bent toward the darkest and the brightest.
@@ -311,6 +315,17 @@ mod tests {
         let lit = ReliefPoint { normal: Vec3::new(-0.3, 0.3, 0.9).normalize(), ..LEVEL };
         let lit = natural.shade(albedo, &lit);
         assert!(filled.z / filled.x > 1.2 * lit.z / lit.x, "the shade is cool: {filled} {lit}");
+    }
+
+    #[test]
+    fn bright_natural_ground_is_paler_and_as_light() {
+        let natural = ReliefShading { fill: 1.0, ..shading() };
+        let lit = ReliefPoint { normal: Vec3::new(-0.4, 0.4, 0.8).normalize(), ..LEVEL };
+        let [plain, paler] =
+            [shading(), natural].map(|shading| shading.shade(Vec3::new(0.3, 0.5, 0.2), &lit));
+        let chroma = |color: Vec3| (color.max_element() - color.min_element()) / color.max_element();
+        assert!(chroma(paler) < 0.95 * chroma(plain), "{paler} {plain}");
+        assert!((luminance(paler) / luminance(plain) - 1.0).abs() < 0.02, "{paler} {plain}");
     }
 
     #[test]

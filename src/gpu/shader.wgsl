@@ -559,8 +559,8 @@ fn cover_noise(at: vec2f, mean_pixel_m: f32, longest_m: f32, ground_rise: vec2f)
 }
 
 // The functions of src/draw/ground_cover.rs.
-fn covered_by(color: vec3f, tint: vec3f, own: f32, cover: vec4f, share: f32) -> vec3f {
-    return mix(color, mix(tint, cover.rgb * own, COVER_HUE) * cover.w, COVER_MOST * share);
+fn covered_by(color: vec3f, tint: vec3f, own: f32, cover: vec4f, hue: f32, share: f32) -> vec3f {
+    return mix(color, mix(tint, cover.rgb * own, hue) * cover.w, COVER_MOST * share);
 }
 
 fn strata_wave(height: f32, change: f32, uneven: f32, wave_m: f32) -> f32 {
@@ -603,19 +603,22 @@ fn with_cover(tint: vec3f, post: Post, change: f32, noise: Noise) -> vec3f {
     let half = COVER_MEADOW_M.z;
     let snow = smoothstep(frame.cover.y - half, frame.cover.y + half, height) * (1.0 - rock);
     let own = dot(tint, vec3f(0.2126, 0.7152, 0.0722));
-    var color = covered_by(tint, tint, own, frame.cover_colors[1], meadow);
+    let wet = smoothstep(COVER_HUE_MOISTURE.x, COVER_HUE_MOISTURE.y, frame.cover_more.x);
+    let climb = smoothstep(COVER_HUE_CLIMB.x * frame.cover.x, COVER_HUE_CLIMB.y * frame.cover.x, height) * wet;
+    let grown = mix(COVER_HUE.x, COVER_HUE.y, climb);
+    var color = covered_by(tint, tint, own, frame.cover_colors[1], mix(COVER_HUE.x, grown, COVER_MEADOW_CLIMB), meadow);
     let farmed = smoothstep(COVER_FARMED_MOISTURE.x, COVER_FARMED_MOISTURE.y, moist)
         * (1.0 - smoothstep(COVER_FARMED_RISE.x, COVER_FARMED_RISE.y, rise)) * (1.0 - wild) * (1.0 - above_trees);
     if farmed > 0.0 {
         let plot = field_tone(noise.at, max(noise.longest_m, COVER_LEAST_PIXEL_M));
         let tone = clamp(plot + COVER_FARMED_PATCHES * noise.patches, -1.0, 1.0);
         let other = select(frame.cover_colors[6], frame.cover_colors[1], tone < 0.0);
-        color = covered_by(color, tint, own, mix(frame.cover_colors[5], other, abs(tone)), farmed);
+        color = covered_by(color, tint, own, mix(frame.cover_colors[5], other, abs(tone)), COVER_HUE.x, farmed);
     }
-    color = covered_by(color, tint, own, frame.cover_colors[0], woods);
-    color = covered_by(color, tint, own, frame.cover_colors[2], scree);
-    color = covered_by(color, tint, own, frame.cover_colors[3], rock);
-    color = covered_by(color, frame.cover_colors[4].rgb * own, own, frame.cover_colors[4], snow);
+    color = covered_by(color, tint, own, frame.cover_colors[0], grown, woods);
+    color = covered_by(color, tint, own, frame.cover_colors[2], COVER_HUE.x, scree);
+    color = covered_by(color, tint, own, frame.cover_colors[3], COVER_HUE.x, rock);
+    color = covered_by(color, frame.cover_colors[4].rgb * own, own, frame.cover_colors[4], COVER_HUE.x, snow);
     let open = max(1.0 - snow, 0.0);
     let wooded = woods * (1.0 - rock) * open;
     let strata = strata_wave(post.height, change, noise.uneven, COVER_STRATA_M.x)
@@ -891,7 +894,8 @@ fn relief_lit(albedo: vec3f, post: Post, small: vec2f, at: vec2f, received: vec2
     let gray = vec3f(dot(albedo, vec3f(0.2126, 0.7152, 0.0722)));
     let deep = max(albedo + (albedo - gray) * RELIEF_FILL_CHROMA, vec3f(0.0));
     let fill = deep * RELIEF_FILL * (frame.cover_more.w * clamp(1.0 - brightness, 0.0, 1.0));
-    return (albedo * tint * brightness + fill) * mix(RELIEF_CLOSED, 1.0, post.visibility.y * received.y);
+    let glare = RELIEF_GLARE * frame.cover_more.w * max((brightness - 1.0) / (RELIEF_BRIGHTEST - 1.0), 0.0);
+    return (mix(albedo, gray, glare) * tint * brightness + fill) * mix(RELIEF_CLOSED, 1.0, post.visibility.y * received.y);
 }
 
 // The normal on the side that is seen; the triangle's own where its corners have none.

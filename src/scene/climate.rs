@@ -111,7 +111,7 @@ impl Climate {
         let hot = (part(self.dryness, [0.6, 0.85]) * warmth) as f32;
         let color =
             |[red, green, blue]: [u8; 3], light: f32| CoverColor::new(Srgba::opaque(red, green, blue), light);
-        let woods = color([94, 114, 66], 0.64)
+        let woods = color([91, 114, 67], 0.64)
             .lerp(&color([72, 118, 64], 0.60), self.tropical as f32)
             .lerp(&color([92, 114, 86], 0.70), self.polar as f32)
             .lerp(&color([90, 114, 74], 0.66), dry);

@@ -319,8 +319,8 @@ Noise cover_noise(vec2 at, float mean_pixel_m, float longest_m, vec2 ground_rise
   return sum;
 }
 
-vec3 covered_by(vec3 color, vec3 tint, float own, vec4 cover, float share) {
-  return mix(color, mix(tint, cover.rgb * own, COVER_HUE) * cover.w, COVER_MOST * share);
+vec3 covered_by(vec3 color, vec3 tint, float own, vec4 cover, float hue, float share) {
+  return mix(color, mix(tint, cover.rgb * own, hue) * cover.w, COVER_MOST * share);
 }
 
 float strata_wave(float height, float change, float uneven, float wave_m) {
@@ -359,19 +359,22 @@ vec3 with_cover(vec3 tint, float height_m, float change, vec2 slope, float sky_s
   float rock = smoothstep(COVER_ROCK_RISE.x * bare, COVER_ROCK_RISE.y * bare, rise);
   float snow = smoothstep(cover.y - COVER_MEADOW_M.z, cover.y + COVER_MEADOW_M.z, height) * (1.0 - rock);
   float own = dot(tint, vec3(0.2126, 0.7152, 0.0722));
-  vec3 color = covered_by(tint, tint, own, cover_colors[1], meadow);
+  float wet = smoothstep(COVER_HUE_MOISTURE.x, COVER_HUE_MOISTURE.y, cover_more.x);
+  float climb = smoothstep(COVER_HUE_CLIMB.x * cover.x, COVER_HUE_CLIMB.y * cover.x, height) * wet;
+  float grown = mix(COVER_HUE.x, COVER_HUE.y, climb);
+  vec3 color = covered_by(tint, tint, own, cover_colors[1], mix(COVER_HUE.x, grown, COVER_MEADOW_CLIMB), meadow);
   float farmed = smoothstep(COVER_FARMED_MOISTURE.x, COVER_FARMED_MOISTURE.y, moist)
     * (1.0 - smoothstep(COVER_FARMED_RISE.x, COVER_FARMED_RISE.y, rise)) * (1.0 - wild) * (1.0 - above_trees);
   if (farmed > 0.0) {
     float plot = field_tone(here.at, max(here.longest_m, COVER_LEAST_PIXEL_M));
     float tone = clamp(plot + COVER_FARMED_PATCHES * here.patches, -1.0, 1.0);
     vec4 other = tone < 0.0 ? cover_colors[1] : cover_colors[6];
-    color = covered_by(color, tint, own, mix(cover_colors[5], other, abs(tone)), farmed);
+    color = covered_by(color, tint, own, mix(cover_colors[5], other, abs(tone)), COVER_HUE.x, farmed);
   }
-  color = covered_by(color, tint, own, cover_colors[0], woods);
-  color = covered_by(color, tint, own, cover_colors[2], scree);
-  color = covered_by(color, tint, own, cover_colors[3], rock);
-  color = covered_by(color, cover_colors[4].rgb * own, own, cover_colors[4], snow);
+  color = covered_by(color, tint, own, cover_colors[0], grown, woods);
+  color = covered_by(color, tint, own, cover_colors[2], COVER_HUE.x, scree);
+  color = covered_by(color, tint, own, cover_colors[3], COVER_HUE.x, rock);
+  color = covered_by(color, cover_colors[4].rgb * own, own, cover_colors[4], COVER_HUE.x, snow);
   float open = max(1.0 - snow, 0.0);
   float wooded = woods * (1.0 - rock) * open;
   float strata = strata_wave(height_m, change, here.uneven, COVER_STRATA_M.x)
@@ -437,7 +440,8 @@ vec3 relief_lit(vec3 albedo, float height, vec4 post, float sky_share, vec2 plac
   vec3 gray = vec3(dot(albedo, vec3(0.2126, 0.7152, 0.0722)));
   vec3 deep = max(albedo + (albedo - gray) * RELIEF_FILL_CHROMA, vec3(0.0));
   vec3 fill = cover.z > 0.0 ? deep * RELIEF_FILL * clamp(1.0 - brightness, 0.0, 1.0) : vec3(0.0);
-  return (albedo * hue * brightness + fill) * mix(RELIEF_CLOSED, 1.0, sky_share);
+  float glare = cover.z > 0.0 ? RELIEF_GLARE * max((brightness - 1.0) / (RELIEF_BRIGHTEST - 1.0), 0.0) : 0.0;
+  return (mix(albedo, gray, glare) * hue * brightness + fill) * mix(RELIEF_CLOSED, 1.0, sky_share);
 }
 
 void main() {
