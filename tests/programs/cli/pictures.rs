@@ -37,8 +37,7 @@ fn every_scene_of_the_project_renders() {
         scenes.iter().map(fs::DirEntry::path).filter(|path| path.extension().is_some_and(|it| it == "toml"))
     {
         let scene = scene.to_string_lossy().into_owned();
-        // The size that scenes are drawn in unasked is that of other tests here.
-        render(&scratch, &[&scene, "-o", "out.png", "--size", "960x540"]).ok();
+        render(&scratch, &[&scene, "-o", "out.png"]).ok();
         assert_eq!(scratch.names(), ["out.png"], "{scene}");
     }
 }
