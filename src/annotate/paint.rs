@@ -187,16 +187,31 @@ impl Furniture {
             furniture.place_emptiest(FurnitureKind::Classes, legend, annotations.cover.as_ref());
         }
         if let Some(text) = &annotations.credit {
-            // Flush right in the lower margin, between scale bar and legend.
-            let strip = furniture.free_below();
-            let credit = credit::compose(text, strip.size().x, composer);
-            let moved = credit.map(|line| {
-                let by = strip.max - line.bounds().max;
-                line.moved(by.round())
-            });
-            furniture.keep(FurnitureKind::Credit, moved);
+            let credit =
+                furniture.credit(text, composer).or_else(|| furniture.credit_for_legend(text, composer));
+            furniture.keep(FurnitureKind::Credit, credit);
         }
         furniture
+    }
+
+    /// The credit flush right in the lower margin, between scale bar and legend; `None` where it does not fit.
+    fn credit(&self, text: &str, composer: &mut Composer) -> Option<Drawing> {
+        let strip = self.free_below();
+        let line = credit::compose(text, strip.size().x, composer)?;
+        let by = strip.max - line.bounds().max;
+        Some(line.moved(by.round())).filter(|credit| self.fits(FurnitureKind::Credit, credit))
+    }
+
+    /// The credit in place of the legend, which is left out for it: who made the data is owed a credit, and nobody a legend.
+    fn credit_for_legend(&mut self, text: &str, composer: &mut Composer) -> Option<Drawing> {
+        let index = self.drawings.iter().position(|(kind, _)| *kind == FurnitureKind::Legend)?;
+        let legend = self.drawings.remove(index);
+        let credit = self.credit(text, composer);
+        match credit {
+            Some(_) => self.left_out.push(FurnitureKind::Legend),
+            None => self.drawings.insert(index, legend),
+        }
+        credit
     }
 
     fn pieces(&self) -> impl Iterator<Item = &Drawing> {
