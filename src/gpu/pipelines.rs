@@ -141,6 +141,11 @@ impl Pipelines {
         }
     }
 
+    /// Whether those of all these keys are made.
+    pub fn has_all(&self, keys: &[PipelineKey]) -> bool {
+        keys.iter().all(|key| self.by_key.contains_key(key))
+    }
+
     /// How many there are.
     pub fn count(&self) -> usize {
         self.by_key.len()

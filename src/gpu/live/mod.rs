@@ -27,6 +27,7 @@ mod arena;
 mod drapes;
 mod encode;
 mod ground_map;
+mod moving;
 mod patch_calls;
 mod patches;
 pub mod prepared;
@@ -41,6 +42,7 @@ use crate::geometry::GpuGeometry;
 use crate::layouts::Layouts;
 use crate::live::encode::Encoder;
 use crate::live::ground_map::EditedMap;
+use crate::live::moving::MovingPipelines;
 use crate::live::patches::{PatchStore, ShownCalls};
 use crate::live::prepared::{LiveLoader, PreparedScene, PreparedShadows, PreparedWindows};
 use crate::live::targets::{LiveFormat, LiveTargets};
@@ -125,6 +127,7 @@ pub struct LiveRenderer {
     layouts: Arc<Layouts>,
     colors: Pipelines,
     encoder: Option<Encoder>,
+    moving: MovingPipelines,
     targets: Option<LiveTargets>,
     scene: Option<LoadedScene>,
     timer: Option<Arc<PassTimer>>,
@@ -225,7 +228,17 @@ impl LiveRenderer {
         });
         let (layouts, colors, encoder) = made?;
         format.shade_pixels = colors.shade_pixels(&gpu);
-        Ok(Self { gpu, format, layouts, colors, encoder, targets: None, scene: None, timer: None })
+        Ok(Self {
+            gpu,
+            format,
+            layouts,
+            colors,
+            encoder,
+            moving: MovingPipelines::default(),
+            targets: None,
+            scene: None,
+            timer: None,
+        })
     }
 
     /// Lets `timer`, which is of the same device, time the passes of the frames that follow.
@@ -365,6 +378,13 @@ impl LiveRenderer {
             return Ok(LiveStatistics::default());
         }
         let (gpu, format) = (&self.gpu, self.format);
+        let mut parts = scene.parts_of(gpu, options.detail);
+        if parts != scene.parts {
+            let keys = scene.keys(gpu, &self.colors, parts);
+            if !self.moving.are_made(gpu, &mut self.colors, keys)? {
+                parts = scene.parts;
+            }
+        }
         let known = self.targets.take().filter(|targets| targets.size == size);
         let targets = gpu.guarded("resizing its textures", || {
             known.map_or_else(|| LiveTargets::new(&Loader::new(gpu), &self.layouts, format, size), Ok)
@@ -387,7 +407,7 @@ impl LiveRenderer {
                 depth: &targets.depth,
                 timer: self.timer.as_deref(),
             };
-            let (colors, parts) = (&self.colors, scene.parts_of(gpu, options.detail));
+            let colors = &self.colors;
             let mut drawn;
             let mut pass = match &targets.depths_read {
                 Some(depths) => {
@@ -432,24 +452,21 @@ impl LoadedScene {
         Ok(())
     }
 
-    /// Makes the pipelines that it draws with and that are missing.
+    /// Makes the pipelines that frames at rest draw with and that are missing.
     fn make(&self, gpu: &Gpu, colors: &mut Pipelines) {
-        let whole = self.parts_of(gpu, LiveDetail::Whole);
-        self.make_for(gpu, colors, whole);
-        let moving = self.parts_of(gpu, LiveDetail::Moving);
-        if moving != whole {
-            self.make_for(gpu, colors, moving);
-        }
+        let keys = self.keys(gpu, colors, self.parts);
+        colors.make(gpu, keys);
     }
 
-    fn make_for(&self, gpu: &Gpu, colors: &mut Pipelines, parts: ShaderParts) {
+    /// The pipelines that it draws with where the shading has some parts.
+    fn keys(&self, gpu: &Gpu, colors: &Pipelines, parts: ShaderParts) -> Vec<PipelineKey> {
         let [color_keys, _] = self.plan.keys(parts);
         let ground = match colors.shade_pixels(gpu) {
             true => vec![PipelineKey::PATCH_DEPTHS, ground_key(PipelineKey::GROUND_PIXELS, parts)],
             false => vec![ground_key(PipelineKey::PATCH, parts)],
         };
         let drapes = self.patches.keys(parts);
-        colors.make(gpu, color_keys.into_iter().chain([PipelineKey::SKY]).chain(ground).chain(drapes));
+        color_keys.into_iter().chain([PipelineKey::SKY]).chain(ground).chain(drapes).collect()
     }
 
     /// The parts of the shading of frames of some detail.
