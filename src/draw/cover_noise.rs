@@ -14,7 +14,7 @@
 use glam::{UVec2, Vec2};
 
 use crate::floor::floor_each;
-use crate::lanes::{LANES, in_lanes, mix, of_each, unit};
+use crate::lanes::{LANES, in_lanes, mix, of_each, smooth, unit};
 use crate::lowbias::lowbias32;
 
 /// The wavelength of the first octave, meters, and the factor from one to the next.
@@ -87,6 +87,11 @@ impl NoisePixel {
 }
 
 impl CoverNoise {
+    /// The noise at a pixel so wide that it shows none.
+    pub fn none() -> Self {
+        Self { longest_m: f32::INFINITY, ..Self::default() }
+    }
+
     /// The noise at a pixel of a map of cells `cell_m` meters wide.
     pub fn new(pixel: &NoisePixel, cell_m: f32) -> Self {
         let [noise] = Self::together(&[*pixel], cell_m);
@@ -145,7 +150,7 @@ impl<const N: usize> NoiseLanes<N> {
             level[0][lane] = -pixels[lane].rise.y * scale;
             level[1][lane] = pixels[lane].rise.x * scale;
             let part = unit((steep[lane] - GULLY_RISE[0]) / (GULLY_RISE[1] - GULLY_RISE[0]));
-            gullies[lane] = MOST_GULLIES * part * part * (3.0 - 2.0 * part);
+            gullies[lane] = MOST_GULLIES * smooth(part);
         }
         Self {
             level,
@@ -261,14 +266,12 @@ impl CellPlace {
     /// A place within ±2²² cells, further than an octave's lattice reaches on Earth, compiled to vectors.
     #[inline(always)]
     fn of(at: [f32; 2]) -> Self {
-        // Its last bit is 1, so that a sum with it is rounded to a whole number: a conversion of vectors takes more.
-        const UNIT: f32 = 12_582_912.0;
         let [(x, east), (y, north)] = [0, 1].map(
             #[inline(always)]
             |axis| {
                 let value: f32 = at[axis];
-                let rounded = (value + UNIT) - UNIT;
-                let corner = if rounded > value { rounded - 1.0 } else { rounded };
+                let nearest = rounded(value);
+                let corner = if nearest > value { nearest - 1.0 } else { nearest };
                 (unit(value - corner), (corner + UNIT).to_bits().wrapping_sub(UNIT.to_bits()))
             },
         );
@@ -288,8 +291,17 @@ impl CellPlace {
     #[inline(always)]
     fn smooth(&self) -> ([f32; 2], [f32; 2]) {
         let [x, y] = self.part;
-        ([x * x * (3.0 - 2.0 * x), y * y * (3.0 - 2.0 * y)], [6.0 * x * (1.0 - x), 6.0 * y * (1.0 - y)])
+        ([smooth(x), smooth(y)], [6.0 * x * (1.0 - x), 6.0 * y * (1.0 - y)])
     }
+}
+
+/// Its last bit is 1, so that a sum with it is rounded to a whole number: a conversion of vectors takes more.
+const UNIT: f32 = 12_582_912.0;
+
+/// The whole number nearest to one within ±2²².
+#[inline(always)]
+fn rounded(value: f32) -> f32 {
+    (value + UNIT) - UNIT
 }
 
 /// [`pair`] at a place in a cell.
@@ -327,11 +339,10 @@ fn gullies(at: &CellPlace, level: [f32; 2]) -> (f32, [f32; 2]) {
 /// About the cosine of so many turns from -1 to 2^20, and its rise per turn.
 #[inline(always)]
 fn wave(turns: f32) -> (f32, f32) {
-    const UNIT: f32 = 12_582_912.0;
-    let past = turns - ((turns + UNIT) - UNIT);
+    let past = turns - rounded(turns);
     let part = 2.0 * past.abs();
     let rise = -24.0 * (part * (1.0 - part));
-    (1.0 - 2.0 * (part * part * (3.0 - 2.0 * part)), if past < 0.0 { -rise } else { rise })
+    (1.0 - 2.0 * smooth(part), if past < 0.0 { -rise } else { rise })
 }
 
 /// Two numbers from -1 to 1 for a lattice point.

@@ -9,7 +9,7 @@ use glam::{UVec2, Vec2, Vec3};
 
 use crate::color::Srgba;
 use crate::cover_noise::CoverNoise;
-use crate::ground_cover::{CoveredPixel, GroundCover};
+use crate::ground_cover::{GroundCover, LandPixel};
 use crate::ground_imagery::{DrapedColor, GroundImagery};
 use crate::lighting::ReliefShading;
 use crate::undergrowth::Undergrowth;
@@ -202,24 +202,6 @@ impl Contours {
     }
 }
 
-/// A pixel of land.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LandPixel {
-    /// The map's values.
-    pub post: GroundPost,
-    /// The change of the elevation across the pixel, in meters.
-    pub change_m: f32,
-    /// The noise of the place; read where the map has a cover.
-    pub noise: CoverNoise,
-}
-
-impl LandPixel {
-    fn covered(&self, tint: Vec3) -> CoveredPixel {
-        let Self { post, change_m, noise } = *self;
-        CoveredPixel { tint, post, change_m, noise }
-    }
-}
-
 /// `land` with the undergrowth of the woods there.
 fn undergrown(land: Vec3, post: &GroundPost) -> Vec3 {
     // Nearly everywhere there are no trees, and no share of undergrowth changes nothing.
@@ -324,39 +306,35 @@ impl GroundMap {
     /// contours, under the picture `draped`.
     pub fn mirrored_land(&self, post: &GroundPost, draped: &DrapedColor) -> Vec3 {
         // Across a pixel with all heights strata are too thin to show.
+        let tint = self.tint(post);
         draped.over(self.land(&LandPixel {
+            tint,
             post: *post,
             change_m: f32::MAX,
-            noise: CoverNoise { longest_m: f32::INFINITY, ..CoverNoise::default() },
+            noise: CoverNoise::none(),
         }))
+    }
+
+    /// The ramp's color in linear light: that of land without a cover.
+    pub fn tint(&self, post: &GroundPost) -> Vec3 {
+        self.ramp.linear_at(post.height_m)
     }
 
     /// The color of a pixel of dry land in linear light: the ramp with its cover and [`Undergrowth`].
     pub fn land(&self, pixel: &LandPixel) -> Vec3 {
-        let tint = self.ramp.linear_at(pixel.post.height_m);
-        let land = self.cover.map_or(tint, |cover| cover.over(&pixel.covered(tint)));
-        undergrown(land, &pixel.post)
+        undergrown(self.cover.map_or(pixel.tint, |cover| cover.over(pixel)), &pixel.post)
     }
 
     /// [`Self::land`] of each of `pixels`, in less time.
     pub fn land_each(&self, pixels: &[LandPixel]) -> Vec<Vec3> {
-        let tint = |pixel: &LandPixel| self.ramp.linear_at(pixel.post.height_m);
         let mut colors = match &self.cover {
-            Some(cover) => {
-                let covered: Vec<_> = pixels.iter().map(|pixel| pixel.covered(tint(pixel))).collect();
-                cover.over_each(&covered)
-            }
-            None => pixels.iter().map(tint).collect(),
+            Some(cover) => cover.over_each(pixels),
+            None => pixels.iter().map(|pixel| pixel.tint).collect(),
         };
         for (color, pixel) in colors.iter_mut().zip(pixels) {
             *color = undergrown(*color, &pixel.post);
         }
         colors
-    }
-
-    /// The color of land that does not show: the ramp's.
-    pub fn hidden_land(&self, post: &GroundPost) -> Vec3 {
-        self.ramp.linear_at(post.height_m)
     }
 
     /// The upward unit normal by which `post` is shaded.

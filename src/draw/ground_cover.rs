@@ -17,7 +17,7 @@ use crate::cover_noise::CoverNoise;
 use crate::field_plots::field_tone;
 use crate::ground::GroundPost;
 use crate::ground_grain::{WIDE_PX, noise};
-use crate::lanes::{LANES, in_lanes, mix, of_each, unit};
+use crate::lanes::{LANES, in_lanes, mix, of_each, smooth, unit};
 use crate::shown::shown;
 
 /// How far the noise moves the borders between covers, in meters of elevation and in rise.
@@ -127,48 +127,48 @@ impl CoverColor {
     }
 }
 
-/// A pixel of ground, as its cover depends on it.
+/// A pixel of land.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CoveredPixel {
+pub struct LandPixel {
     /// The color of the ramp in linear light.
     pub tint: Vec3,
-    /// Where the map reads it.
+    /// The map's values.
     pub post: GroundPost,
-    /// The change of its height across the pixel, meters.
+    /// The change of the elevation across the pixel, meters.
     pub change_m: f32,
-    /// The noise of the place.
+    /// The noise of the place; read where the map has a cover.
     pub noise: CoverNoise,
 }
 
 impl GroundCover {
     /// The color of a covered pixel in linear light.
-    pub fn over(&self, pixel: &CoveredPixel) -> Vec3 {
+    pub fn over(&self, pixel: &LandPixel) -> Vec3 {
         let [color] = self.together(&[*pixel]);
         color
     }
 
     /// [`Self::over`] of each of `pixels`, in less time.
-    pub fn over_each(&self, pixels: &[CoveredPixel]) -> Vec<Vec3> {
-        let filler = CoveredPixel {
+    pub fn over_each(&self, pixels: &[LandPixel]) -> Vec<Vec3> {
+        let filler = LandPixel {
             tint: Vec3::ZERO,
             post: GroundPost::default(),
             change_m: f32::INFINITY,
-            noise: CoverNoise { longest_m: f32::INFINITY, ..CoverNoise::default() },
+            noise: CoverNoise::none(),
         };
         in_lanes(
             pixels,
             filler,
             #[inline(always)]
-            |pixels: &[CoveredPixel; LANES]| self.together(pixels),
+            |pixels: &[LandPixel; LANES]| self.together(pixels),
         )
     }
 
     #[inline(always)]
-    fn together<const N: usize>(&self, pixels: &[CoveredPixel; N]) -> [Vec3; N] {
+    fn together<const N: usize>(&self, pixels: &[LandPixel; N]) -> [Vec3; N] {
         let mut lanes = CoverLanes::new(pixels);
         lanes.share_out(self);
         // Nearly everywhere there are no fields, and no rock, whose layers would be noise for nothing.
-        for (lane, CoveredPixel { post, change_m, noise, .. }) in pixels.iter().enumerate() {
+        for (lane, LandPixel { post, change_m, noise, .. }) in pixels.iter().enumerate() {
             if lanes.farmed[lane] > 0.0 {
                 let plot = field_tone(noise.at, noise.longest_m.max(LEAST_PIXEL_M));
                 lanes.tone[lane] = (plot + FARMED_PATCHES * noise.patch).clamp(-1.0, 1.0);
@@ -226,7 +226,7 @@ struct CoverLanes<const N: usize> {
 
 impl<const N: usize> CoverLanes<N> {
     #[inline(always)]
-    fn new(pixels: &[CoveredPixel; N]) -> Self {
+    fn new(pixels: &[LandPixel; N]) -> Self {
         let none = [0.0; N];
         Self {
             tint: [
@@ -373,8 +373,7 @@ fn strata(height_m: f32, change_m: f32, uneven: f32) -> f32 {
 
 #[inline(always)]
 fn step(value: f32, [from, to]: [f32; 2]) -> f32 {
-    let part = unit((value - from) / (to - from));
-    part * part * (3.0 - 2.0 * part)
+    smooth(unit((value - from) / (to - from)))
 }
 
 #[cfg(test)]
@@ -406,7 +405,7 @@ mod tests {
     }
 
     fn seen(cover: &GroundCover, post: GroundPost, noise: CoverNoise) -> Vec3 {
-        cover.over(&CoveredPixel { tint: TINT, post, change_m: 1e3, noise })
+        cover.over(&LandPixel { tint: TINT, post, change_m: 1e3, noise })
     }
 
     fn post(height_m: f32, slope_north: f32) -> GroundPost {
@@ -478,7 +477,7 @@ mod tests {
 
     #[test]
     fn pixels_together_have_the_colors_that_each_has_alone() {
-        let pixels: Vec<CoveredPixel> = (0..997)
+        let pixels: Vec<LandPixel> = (0..997)
             .map(|index| {
                 let [a, b, c, d] = [7, 11, 13, 17].map(|every| (index % every) as f32 / every as f32);
                 let noise = CoverNoise {
@@ -491,7 +490,7 @@ mod tests {
                     ..CoverNoise::default()
                 };
                 let post = GroundPost { slope_east: 2.0 * c - 1.0, ..post(3000.0 * d, 1.8 * a - 0.6) };
-                CoveredPixel { tint: TINT * (0.5 + b), post, change_m: 3.0 * b, noise }
+                LandPixel { tint: TINT * (0.5 + b), post, change_m: 3.0 * b, noise }
             })
             .collect();
         let bits = |color: Vec3| color.to_array().map(f32::to_bits);

@@ -51,6 +51,12 @@ pub(crate) fn unit(value: f32) -> f32 {
     if low < 1.0 { low } else { 1.0 }
 }
 
+/// The smooth step from 0 to 1 at a part of its way.
+#[inline(always)]
+pub(crate) fn smooth(part: f32) -> f32 {
+    part * part * (3.0 - 2.0 * part)
+}
+
 /// What lies at `share` of the way between two numbers.
 #[inline(always)]
 pub(crate) fn mix(from: f32, to: f32, share: f32) -> f32 {

@@ -5,7 +5,8 @@ use rayon::prelude::*;
 
 use sandtable_draw::color::Srgba;
 use sandtable_draw::cover_noise::{CoverNoise, NoisePixel};
-use sandtable_draw::ground::{GroundDetail, GroundMap, GroundPost, LandPixel, PixelChange};
+use sandtable_draw::ground::{GroundDetail, GroundMap, GroundPost, PixelChange};
+use sandtable_draw::ground_cover::LandPixel;
 use sandtable_draw::pixels::Pixels;
 
 /// The longest side in pixels: the most that every graphics adapter supports.
@@ -67,7 +68,7 @@ fn color(map: &GroundMap, at: Vec2, step: Vec2) -> Srgba {
         )
     };
     let noise = map.cover.map(noise).unwrap_or_default();
-    let land = map.land(&LandPixel { post, change_m: change.height_m, noise });
+    let land = map.land(&LandPixel { tint: map.tint(&post), post, change_m: change.height_m, noise });
     Srgba::from_linear(map.albedo(&post, change, &GroundDetail { grain: 1.0, land, draped, facing: 0.0 }))
 }
 

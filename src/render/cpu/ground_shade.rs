@@ -10,7 +10,8 @@ use glam::{Vec2, Vec3};
 use crate::cpu::hit::FacePoint;
 use crate::cpu::texture::{Reading, Texel, TexelFootprint, Texture, Weighting};
 use sandtable_draw::cover_noise::{CoverNoise, NoisePixel};
-use sandtable_draw::ground::{Contours, GroundDetail, GroundMap, GroundPost, LandPixel, PixelChange};
+use sandtable_draw::ground::{Contours, GroundDetail, GroundMap, GroundPost, PixelChange};
+use sandtable_draw::ground_cover::LandPixel;
 use sandtable_draw::ground_grain::ground_grain;
 use sandtable_draw::ground_imagery::{DrapedColor, GroundImagery};
 use sandtable_draw::ground_levels::{GroundLevel, PostCount, add_weighted, coarser_levels};
@@ -173,7 +174,12 @@ impl<'a> GroundShader<'a> {
     }
 
     fn land_pixel(&self, point: &GroundPoint, hit: &FacePoint) -> LandPixel {
-        LandPixel { post: point.post, change_m: change(point.gradient, hit), noise: point.noise }
+        LandPixel {
+            tint: self.map.tint(&point.post),
+            post: point.post,
+            change_m: change(point.gradient, hit),
+            noise: point.noise,
+        }
     }
 
     /// A point without its noise.
@@ -215,7 +221,7 @@ impl<'a> GroundShader<'a> {
             if self.shows_land(point, hit) {
                 self.map.land(&self.land_pixel(point, hit))
             } else {
-                self.map.hidden_land(&point.post)
+                self.map.tint(&point.post)
             }
         });
         let detail = GroundDetail {
