@@ -26,8 +26,11 @@ pub(crate) const OCTAVES: u32 = 6;
 pub(crate) const FIRST_FINE: u32 = 3;
 /// The share of each octave in a sum of all: four that are seen well together span about -1 to 1.
 pub(crate) const SHARE: f32 = 0.42;
+/// The share of each of the fine octaves of borders and forms, as a part of that of the one before: as strong as the wide ones, the
+/// narrowest that show would cover all ground with worms.
+pub(crate) const FAINTER: f32 = 0.7;
 /// A wave shows in full where it is this many pixels wide, and not at all where it is half as wide.
-pub(crate) const WAVE_PX: f32 = 5.0;
+pub(crate) const WAVE_PX: f32 = 6.0;
 /// Cosine and sine of the turn from one octave to the next.
 pub(crate) const TURN: Vec2 = Vec2::new(0.8, 0.6);
 /// Forms are made of octaves up to this many cells of the map wide: what is wider the map shows itself.
@@ -44,6 +47,9 @@ pub(crate) const GULLIES: f32 = 0.5;
 pub(crate) const GULLY_HEIGHT: f32 = 0.6;
 /// The greatest share of gullies in forms: the rest keeps them from being combed.
 pub(crate) const MOST_GULLIES: f32 = 0.8;
+/// By how much the forms of an octave turn the fall line of the next, as a part of the ground's own rise: gullies run into wider
+/// ones from both sides, as branches do.
+pub(crate) const BRANCHED: f32 = 1.2;
 
 /// The mean distance of the noise from its ridges, with [`CREST`].
 pub(crate) const MEAN_AWAY: f32 = 0.49;
@@ -126,8 +132,9 @@ struct NoiseLanes<const N: usize> {
     /// A wave's part that shows is its length times this, less 1.
     per_pixel: [f32; N],
     cell_m: f32,
-    /// The direction along the contour, of length 1 where the ground rises, and the share of gullies in forms.
-    level: [[f32; N]; 2],
+    /// The rise of the map, its length, and the share of gullies in forms.
+    rise: [[f32; N]; 2],
+    steep: [f32; N],
     gullies: [f32; N],
     /// The two values of the octave before.
     wider: [[f32; N]; 2],
@@ -144,16 +151,12 @@ impl<const N: usize> NoiseLanes<N> {
         let none = [0.0; N];
         let steep =
             of_each(pixels, |pixel| (pixel.rise.x * pixel.rise.x + pixel.rise.y * pixel.rise.y).sqrt());
-        let (mut level, mut gullies) = ([none; 2], none);
-        for lane in 0..N {
-            let scale = 1.0 / if steep[lane] > 1e-6 { steep[lane] } else { 1e-6 };
-            level[0][lane] = -pixels[lane].rise.y * scale;
-            level[1][lane] = pixels[lane].rise.x * scale;
-            let part = unit((steep[lane] - GULLY_RISE[0]) / (GULLY_RISE[1] - GULLY_RISE[0]));
-            gullies[lane] = MOST_GULLIES * smooth(part);
-        }
+        let gullies = of_each(&steep, |steep| {
+            MOST_GULLIES * smooth(unit((steep - GULLY_RISE[0]) / (GULLY_RISE[1] - GULLY_RISE[0])))
+        });
         Self {
-            level,
+            rise: [of_each(pixels, |pixel| pixel.rise.x), of_each(pixels, |pixel| pixel.rise.y)],
+            steep,
             gullies,
             at: [of_each(pixels, |pixel| pixel.at.x), of_each(pixels, |pixel| pixel.at.y)],
             per_pixel: of_each(pixels, |pixel| 2.0 / (WAVE_PX * pixel.mean_m)),
@@ -169,7 +172,7 @@ impl<const N: usize> NoiseLanes<N> {
 
     /// Adds an octave; false where no pixel shows it, nor any narrower one.
     #[inline(always)]
-    fn add(&mut self, &NoiseOctave { wave_m, turn }: &NoiseOctave, is_fine: bool) -> bool {
+    fn add(&mut self, &NoiseOctave { wave_m, turn, faint }: &NoiseOctave, is_fine: bool) -> bool {
         let share = of_each(&self.per_pixel, |per_pixel| SHARE * unit(wave_m * per_pixel - 1.0));
         if share.iter().all(|&share| share <= 0.0) {
             return false;
@@ -186,20 +189,20 @@ impl<const N: usize> NoiseLanes<N> {
         self.wider = [first, second];
         let patches = if is_fine { &mut self.fine } else { &mut self.patch };
         for lane in 0..N {
-            self.uneven[lane] += share[lane] * first[lane];
+            self.uneven[lane] += share[lane] * faint * first[lane];
             patches[lane] += share[lane] * second[lane];
         }
         let widest_m = FORM_CELLS * self.cell_m;
         let within = unit((widest_m - wave_m) / (0.75 * widest_m));
         if within > 0.0 {
             for lane in 0..N {
-                let [east, north] = [self.level[0][lane], self.level[1][lane]];
+                let [east, north] = self.level(lane);
                 let level = [turn.x * east - turn.y * north, turn.y * east + turn.x * north];
                 let (gully, gully_rise) = gullies(&CellPlace::of([place_x[lane], place_y[lane]]), level);
                 let part = self.gullies[lane];
                 let value = mix(first[lane], gully, part);
                 let (x, y) = (mix(rise_x[lane], gully_rise[0], part), mix(rise_y[lane], gully_rise[1], part));
-                let share = share[lane] * within;
+                let share = share[lane] * faint * within;
                 let away = (value * value + CREST * CREST).sqrt();
                 let crest = share * -value / away;
                 self.form[0][lane] += crest * (turn.x * x + turn.y * y);
@@ -208,6 +211,19 @@ impl<const N: usize> NoiseLanes<N> {
             }
         }
         true
+    }
+
+    /// The direction along the contour of the ground with the forms of wider octaves, of length 1 where it rises.
+    #[inline(always)]
+    fn level(&self, lane: usize) -> [f32; 2] {
+        let branched = BRANCHED * self.steep[lane];
+        let [east, north] = [0, 1].map(
+            #[inline(always)]
+            |axis: usize| self.rise[axis][lane] + branched * self.form[axis][lane],
+        );
+        let steep = (east * east + north * north).sqrt();
+        let scale = 1.0 / if steep > 1e-6 { steep } else { 1e-6 };
+        [-north * scale, east * scale]
     }
 
     #[inline(always)]
@@ -230,16 +246,19 @@ struct NoiseOctave {
     wave_m: f32,
     /// Cosine and sine of its turn.
     turn: Vec2,
+    /// The factor on its share in borders and forms; see [`FAINTER`].
+    faint: f32,
 }
 
 /// The octaves, the widest first.
 const OCTAVE_TABLE: [NoiseOctave; OCTAVES as usize] = {
-    let mut octaves = [NoiseOctave { wave_m: FIRST_M, turn: Vec2::X }; OCTAVES as usize];
+    let mut octaves = [NoiseOctave { wave_m: FIRST_M, turn: Vec2::X, faint: 1.0 }; OCTAVES as usize];
     let mut index = 1;
     while index < octaves.len() {
-        let NoiseOctave { wave_m, turn } = octaves[index - 1];
+        let NoiseOctave { wave_m, turn, faint } = octaves[index - 1];
         let turn = Vec2::new(TURN.x * turn.x - TURN.y * turn.y, TURN.y * turn.x + TURN.x * turn.y);
-        octaves[index] = NoiseOctave { wave_m: wave_m * FINER, turn };
+        let faint = if index >= FIRST_FINE as usize { faint * FAINTER } else { faint };
+        octaves[index] = NoiseOctave { wave_m: wave_m * FINER, turn, faint };
         index += 1;
     }
     octaves

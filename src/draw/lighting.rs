@@ -116,7 +116,8 @@ impl Lighting {
 /// Natural ground also returns in its shade the light of the sky and of the slopes opposite,
 /// `fill · FILL · max(albedo + FILL_CHROMA · (albedo − gray), 0) · (1 − soft)`, `gray` being as light as the albedo. Much of it has
 /// met ground of the same color before, which deepens the tint: dark slopes keep their hues under the cool light. In its light it
-/// is paler, `mix(albedo, gray, fill · GLARE · (soft − 1) / (BRIGHTEST − 1))`: leaves and grass mirror the white of the sun besides.
+/// is paler and warmer, `mix(albedo, gray · GLARE_COLOR, fill · GLARE · (soft − 1) / (BRIGHTEST − 1))`: leaves and grass mirror the
+/// sun besides.
 ///
 /// `gain` is [`Self::GAIN`] in light and [`Self::shade_gain`] in shade, so that the darkest slopes of gentle ground are as
 /// dark as those of mountains. Shadows need no such help: they are as dark on every ground. Ground that lies under symbols and
@@ -177,8 +178,10 @@ impl ReliefShading {
     pub const FILL: Vec3 = Vec3::new(0.105, 0.117, 0.144);
     /// By how much this light deepens colors: 0 leaves them as they are, which the cool light makes gray.
     pub const FILL_CHROMA: f32 = 0.35;
-    /// The share of gray in the color of the brightest natural ground: without it lit woods are lime.
-    pub const GLARE: f32 = 0.25;
+    /// The share of [`Self::GLARE_COLOR`] in the color of the brightest natural ground: without it lit woods are lime.
+    pub const GLARE: f32 = 0.6;
+    /// The color of glare at luminance 1: straw, as sunlight on leaves, dry grass and stone.
+    pub const GLARE_COLOR: Vec3 = Vec3::new(1.16, 0.975, 0.78);
     /// Brightness where no sky is seen.
     pub const CLOSED: f32 = 0.5;
     /// The contrast of the lowest ground; that of the highest quarter is 1.
@@ -233,7 +236,7 @@ impl ReliefShading {
         let deep = (albedo + (albedo - gray) * Self::FILL_CHROMA).max(Vec3::ZERO);
         let fill = deep * Self::FILL * (self.fill * (1.0 - brightness).clamp(0.0, 1.0));
         let glare = self.fill * Self::GLARE * ((brightness - 1.0) / (Self::BRIGHTEST - 1.0)).max(0.0);
-        (albedo.lerp(gray, glare) * tint / level * brightness + fill) * sky
+        (albedo.lerp(gray * Self::GLARE_COLOR, glare) * tint / level * brightness + fill) * sky
     }
 
     /// A brightness bent toward the darkest and the brightest.

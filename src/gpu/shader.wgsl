@@ -499,10 +499,10 @@ fn gully_wave(turns: f32) -> vec2f {
 
 fn cover_noise(at: vec2f, mean_pixel_m: f32, longest_m: f32, ground_rise: vec2f) -> Noise {
     let ground_steep = length(ground_rise);
-    let contour = vec2f(-ground_rise.y, ground_rise.x) / max(ground_steep, 1e-6);
     let gullies = NOISE_MOST_GULLIES * smoothstep(NOISE_GULLY_RISE.x, NOISE_GULLY_RISE.y, ground_steep);
     var sum = Noise(0.0, 0.0, 0.0, vec2f(0.0), 0.0, at, longest_m);
     var wave_m = NOISE_FIRST_M;
+    var faint = 1.0;
     var turn = vec2f(1.0, 0.0);
     var wider = vec2f(0.0);
     let widest = NOISE_FORM_CELLS * frame.cover_more.y;
@@ -525,11 +525,14 @@ fn cover_noise(at: vec2f, mean_pixel_m: f32, longest_m: f32, ground_rise: vec2f)
             let rise = vec2f(mix(se.x - sw.x, ne.x - nw.x, smoothed.y), north.x - south.x) * steep;
             wider = value;
             let share = NOISE_SHARE * shown;
-            sum.uneven += share * value.x;
             let is_fine = octave >= NOISE_FIRST_FINE;
+            faint *= select(1.0, NOISE_FAINTER, is_fine);
+            sum.uneven += share * faint * value.x;
             sum.patches += select(share * value.y, 0.0, is_fine);
             sum.fine += select(0.0, share * value.y, is_fine);
             let within = clamp((widest - wave_m) / (0.75 * widest), 0.0, 1.0);
+            let branched = ground_rise + NOISE_BRANCHED * ground_steep * sum.form;
+            let contour = vec2f(-branched.y, branched.x) / max(length(branched), 1e-6);
             let level = vec2f(turn.x * contour.x - turn.y * contour.y, turn.y * contour.x + turn.x * contour.y);
             let along = NOISE_GULLIES * (part.x * level.x + part.y * level.y);
             let waves_sw = gully_wave(along + 0.5 * (sw.x + 1.0));
@@ -549,8 +552,8 @@ fn cover_noise(at: vec2f, mean_pixel_m: f32, longest_m: f32, ground_rise: vec2f)
                 turn.x * ridged_rise.x + turn.y * ridged_rise.y,
                 turn.x * ridged_rise.y - turn.y * ridged_rise.x,
             );
-            sum.form += back * (share * within * crest);
-            sum.ridge += share * within * 2.0 * (NOISE_MEAN_AWAY - away);
+            sum.form += back * (share * faint * within * crest);
+            sum.ridge += share * faint * within * 2.0 * (NOISE_MEAN_AWAY - away);
         }
         wave_m *= NOISE_FINER;
         turn = vec2f(NOISE_TURN.x * turn.x - NOISE_TURN.y * turn.y, NOISE_TURN.y * turn.x + NOISE_TURN.x * turn.y);
@@ -895,7 +898,7 @@ fn relief_lit(albedo: vec3f, post: Post, small: vec2f, at: vec2f, received: vec2
     let deep = max(albedo + (albedo - gray) * RELIEF_FILL_CHROMA, vec3f(0.0));
     let fill = deep * RELIEF_FILL * (frame.cover_more.w * clamp(1.0 - brightness, 0.0, 1.0));
     let glare = RELIEF_GLARE * frame.cover_more.w * max((brightness - 1.0) / (RELIEF_BRIGHTEST - 1.0), 0.0);
-    return (mix(albedo, gray, glare) * tint * brightness + fill) * mix(RELIEF_CLOSED, 1.0, post.visibility.y * received.y);
+    return (mix(albedo, gray * RELIEF_GLARE_COLOR, glare) * tint * brightness + fill) * mix(RELIEF_CLOSED, 1.0, post.visibility.y * received.y);
 }
 
 // The normal on the side that is seen; the triangle's own where its corners have none.

@@ -25,8 +25,8 @@ const SLOPES: u32 = 256;
 /// One place of the land of so many is darker than [`DARK`].
 const DARKER: usize = 33;
 
-/// The luminance of the darkest places: CIE lightness 33.
-const DARK: f32 = 0.0755;
+/// The luminance of the darkest places: CIE lightness 32.
+const DARK: f32 = 0.0709;
 
 /// The greatest gain of shade: above it every dent of a plain would be a hole.
 const MOST_SHADE_GAIN: f32 = 6.0;

@@ -37,7 +37,7 @@ const FILLED: f64 = 0.6;
 /// The least standard deviation of the lightness of the ground, and what its 2nd percentile is at most and its 98th at
 /// least.
 const SPREAD: f64 = 9.0;
-const DARK: f64 = 38.5;
+const DARK: f64 = 38.0;
 const LIGHT: f64 = 85.0;
 
 /// The least contrast of letters with what is around them (WCAG 2.2, 1.4.3).

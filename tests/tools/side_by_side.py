@@ -41,7 +41,7 @@ PLACES = {
         [f"scenes/swellendam_za/{name}.shp" for name in ("rivers", "water", "places")],
     ),
     "taunton": ("scenes/taunton_uk/dtm.tif", [f"scenes/taunton_uk/{name}.shp" for name in ("buildings", "trees", "lines")]),
-    "porto_alegre": ("scenes/porto_alegre_br/poa_elevation.tif", ["scenes/porto_alegre_br/derived/water.geojson"]),
+    "porto_alegre": ("scenes/porto_alegre_br/poa_elevation.tif", ["scenes/porto_alegre_br/poa_osm.pbf"]),
     "red_butte": (
         "scenes/redbutte_us/red_butte_dem.tif",
         [f"scenes/redbutte_us/red_butte_{name}.geojson" for name in ("reservoir", "road", "rna")],

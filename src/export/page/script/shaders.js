@@ -262,10 +262,10 @@ vec2 gully_wave(float turns) {
 
 Noise cover_noise(vec2 at, float mean_pixel_m, float longest_m, vec2 ground_rise) {
   float ground_steep = length(ground_rise);
-  vec2 contour = vec2(-ground_rise.y, ground_rise.x) / max(ground_steep, 1e-6);
   float gullies = NOISE_MOST_GULLIES * smoothstep(NOISE_GULLY_RISE.x, NOISE_GULLY_RISE.y, ground_steep);
   Noise sum = Noise(0.0, 0.0, 0.0, vec2(0.0), 0.0, at, longest_m);
   float wave_m = NOISE_FIRST_M;
+  float faint = 1.0;
   vec2 turn = vec2(1.0, 0.0);
   vec2 wider = vec2(0.0);
   float widest = NOISE_FORM_CELLS * cover_more.y;
@@ -288,9 +288,12 @@ Noise cover_noise(vec2 at, float mean_pixel_m, float longest_m, vec2 ground_rise
       vec2 rise = vec2(mix(se.x - sw.x, ne.x - nw.x, smoothed.y), north.x - south.x) * steep;
       wider = value;
       float share = NOISE_SHARE * shown;
-      sum.uneven += share * value.x;
+      if (octave >= NOISE_FIRST_FINE) faint *= NOISE_FAINTER;
+      sum.uneven += share * faint * value.x;
       if (octave < NOISE_FIRST_FINE) sum.patches += share * value.y; else sum.fine += share * value.y;
       float within = clamp((widest - wave_m) / (0.75 * widest), 0.0, 1.0);
+      vec2 branched = ground_rise + NOISE_BRANCHED * ground_steep * sum.form;
+      vec2 contour = vec2(-branched.y, branched.x) / max(length(branched), 1e-6);
       vec2 level = vec2(turn.x * contour.x - turn.y * contour.y, turn.y * contour.x + turn.x * contour.y);
       float along = NOISE_GULLIES * dot(part, level);
       vec2 waves_sw = gully_wave(along + 0.5 * (sw.x + 1.0));
@@ -310,8 +313,8 @@ Noise cover_noise(vec2 at, float mean_pixel_m, float longest_m, vec2 ground_rise
         turn.x * ridged_rise.x + turn.y * ridged_rise.y,
         turn.x * ridged_rise.y - turn.y * ridged_rise.x
       );
-      sum.form += back * (share * within * crest);
-      sum.ridge += share * within * 2.0 * (NOISE_MEAN_AWAY - away);
+      sum.form += back * (share * faint * within * crest);
+      sum.ridge += share * faint * within * 2.0 * (NOISE_MEAN_AWAY - away);
     }
     wave_m *= NOISE_FINER;
     turn = vec2(NOISE_TURN.x * turn.x - NOISE_TURN.y * turn.y, NOISE_TURN.y * turn.x + NOISE_TURN.x * turn.y);
@@ -441,7 +444,7 @@ vec3 relief_lit(vec3 albedo, float height, vec4 post, float sky_share, vec2 plac
   vec3 deep = max(albedo + (albedo - gray) * RELIEF_FILL_CHROMA, vec3(0.0));
   vec3 fill = cover.z > 0.0 ? deep * RELIEF_FILL * clamp(1.0 - brightness, 0.0, 1.0) : vec3(0.0);
   float glare = cover.z > 0.0 ? RELIEF_GLARE * max((brightness - 1.0) / (RELIEF_BRIGHTEST - 1.0), 0.0) : 0.0;
-  return (mix(albedo, gray, glare) * hue * brightness + fill) * mix(RELIEF_CLOSED, 1.0, sky_share);
+  return (mix(albedo, gray * RELIEF_GLARE_COLOR, glare) * hue * brightness + fill) * mix(RELIEF_CLOSED, 1.0, sky_share);
 }
 
 void main() {
