@@ -8,7 +8,7 @@ use std::sync::Arc;
 use glam::{UVec2, Vec2, Vec3};
 
 use crate::color::Srgba;
-use crate::cover_noise::CoverNoise;
+use crate::cover_noise::{CoverNoise, NoisePixel};
 use crate::ground_cover::{GroundCover, LandPixel};
 use crate::ground_imagery::{DrapedColor, GroundImagery};
 use crate::lighting::ReliefShading;
@@ -318,6 +318,13 @@ impl GroundMap {
     /// The ramp's color in linear light: that of land without a cover.
     pub fn tint(&self, post: &GroundPost) -> Vec3 {
         self.ramp.linear_at(post.height_m)
+    }
+
+    /// A pixel at `at`, world X and Y, `mean_m` and at the most `longest_m` meters wide in plan, where the map reads `post`, as its noise
+    /// depends on it.
+    pub fn noise_pixel(&self, post: &GroundPost, at: Vec2, mean_m: f32, longest_m: f32) -> NoisePixel {
+        let true_rise = self.cover.map_or(1.0, |cover| cover.true_rise);
+        NoisePixel { at, mean_m, longest_m, rise: Vec2::new(post.slope_east, post.slope_north) * true_rise }
     }
 
     /// The color of a pixel of dry land in linear light: the ramp with its cover and [`Undergrowth`].

@@ -4,7 +4,7 @@ use glam::Vec2;
 use rayon::prelude::*;
 
 use sandtable_draw::color::Srgba;
-use sandtable_draw::cover_noise::{CoverNoise, NoisePixel};
+use sandtable_draw::cover_noise::CoverNoise;
 use sandtable_draw::ground::{GroundDetail, GroundMap, GroundPost, PixelChange};
 use sandtable_draw::ground_cover::LandPixel;
 use sandtable_draw::pixels::Pixels;
@@ -61,12 +61,7 @@ fn color(map: &GroundMap, at: Vec2, step: Vec2) -> Srgba {
     let draped = map.imagery.as_deref().map(|imagery| imagery.at(at)).unwrap_or_default();
     let post = map.sample(at);
     let wide_m = step.max_element();
-    let noise = |_| {
-        CoverNoise::new(
-            &NoisePixel { at, mean_m: wide_m, longest_m: wide_m, rise: Vec2::ZERO },
-            map.cell.max_element(),
-        )
-    };
+    let noise = |_| CoverNoise::new(&map.noise_pixel(&post, at, wide_m, wide_m), map.cell.max_element());
     let noise = map.cover.map(noise).unwrap_or_default();
     let land = map.land(&LandPixel { tint: map.tint(&post), post, change_m: change.height_m, noise });
     Srgba::from_linear(map.albedo(&post, change, &GroundDetail { grain: 1.0, land, draped, facing: 0.0 }))

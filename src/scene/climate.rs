@@ -111,15 +111,15 @@ impl Climate {
         let hot = (part(self.dryness, [0.6, 0.85]) * warmth) as f32;
         let color =
             |[red, green, blue]: [u8; 3], light: f32| CoverColor::new(Srgba::opaque(red, green, blue), light);
-        let woods = color([91, 114, 67], 0.64)
+        let woods = color([86, 114, 70], 0.63)
             .lerp(&color([72, 118, 64], 0.60), self.tropical as f32)
             .lerp(&color([92, 114, 86], 0.70), self.polar as f32)
-            .lerp(&color([90, 114, 74], 0.66), dry);
+            .lerp(&color([88, 114, 76], 0.66), dry);
         let meadow = color([168, 178, 118], 1.02)
             .lerp(&color([166, 166, 134], 0.95), self.polar as f32)
             .lerp(&color([188, 178, 126], 1.02), dry);
-        let scree = color([184, 173, 150], 0.97).lerp(&color([202, 172, 138], 0.98), hot);
-        let rock = color([156, 149, 128], 0.80).lerp(&color([180, 128, 98], 0.80), hot);
+        let scree = color([184, 173, 150], 0.97).lerp(&color([208, 166, 130], 0.98), hot);
+        let rock = color([156, 149, 128], 0.80).lerp(&color([188, 122, 90], 0.80), hot);
         let crops = color([224, 204, 136], 1.16);
         let soil = color([186, 150, 112], 0.92).lerp(&color([190, 140, 104], 0.94), dry);
         [woods, meadow, scree, rock, color([238, 243, 250], 1.2), crops, soil]

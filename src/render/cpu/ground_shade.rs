@@ -163,14 +163,8 @@ impl<'a> GroundShader<'a> {
     }
 
     fn noise_pixel(&self, point: &GroundPoint, hit: &FacePoint) -> NoisePixel {
-        let rise = Vec2::new(point.post.slope_east, point.post.slope_north);
-        let true_rise = self.map.cover.map_or(1.0, |cover| cover.true_rise);
-        NoisePixel {
-            at: hit.world.truncate() + self.noise_origin,
-            mean_m: hit.mean_pixel_m(),
-            longest_m: hit.pixel_m(),
-            rise: rise * true_rise,
-        }
+        let at = hit.world.truncate() + self.noise_origin;
+        self.map.noise_pixel(&point.post, at, hit.mean_pixel_m(), hit.pixel_m())
     }
 
     fn land_pixel(&self, point: &GroundPoint, hit: &FacePoint) -> LandPixel {
