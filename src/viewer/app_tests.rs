@@ -12,6 +12,7 @@ use crate::app::{ViewerApp, ViewerStage, WindowRequest};
 use crate::picked_part::DragTarget;
 use crate::recent::RecentFiles;
 use sandtable_editing::viewing::ViewerOptions;
+use sandtable_view::camera::Camera;
 
 /// A place in the view, right of the panels.
 pub(super) const IN_VIEW: Pos2 = pos2(800.0, 520.0);
@@ -53,7 +54,7 @@ pub(super) fn window(file: Option<&Path>) -> AppHarness {
             app.get_or_insert_with(|| ViewerApp::with_recent(&options, ui.ctx(), RecentFiles::default()));
         app.show(ui);
         // What a renderer would take over.
-        drop(app.scene_frame());
+        drop(app.scene_frame(Camera::size));
     };
     let builder = Harness::builder().with_size([1200.0, 800.0]).with_max_steps(1_000);
     let mut harness = builder.build_ui_state(draw, None);
