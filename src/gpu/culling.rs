@@ -70,15 +70,20 @@ impl CullingView {
         Self { camera: *camera, frustum: Frustum::new(camera) }
     }
 
+    /// Whether any of what a box holds may be seen, however small it is.
+    pub fn reaches(&self, bounds: &Aabb) -> bool {
+        self.frustum.may_see(bounds.min, bounds.max)
+    }
+
     /// Whether any of a group may be seen.
     pub fn shows(&self, ItemGroup { bounds, largest_m }: &ItemGroup) -> bool {
-        let Self { camera, frustum } = self;
+        let camera = &self.camera;
         let ahead_m = camera.forward().dot(bounds.center() - camera.eye());
         let nearest_m = ahead_m - camera.forward().abs().dot(bounds.size()) * 0.5;
         let largest_px = camera.pixels_per_meter(nearest_m.max(camera.planes().0)) * largest_m;
         // What is not finite is drawn.
         let is_small = largest_px < LEAST_PX;
-        !is_small && frustum.may_see(bounds.min, bounds.max)
+        !is_small && self.reaches(bounds)
     }
 }
 

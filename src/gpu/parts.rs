@@ -42,6 +42,8 @@ impl ShaderParts {
     pub const WATER_RELIEF: Self = Self(131_072);
     /// Shadows of the sun by one reading of their map, with hard borders.
     const PLAIN_SHADOWS: Self = Self(262_144);
+    /// Ground without plots of fields, read at few places of a pixel.
+    const PLAIN_GROUND: Self = Self(524_288);
     /// Windows of finer posts.
     pub const WINDOWS: Self = Self(32_768);
 
@@ -57,9 +59,10 @@ impl ShaderParts {
     }
 
     /// These with less in them where that is hardly seen in a picture of few pixels that moves: a software driver takes the
-    /// steps of a mirrored ray, and reads all texels of a shadow's border, at every pixel that is drawn with a shader that can.
+    /// steps of a mirrored ray, and reads all texels of a shadow's border and all posts of a pixel's ground, at every pixel that is
+    /// drawn with a shader that can.
     pub fn while_moving(self) -> Self {
-        let plain = Self::PLAIN_SHADOWS.when(self.has(Self::SUN_SHADOWS));
+        let plain = Self::PLAIN_GROUND.with(Self::PLAIN_SHADOWS.when(self.has(Self::SUN_SHADOWS)));
         self.without(Self::WATER_RELIEF.with(Self::SKY_SHADOWS).with(Self::GRAIN)).with(plain)
     }
 
@@ -128,7 +131,7 @@ impl ShaderParts {
             .with(all(&map).when(colored))
             .with(all(&mirrored).when(mirrors && picture.has(Self::WATER_RELIEF)))
             .with(Self::GRAIN.when(colored || self.has(Self::NATURAL)))
-            .with(Self::WINDOWS.when(self.has(Self::GROUND)))
+            .with(Self::WINDOWS.with(Self::PLAIN_GROUND).when(self.has(Self::GROUND)))
             .with(all(&shadows).when(lit));
         let of_material = all(&[
             Self::GROUND,
@@ -157,15 +160,16 @@ mod tests {
     }
 
     #[test]
-    fn what_moves_has_no_part_that_a_picture_at_rest_lacks_but_plain_shadows() {
+    fn what_moves_has_no_part_that_a_picture_at_rest_lacks_but_plain_shadows_and_ground() {
         let map = ShaderParts::COVER.with(ShaderParts::MAP_WATER);
         let whole = map.with(ShaderParts::WATER_RELIEF).with(ShaderParts::GRAIN);
-        assert_eq!(whole.while_moving(), map);
+        let plain = map.with(ShaderParts::PLAIN_GROUND);
+        assert_eq!(whole.while_moving(), plain);
         let shaded = map.with(ShaderParts::SUN_SHADOWS).with(ShaderParts::SKY_SHADOWS);
-        let moving = map.with(ShaderParts::SUN_SHADOWS).with(ShaderParts::PLAIN_SHADOWS);
+        let moving = plain.with(ShaderParts::SUN_SHADOWS).with(ShaderParts::PLAIN_SHADOWS);
         assert_eq!(shaded.while_moving(), moving);
         let ribbon = ShaderParts::GROUND_LIGHT.with(ShaderParts::WATER);
-        let lit = ribbon.with(ShaderParts::SUN_SHADOWS).with(ShaderParts::PLAIN_SHADOWS);
+        let lit = ribbon.with(moving.without(map));
         assert_eq!(ribbon.in_picture(moving), lit, "water that mirrors the sky alone needs no ground");
     }
 

@@ -83,6 +83,8 @@ const MATERIAL_TEXELS = 12u;
 
 // The most readings of the ground along the longer side of a pixel seen at a grazing angle.
 const MOST_TAPS = 8.0;
+// The same of plain ground.
+const PLAIN_TAPS = 2.0;
 // Masks are read this many mip levels finer than colors, since each of a pixel's samples reads its own.
 const MASK_LEVEL_BIAS = -1.0;
 
@@ -142,6 +144,7 @@ const WINDOWS_PART = 32768u;
 const AREA_PART = 65536u;
 const WATER_RELIEF_PART = 131072u;
 const PLAIN_SHADOWS_PART = 262144u;
+const PLAIN_GROUND_PART = 524288u;
 
 struct Corner {
     @location(0) position: vec3f,
@@ -342,7 +345,8 @@ fn between(sw: Post, se: Post, nw: Post, ne: Post, part: vec2f, scale: f32) -> P
 }
 
 // The ground over a pixel that spans `right` and `down`: near the eye one reading of the map itself, far
-// away several readings of a coarser level along the pixel's longer side, since one would sparkle.
+// away several readings of a coarser level along the pixel's longer side, since one would sparkle. Plain ground is read at
+// few places of one level: each post takes a software driver as long as a hundred operations.
 fn ground_at(at: vec2f, right: vec2f, down: vec2f) -> Post {
     let across = length(right / frame.ground.zw);
     let along = length(down / frame.ground.zw);
@@ -352,16 +356,19 @@ fn ground_at(at: vec2f, right: vec2f, down: vec2f) -> Post {
     if has(WINDOWS_PART) {
         windows = windows_over(at);
     }
-    let taps = clamp(ceil(longer / max(min(across, along), exp2(-windows))), 1.0, MOST_TAPS);
+    let is_plain = has(PLAIN_GROUND_PART);
+    let most_taps = select(MOST_TAPS, PLAIN_TAPS, is_plain);
+    let taps = clamp(ceil(longer / max(min(across, along), exp2(-windows))), 1.0, most_taps);
     let most = f32(frame.ground_size.z - 1u);
-    let level = clamp(log2(max(longer / taps, 1e-6)), -windows, most);
+    let between_levels = clamp(log2(max(longer / taps, 1e-6)), -windows, most);
+    let level = select(between_levels, round(between_levels), is_plain);
     let lower = i32(floor(level));
     let part = level - f32(lower);
     var sum = Post(0.0, vec2f(0.0), vec3f(0.0), vec2f(0.0), vec2f(0.0));
     for (var tap = 0.0; tap < taps; tap += 1.0) {
         let here = at + axis * ((tap + 0.5) / taps - 0.5);
         var post = ground_at_level(here, lower);
-        if part > 0.0 {
+        if !is_plain && part > 0.0 {
             post = mix_post(post, ground_at_level(here, lower + 1), part);
         }
         sum.height += post.height / taps;
@@ -508,53 +515,55 @@ fn cover_noise(at: vec2f, mean_pixel_m: f32, longest_m: f32, ground_rise: vec2f)
     let widest = NOISE_FORM_CELLS * frame.cover_more.y;
     for (var octave = 0.0; octave < NOISE_OCTAVES; octave += 1.0) {
         let shown = clamp(2.0 * wave_m / (NOISE_WAVE_PX * mean_pixel_m) - 1.0, 0.0, 1.0);
-        if shown > 0.0 {
-            let place = vec2f(turn.x * at.x - turn.y * at.y, turn.y * at.x + turn.x * at.y) / wave_m + NOISE_BENT * wider;
-            let cell = floor(place);
-            let part = place - cell;
-            let smoothed = part * part * (3.0 - 2.0 * part);
-            let steep = 6.0 * part * (1.0 - part);
-            let corner = vec2u(vec2i(cell));
-            let sw = noise_values(corner);
-            let se = noise_values(corner + vec2u(1u, 0u));
-            let nw = noise_values(corner + vec2u(0u, 1u));
-            let ne = noise_values(corner + vec2u(1u, 1u));
-            let south = mix(sw, se, smoothed.x);
-            let north = mix(nw, ne, smoothed.x);
-            let value = mix(south, north, smoothed.y);
-            let rise = vec2f(mix(se.x - sw.x, ne.x - nw.x, smoothed.y), north.x - south.x) * steep;
-            wider = value;
-            let share = NOISE_SHARE * shown;
-            let is_fine = octave >= NOISE_FIRST_FINE;
-            faint *= select(1.0, NOISE_FAINTER, is_fine);
-            sum.uneven += share * faint * value.x;
-            sum.patches += select(share * value.y, 0.0, is_fine);
-            sum.fine += select(0.0, share * value.y, is_fine);
-            let within = clamp((widest - wave_m) / (0.75 * widest), 0.0, 1.0);
-            let branched = ground_rise + NOISE_BRANCHED * ground_steep * sum.form;
-            let contour = vec2f(-branched.y, branched.x) / max(length(branched), 1e-6);
-            let level = vec2f(turn.x * contour.x - turn.y * contour.y, turn.y * contour.x + turn.x * contour.y);
-            let along = NOISE_GULLIES * (part.x * level.x + part.y * level.y);
-            let waves_sw = gully_wave(along + 0.5 * (sw.x + 1.0));
-            let waves_se = gully_wave(along - NOISE_GULLIES * level.x + 0.5 * (se.x + 1.0));
-            let waves_nw = gully_wave(along - NOISE_GULLIES * level.y + 0.5 * (nw.x + 1.0));
-            let waves_ne = gully_wave(along - NOISE_GULLIES * (level.x + level.y) + 0.5 * (ne.x + 1.0));
-            let waves_south = mix(waves_sw, waves_se, smoothed.x);
-            let waves_north = mix(waves_nw, waves_ne, smoothed.x);
-            let wave = mix(waves_south, waves_north, smoothed.y);
-            let blend = vec2f(mix(waves_se.x - waves_sw.x, waves_ne.x - waves_nw.x, smoothed.y), waves_north.x - waves_south.x);
-            let gully_rise = NOISE_GULLY_HEIGHT * (blend * steep + NOISE_GULLIES * wave.y * level);
-            let ridged = mix(value.x, NOISE_GULLY_HEIGHT * wave.x, gullies);
-            let ridged_rise = mix(rise, gully_rise, gullies);
-            let away = sqrt(ridged * ridged + NOISE_CREST * NOISE_CREST);
-            let crest = -ridged / away;
-            let back = vec2f(
-                turn.x * ridged_rise.x + turn.y * ridged_rise.y,
-                turn.x * ridged_rise.y - turn.y * ridged_rise.x,
-            );
-            sum.form += back * (share * faint * within * crest);
-            sum.ridge += share * faint * within * 2.0 * (NOISE_MEAN_AWAY - away);
+        // Finer waves show less.
+        if !(shown > 0.0) {
+            break;
         }
+        let place = vec2f(turn.x * at.x - turn.y * at.y, turn.y * at.x + turn.x * at.y) / wave_m + NOISE_BENT * wider;
+        let cell = floor(place);
+        let part = place - cell;
+        let smoothed = part * part * (3.0 - 2.0 * part);
+        let steep = 6.0 * part * (1.0 - part);
+        let corner = vec2u(vec2i(cell));
+        let sw = noise_values(corner);
+        let se = noise_values(corner + vec2u(1u, 0u));
+        let nw = noise_values(corner + vec2u(0u, 1u));
+        let ne = noise_values(corner + vec2u(1u, 1u));
+        let south = mix(sw, se, smoothed.x);
+        let north = mix(nw, ne, smoothed.x);
+        let value = mix(south, north, smoothed.y);
+        let rise = vec2f(mix(se.x - sw.x, ne.x - nw.x, smoothed.y), north.x - south.x) * steep;
+        wider = value;
+        let share = NOISE_SHARE * shown;
+        let is_fine = octave >= NOISE_FIRST_FINE;
+        faint *= select(1.0, NOISE_FAINTER, is_fine);
+        sum.uneven += share * faint * value.x;
+        sum.patches += select(share * value.y, 0.0, is_fine);
+        sum.fine += select(0.0, share * value.y, is_fine);
+        let within = clamp((widest - wave_m) / (0.75 * widest), 0.0, 1.0);
+        let branched = ground_rise + NOISE_BRANCHED * ground_steep * sum.form;
+        let contour = vec2f(-branched.y, branched.x) / max(length(branched), 1e-6);
+        let level = vec2f(turn.x * contour.x - turn.y * contour.y, turn.y * contour.x + turn.x * contour.y);
+        let along = NOISE_GULLIES * (part.x * level.x + part.y * level.y);
+        let waves_sw = gully_wave(along + 0.5 * (sw.x + 1.0));
+        let waves_se = gully_wave(along - NOISE_GULLIES * level.x + 0.5 * (se.x + 1.0));
+        let waves_nw = gully_wave(along - NOISE_GULLIES * level.y + 0.5 * (nw.x + 1.0));
+        let waves_ne = gully_wave(along - NOISE_GULLIES * (level.x + level.y) + 0.5 * (ne.x + 1.0));
+        let waves_south = mix(waves_sw, waves_se, smoothed.x);
+        let waves_north = mix(waves_nw, waves_ne, smoothed.x);
+        let wave = mix(waves_south, waves_north, smoothed.y);
+        let blend = vec2f(mix(waves_se.x - waves_sw.x, waves_ne.x - waves_nw.x, smoothed.y), waves_north.x - waves_south.x);
+        let gully_rise = NOISE_GULLY_HEIGHT * (blend * steep + NOISE_GULLIES * wave.y * level);
+        let ridged = mix(value.x, NOISE_GULLY_HEIGHT * wave.x, gullies);
+        let ridged_rise = mix(rise, gully_rise, gullies);
+        let away = sqrt(ridged * ridged + NOISE_CREST * NOISE_CREST);
+        let crest = -ridged / away;
+        let back = vec2f(
+            turn.x * ridged_rise.x + turn.y * ridged_rise.y,
+            turn.x * ridged_rise.y - turn.y * ridged_rise.x,
+        );
+        sum.form += back * (share * faint * within * crest);
+        sum.ridge += share * faint * within * 2.0 * (NOISE_MEAN_AWAY - away);
         wave_m *= NOISE_FINER;
         turn = vec2f(NOISE_TURN.x * turn.x - NOISE_TURN.y * turn.y, NOISE_TURN.y * turn.x + NOISE_TURN.x * turn.y);
     }
@@ -613,7 +622,10 @@ fn with_cover(tint: vec3f, post: Post, change: f32, noise: Noise) -> vec3f {
     let farmed = smoothstep(COVER_FARMED_MOISTURE.x, COVER_FARMED_MOISTURE.y, moist)
         * (1.0 - smoothstep(COVER_FARMED_RISE.x, COVER_FARMED_RISE.y, rise)) * (1.0 - wild) * (1.0 - above_trees);
     if farmed > 0.0 {
-        let plot = field_tone(noise.at, max(noise.longest_m, COVER_LEAST_PIXEL_M));
+        var plot = 0.0;
+        if !has(PLAIN_GROUND_PART) {
+            plot = field_tone(noise.at, max(noise.longest_m, COVER_LEAST_PIXEL_M));
+        }
         let tone = clamp(plot + COVER_FARMED_PATCHES * noise.patches, -1.0, 1.0);
         let other = select(frame.cover_colors[6], frame.cover_colors[1], tone < 0.0);
         color = covered_by(color, tint, own, mix(frame.cover_colors[5], other, abs(tone)), COVER_HUE.x, farmed);

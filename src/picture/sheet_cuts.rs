@@ -33,6 +33,11 @@ impl SheetCuts {
     pub fn patches(&self) -> &[usize] {
         &self.patches
     }
+
+    /// Keeps the patches that are meant: what was cut of the others is of no use.
+    pub fn retain(&mut self, is_meant: impl Fn(usize) -> bool) {
+        self.patches.retain(|&patch| is_meant(patch));
+    }
 }
 
 impl GroundSheets {

@@ -52,6 +52,16 @@ impl TaskGround {
         &self.task.lattice
     }
 
+    /// The reach of the spheres.
+    pub fn reach(&self) -> f32 {
+        self.task.options.reach
+    }
+
+    /// How often the terrain had been edited.
+    pub fn edits(&self) -> u64 {
+        self.task.edits
+    }
+
     fn source(&self) -> WholeGround<'_> {
         let ground = PatchedGround { lattice: &self.task.lattice, layout: &self.task.layout };
         WholeGround { ground, spheres: &self.spheres }

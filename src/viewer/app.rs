@@ -38,6 +38,7 @@ use sandtable_editing::viewing::ViewerOptions;
 use sandtable_files::disk;
 use sandtable_picture::tried_analysis::tried_feature;
 use sandtable_scene::feature::FeatureKind;
+use sandtable_view::camera::Camera;
 use sandtable_view::navigation::pose::{ViewPose, wrapped};
 use sandtable_view::navigation::{NavigationMode, TRANSITION_S};
 
@@ -195,13 +196,14 @@ impl ViewerApp {
         std::mem::take(&mut self.requests)
     }
 
-    /// The frame for the scene's renderer; `None` where there is no scene, or its camera sees nothing.
-    pub fn scene_frame(&mut self) -> Option<SceneFrame> {
+    /// The frame for the scene's renderer, of whose picture `drawn_size` says how many pixels are drawn; `None` where there is no
+    /// scene, or its camera sees nothing.
+    pub fn scene_frame(&mut self, drawn_size: impl FnOnce(&Camera) -> (u32, u32)) -> Option<SceneFrame> {
         let opened = self.opened.as_mut().filter(|_| self.view.size.0 > 0)?;
-        match opened.frame(self.view.size) {
+        match opened.frame(self.view.size, drawn_size) {
             Ok(frame) => {
                 self.view.camera = Some(frame.camera);
-                if frame.statistics.waiting_patches > 0 {
+                if frame.statistics.waiting_patches > 0 || frame.wants_ground {
                     self.context.request_repaint();
                 }
                 Some(frame)

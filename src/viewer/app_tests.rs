@@ -12,6 +12,7 @@ use crate::app::{ViewerApp, ViewerStage, WindowRequest};
 use crate::picked_part::DragTarget;
 use crate::recent::RecentFiles;
 use sandtable_editing::viewing::ViewerOptions;
+use sandtable_view::camera::Camera;
 
 /// A place in the view, right of the panels.
 pub(super) const IN_VIEW: Pos2 = pos2(800.0, 520.0);
@@ -53,7 +54,7 @@ pub(super) fn window(file: Option<&Path>) -> AppHarness {
             app.get_or_insert_with(|| ViewerApp::with_recent(&options, ui.ctx(), RecentFiles::default()));
         app.show(ui);
         // What a renderer would take over.
-        drop(app.scene_frame());
+        drop(app.scene_frame(Camera::size));
     };
     let builder = Harness::builder().with_size([1200.0, 800.0]).with_max_steps(1_000);
     let mut harness = builder.build_ui_state(draw, None);
@@ -415,4 +416,33 @@ fn a_script_that_moves_the_sun_ends_without_a_question() {
     let quit = report["commands"].as_array().and_then(|done| done.last()).expect("told");
     assert_eq!((&quit["command"], &quit["unsaved"]), (&"quit".into(), &true.into()));
     assert!(!fs::read_to_string(&scene.file).expect("there").contains("azimuth = 120"), "not saved");
+}
+
+#[test]
+fn a_picture_of_fewer_pixels_has_ground_for_these_and_the_whole_one_has_its_own_at_once() {
+    let mut harness = window(Some(Path::new(concat!(env!("SANDTABLE_ROOT"), "scenes/road.toml"))));
+    let context = harness.ctx.clone();
+    let opened = harness.state_mut().as_mut().and_then(|app| app.opened.as_mut()).expect("open");
+    let size = opened.size;
+    let few = |_: &Camera| (size.0 / 8, size.1 / 8);
+    let mut triangles = |lowers: bool| {
+        let drawn_size = |camera: &Camera| if lowers { few(camera) } else { camera.size() };
+        opened.follow_reach(&context).expect("no fault");
+        let frame = opened.frame(size, drawn_size).expect("in sight");
+        assert!(lowers || !frame.wants_ground, "the whole ground is there");
+        frame.statistics.triangles
+    };
+    let whole = triangles(false);
+    let end = Instant::now() + Duration::from_secs(60);
+    while triangles(true) == whole {
+        assert!(Instant::now() < end, "no coarser ground in a minute");
+        thread::sleep(Duration::from_millis(5));
+    }
+    let coarse = triangles(true);
+    assert!(coarse < whole / 2, "{coarse} and {whole} triangles");
+    assert_eq!([false, true, false].map(triangles), [whole, coarse, whole], "neither is made again");
+    opened.frame(size, few).expect("in sight");
+    opened.leave_one_ground();
+    let camera = opened.camera(size).expect("sound");
+    assert!(opened.walk.suits(&camera) && opened.aside.is_none(), "an edit is of the whole ground");
 }

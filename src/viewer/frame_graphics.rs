@@ -100,7 +100,7 @@ impl FrameGraphics {
     }
 
     /// The size in pixels of the scene's picture of the next frame.
-    pub fn picture_size(&mut self, camera: &Camera, purpose: FramePurpose) -> (u32, u32) {
+    fn picture_size(&mut self, camera: &Camera, purpose: FramePurpose) -> (u32, u32) {
         self.size.as_mut().map_or(camera.size(), |size| size.of_next(camera, purpose))
     }
 
@@ -131,8 +131,8 @@ impl FrameGraphics {
         let requests = app.take_requests();
         let is_kept = requests.iter().any(|request| matches!(request, WindowRequest::Picture(_)));
         let purpose = if is_kept { FramePurpose::Kept } else { FramePurpose::Shown };
-        let mut frame = app.scene_frame();
-        let drawn = frame.as_mut().and_then(|frame| self.draw_scene(&mut encoder, (frame, purpose), app));
+        let mut frame = app.scene_frame(|camera| self.picture_size(camera, purpose));
+        let drawn = frame.as_mut().and_then(|frame| self.draw_scene(&mut encoder, frame, app));
         if self.size.as_ref().is_some_and(DrawnSize::is_lowered) {
             context.request_repaint();
         }
@@ -146,7 +146,7 @@ impl FrameGraphics {
     fn draw_scene(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        (frame, purpose): (&mut SceneFrame, FramePurpose),
+        frame: &mut SceneFrame,
         app: &mut ViewerApp,
     ) -> Option<(FrameTime, FrameLoad)> {
         if self.scene.is_none() {
@@ -155,7 +155,7 @@ impl FrameGraphics {
         let mut scene = self.scene.take()?;
         let options = LiveOptions { wireframe: app.shows_edges(), ..LiveOptions::default() };
         let is_loaded = frame.load.is_some();
-        let drawn = scene.draw(self, encoder, (frame, purpose), &options);
+        let drawn = scene.draw(self, encoder, frame, &options);
         match drawn {
             Ok(drawn) => {
                 if is_loaded {

@@ -33,6 +33,7 @@ use sandtable_view::navigation::{NavigatedSpace, NavigationSteps, Navigator, TRA
 use sandtable_walk::Walk;
 use sandtable_walk::frame::{ReachRenewal, WalkError, WalkOptions, WalkStatistics};
 use sandtable_walk::pick::{PickedWorld, StandingIndex, WalkPick, described, pixel_ray};
+use sandtable_walk::reach::ReachedGround;
 
 /// The size that cameras are fitted to before the window has one.
 pub const FIRST_SIZE: (u32, u32) = (1280, 720);
@@ -86,6 +87,8 @@ pub struct OpenedScene {
     pub(super) relisting: Option<Relisting>,
     /// The ground for another picture, while it is made.
     pub(super) reaching: Option<Reaching>,
+    /// The ground of the whole picture while one of fewer pixels is shown, or the reverse.
+    pub(super) aside: Option<ReachedGround>,
     /// Whether the list is of old, or will be when the next one is there.
     pub(super) wants_list: bool,
     pub(super) shadows: ShadowState,
@@ -93,6 +96,10 @@ pub struct OpenedScene {
     pub(super) finer: Option<FinerGround>,
     /// The size of the picture, pixels.
     pub(super) size: (u32, u32),
+    /// The pixels of it that are drawn.
+    pub(super) drawn: (u32, u32),
+    /// Whether it has had fewer pixels than its size.
+    pub(super) is_lowered_at_times: bool,
 }
 
 /// The first view of a scene that is opened, so that nothing is left to be made for its first frame.
@@ -138,6 +145,10 @@ pub struct SceneFrame {
     pub changes: GroundChanges,
     /// How it is seen.
     pub camera: Camera,
+    /// The size in pixels at which it is drawn.
+    pub drawn: (u32, u32),
+    /// Whether the next frame begins to make a ground that suits that size.
+    pub wants_ground: bool,
     /// The light for that camera.
     pub lighting: Lighting,
     /// What the update did.
@@ -197,10 +208,13 @@ impl OpenedScene {
             load: Some(SceneLoad::unprepared(&list)),
             relisting: None,
             reaching: None,
+            aside: None,
             wants_list: false,
             shadows: ShadowState::default(),
             finer: None,
             size: view.seen.map_or(OPENING_SIZE, |seen| seen.size),
+            drawn: view.seen.map_or(OPENING_SIZE, |seen| seen.size),
+            is_lowered_at_times: false,
             list,
             scene,
             walk,
@@ -324,13 +338,21 @@ impl OpenedScene {
         self.navigator.zoom(place, factor, &|at| ground_z(ground, at));
     }
 
-    /// The changes that the renderer has to take over for a picture of `size` pixels.
+    /// The changes that the renderer has to take over for a picture of `size` pixels, of which `drawn_size` says how many are
+    /// drawn of what a camera sees.
     ///
     /// # Errors
     /// See [`SceneFrameError`].
-    pub fn frame(&mut self, size: (u32, u32)) -> Result<SceneFrame, SceneFrameError> {
-        self.size = size;
+    pub fn frame(
+        &mut self,
+        size: (u32, u32),
+        drawn_size: impl FnOnce(&Camera) -> (u32, u32),
+    ) -> Result<SceneFrame, SceneFrameError> {
         let camera = self.camera(size)?;
+        (self.size, self.drawn) = (size, drawn_size(&camera));
+        self.is_lowered_at_times |= self.drawn != size;
+        let drawn = camera.resized(self.drawn);
+        self.exchange_ground(&drawn);
         let (min, max) = self.scene.bounds;
         let has_moved = self.list_eye.distance(camera.eye()) > (max - min).length() * EYE_SHARE;
         let is_near = !has_moved || self.relisting.is_some() || self.navigator.is_on_its_way();
@@ -362,6 +384,8 @@ impl OpenedScene {
             changes,
             lighting: self.walk.lighting(&camera),
             camera,
+            drawn: self.drawn,
+            wants_ground: self.wants_ground(&drawn),
             statistics,
             update_ms,
         })

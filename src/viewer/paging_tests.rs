@@ -22,6 +22,7 @@ use sandtable_geom::crs::Crs;
 use sandtable_raster::raster::{Raster, Samples, north_up_nodes};
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::query::{Interpolation, ground_height};
+use sandtable_view::camera::Camera;
 use sandtable_view::navigation::pose::ViewPose;
 use sandtable_walk::paged_elevation::PagedElevation;
 
@@ -72,7 +73,7 @@ fn settle(opened: &mut OpenedScene, shown: &mut std::collections::BTreeSet<Patch
     let end = Instant::now() + Duration::from_secs(120);
     loop {
         opened.paged.as_mut().expect("on disk").follow();
-        let changes = opened.frame((800, 500)).expect("in sight").changes;
+        let changes = opened.frame((800, 500), Camera::size).expect("in sight").changes;
         changes.hidden.iter().chain(&changes.dropped).for_each(|patch| {
             shown.remove(patch);
         });

@@ -6,7 +6,6 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::drawn_size::FramePurpose;
 use crate::frame_graphics::FrameGraphics;
 use crate::frame_times::{FrameLoad, FrameTime};
 use crate::opened::SceneFrame;
@@ -68,7 +67,7 @@ impl SceneGraphics {
         &mut self,
         graphics: &mut FrameGraphics,
         encoder: &mut wgpu::CommandEncoder,
-        (frame, purpose): (&mut SceneFrame, FramePurpose),
+        frame: &mut SceneFrame,
         options: &LiveOptions,
     ) -> Result<(FrameTime, FrameLoad), GpuError> {
         let uploading = Instant::now();
@@ -88,7 +87,7 @@ impl SceneGraphics {
         let sent = self.renderer.update(&frame.changes)?;
         let upload_ms = milliseconds(uploading);
         let drawing = Instant::now();
-        let size = graphics.picture_size(&frame.camera, purpose);
+        let size = frame.drawn;
         let fit = if size == frame.camera.size() { PictureFit::Whole } else { PictureFit::Stretched };
         let view = self.target(graphics, size, fit);
         let detail = if fit == PictureFit::Whole { LiveDetail::Whole } else { LiveDetail::Moving };

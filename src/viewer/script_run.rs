@@ -39,6 +39,8 @@ pub struct ScriptRun {
     device: Vec<f32>,
     /// Calls of the adapter in each frame.
     calls: Vec<f32>,
+    /// Triangles of the ground and of what lies on it in each frame.
+    drawn_triangles: Vec<f32>,
     /// The share of the view's side that each frame drew.
     side_shares: Vec<f32>,
     pipelines: usize,
@@ -98,6 +100,7 @@ impl ScriptRun {
             passes: BTreeMap::new(),
             device: Vec::new(),
             calls: Vec::new(),
+            drawn_triangles: Vec::new(),
             side_shares: Vec::new(),
             pipelines: 0,
             triangles: 0,
@@ -135,6 +138,7 @@ impl ScriptRun {
         self.frames += 1;
         self.times.push(time);
         self.calls.push(load.calls as f32);
+        self.drawn_triangles.push(load.drawn_triangles as f32);
         self.side_shares.push(load.side_share());
         self.triangles = load.ground_triangles;
         self.bytes += load.bytes;
@@ -309,6 +313,7 @@ impl ScriptRun {
             },
             "passes": passes,
             "calls": percentile(self.calls.clone(), 0.5),
+            "drawn_triangles": percentile(self.drawn_triangles.clone(), 0.5),
             "side_share": {
                 "least": percentile(self.side_shares.clone(), 0.0),
                 "median": percentile(self.side_shares.clone(), 0.5),

@@ -79,6 +79,7 @@ impl EditingSession {
             EditEffect::Views => EditOutcome::Rebuild,
             EditEffect::Dig(works) => {
                 let held = std::sync::Arc::clone(&opened.scene.held);
+                opened.leave_one_ground();
                 let made = opened.walk.edit(|lattice| dig(&works, lattice, &held));
                 let Ok(made) = made else { return EditOutcome::Rebuild };
                 self.moved = made.as_ref().map(|made| made.volumes);
@@ -89,6 +90,7 @@ impl EditingSession {
             EditEffect::TakeBack => {
                 let Some(last) = self.dug.pop() else { return EditOutcome::Rebuild };
                 let Some(last) = last else { return EditOutcome::Shown };
+                opened.leave_one_ground();
                 match opened.walk.take_back(&last.pieces) {
                     Ok(Some(made)) => {
                         self.shown(made, opened);

@@ -176,10 +176,12 @@ impl LaidGround {
 
     /// Exchanges what was cut: the ground is to display what `cuts` were cut to.
     pub fn exchange_cuts(&mut self, cuts: &mut SheetCuts) {
+        let before: Vec<bool> = self.patches.iter().map(|laid| laid.is_cut).collect();
         self.forget_cuts(|_| true);
         cuts.patches().iter().for_each(|&patch| self.patches[patch].is_cut = true);
         let planned = self.sheets.exchange_cuts(cuts);
-        planned.into_iter().for_each(|patch| self.patches[patch].is_cut = false);
+        planned.iter().for_each(|&patch| self.patches[patch].is_cut = false);
+        cuts.retain(|patch| before[patch] && !planned.contains(&patch));
     }
 
     /// The uppermost draped feature of a patch at a world position; `None` for bare ground.

@@ -1,5 +1,7 @@
 //! Rebuilds the ground for another size of the picture, in an update or on another thread: its nested spheres, the
 //! triangles that they show, and the draped features cut to these.
+//!
+//! A ground that was exchanged for another is as good as before: who draws pictures of two sizes by turns keeps both grounds.
 
 use glam::{DVec2, Vec3};
 
@@ -53,11 +55,11 @@ impl Walk {
     /// The task of making the ground anew for the picture of a camera; `None` where its spheres are as large as that needs,
     /// and not much larger.
     pub fn reach_task(&self, camera: &Camera) -> Option<ReachTask> {
-        let terrain = self.mesh.source();
-        let (needed, held) = (self.vantage(camera).reach, terrain.reach());
-        if (needed..=needed * MOST_REACH).contains(&held) {
+        if self.suits(camera) {
             return None;
         }
+        let terrain = self.mesh.source();
+        let (needed, held) = (self.vantage(camera).reach, terrain.reach());
         let reach = if needed > held { needed * SPARE_REACH } else { needed };
         Some(ReachTask {
             spheres: terrain.sphere_task(reach),
@@ -68,8 +70,24 @@ impl Walk {
         })
     }
 
-    /// Takes over the ground that a task has made, and returns the one before: the next update shows the new one. After an
-    /// edit since the task was begun it is of no use, and [`Walk::reach_task`] has another task.
+    /// Whether the ground is as fine as the picture of a camera needs, and not much finer.
+    pub fn suits(&self, camera: &Camera) -> bool {
+        self.is_of_reach(camera, self.mesh.source().reach())
+    }
+
+    /// The same of a ground that [`Walk::take_reach`] would take over.
+    pub fn would_suit(&self, ground: &ReachedGround, camera: &Camera) -> bool {
+        let source = ground.mesh.source();
+        source.edits() == self.mesh.source().edits() && self.is_of_reach(camera, source.reach())
+    }
+
+    fn is_of_reach(&self, camera: &Camera, reach: f32) -> bool {
+        let needed = self.vantage(camera).reach;
+        (needed..=needed * MOST_REACH).contains(&reach)
+    }
+
+    /// Takes over the ground that a task has made, and returns the one before, which can be taken over again: the next update
+    /// shows the new one. After an edit since the task was begun it is of no use, and [`Walk::reach_task`] has another task.
     pub fn take_reach(&mut self, mut made: ReachedGround) -> ReachedGround {
         if self.mesh.source_mut().exchange_spheres(made.mesh.source_mut()) {
             self.mesh.exchange(&mut made.mesh);
@@ -118,6 +136,17 @@ mod tests {
         assert_eq!(made.statistics.triangles, large);
         by_task.check();
         assert!(by_task.reach_task(&camera(2400)).is_none());
+        // The ground of a small picture and that of a large one by turns.
+        let task = by_task.reach_task(&camera(300)).expect("too large");
+        let mut aside = by_task.take_reach(task.ground());
+        for (height, other) in [(300, 2400), (2400, 300), (300, 2400), (2400, 300)] {
+            let held = by_task.update(&camera(height)).expect("in memory").statistics.triangles;
+            assert_eq!(held == large, height == 2400, "{held} triangles for a picture {height} pixels high");
+            by_task.check();
+            assert!(by_task.suits(&camera(height)) && by_task.would_suit(&aside, &camera(other)));
+            aside = by_task.take_reach(aside);
+        }
+        aside = by_task.take_reach(aside);
         // An edit between the task and its end makes it useless.
         let task = by_task.reach_task(&camera(300)).expect("too large");
         let ground = task.ground();
@@ -126,6 +155,7 @@ mod tests {
         let edited =
             by_task.edit(|lattice| set_heights(lattice, PostRect { first: post, last: post }, &[height]));
         assert!(edited.expect("in memory").is_some());
+        assert!(!by_task.would_suit(&aside, &camera(300)), "it is of before the edit");
         by_task.take_reach(ground);
         assert!(by_task.reach_task(&camera(300)).is_some());
         triangles(by_task, 2400);

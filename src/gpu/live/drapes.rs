@@ -6,6 +6,9 @@
 //!   sent             d e'
 //! ```
 //!
+//! A frame draws those pieces of a chunk that it sees. One that moves with few pixels leaves out those narrower than a part of a
+//! pixel, too: brooks far away, of which its samples miss the most.
+//!
 //! A piece is known by the memory of its mesh, which its maker shares as long as it is not cut again. Where pieces come or go,
 //! chunks are matched by their first pieces, so that those behind stay too.
 
@@ -15,7 +18,10 @@ use std::sync::{Arc, Weak};
 
 use bytemuck::cast_slice;
 
+use glam::Vec3;
+
 use crate::adapter::Gpu;
+use crate::culling::{CullingView, ItemGroup};
 use crate::draped_vertex::DrapedMesh;
 use crate::error::GpuError;
 use crate::live::arena::{Arena, StoredRange};
@@ -27,9 +33,15 @@ use crate::pipeline_key::{DepthRule, PipelineKey, VertexSource};
 use sandtable_draw::list::{DrawList, DrawListError, DrawMesh, MaterialId};
 use sandtable_draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use sandtable_draw::patches::DrapedPiece;
+use sandtable_geom::aabb::Aabb;
+use sandtable_mesh::sink::VertexId;
 
 /// The vertices up to which pieces share a chunk: more make fewer calls, and send more for each piece that changed.
 const CHUNK_VERTICES: usize = 1024;
+
+/// The most indices of pieces that are not seen which a call draws between those that are: they cost a device less than
+/// another call does.
+const HIDDEN_INDICES: u32 = 96;
 
 /// What pieces must share to be drawn by one call.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -53,8 +65,6 @@ pub struct DrapeChunk {
     pub material: DrapeMaterial,
     pub vertices: StoredRange,
     pub indices: StoredRange,
-    /// How many indices.
-    pub count: u32,
 }
 
 /// A piece as it was handed over.
@@ -62,6 +72,25 @@ pub struct DrapeChunk {
 struct ChunkPiece {
     mesh: Weak<DrawMesh>,
     material: MaterialId,
+    place: PiecePlace,
+    /// The end of its indices in the chunk.
+    end: u32,
+}
+
+/// The place of a piece.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct PiecePlace {
+    bounds: Aabb,
+    /// Its mean width, meters: that of a ribbon as long as its box.
+    width_m: f32,
+}
+
+/// The pieces that a frame draws.
+#[derive(Clone, Copy, Debug)]
+pub struct DrapeView {
+    pub view: CullingView,
+    /// Whether those are left out that are narrower than a part of a pixel.
+    pub leaves_narrow: bool,
 }
 
 /// The arenas of what lies on the ground.
@@ -146,10 +175,54 @@ fn joined(materials: &[DrapeMaterial]) -> Option<DrapeMaterial> {
     rest.iter().try_fold(first, |all, &next| all.joined(next))
 }
 
+impl PiecePlace {
+    fn of(mesh: &DrawMesh) -> Self {
+        let corners = mesh.triangles.iter().flatten();
+        let at = |id: &VertexId| Vec3::from(mesh.vertices[id.index()].position);
+        let bounds = Aabb::around(corners.map(at)).unwrap_or_default();
+        let twice_area = |[a, b, c]: &[VertexId; 3]| (at(b) - at(a)).cross(at(c) - at(a)).length();
+        let area = 0.5 * mesh.triangles.iter().map(twice_area).sum::<f32>();
+        // Of what is not finite, or has no length, nothing is left out.
+        Self { bounds, width_m: area / bounds.size().length() }
+    }
+}
+
+impl DrapeView {
+    fn shows(&self, PiecePlace { bounds, width_m }: PiecePlace) -> bool {
+        match self.leaves_narrow {
+            true => self.view.shows(&ItemGroup { bounds, largest_m: width_m }),
+            false => self.view.reaches(&bounds),
+        }
+    }
+}
+
+impl DrapeChunk {
+    /// The indices of the pieces that a view shows, in order.
+    fn seen(&self, view: &DrapeView) -> Vec<Range<u32>> {
+        let mut seen: Vec<Range<u32>> = Vec::new();
+        let mut start = 0;
+        for piece in &self.pieces {
+            let indices = start..piece.end;
+            start = piece.end;
+            if indices.is_empty() || !view.shows(piece.place) {
+                continue;
+            }
+            match seen.last_mut() {
+                Some(last) if indices.start - last.end <= HIDDEN_INDICES => last.end = indices.end,
+                _ => seen.push(indices),
+            }
+        }
+        seen
+    }
+}
+
 impl StoredDrapes {
-    /// The calls that draw them, each with its place in their order and with what it is drawn with; calls of the same place
+    /// The calls that draw what `view` shows of them, each with its place in their order and with what it is drawn with; calls of the same place
     /// are drawn alike.
-    pub fn calls(&self) -> impl Iterator<Item = (usize, DrapeMaterial, PatchCall)> + '_ {
+    pub fn calls<'a>(
+        &'a self,
+        view: &'a DrapeView,
+    ) -> impl Iterator<Item = (usize, DrapeMaterial, PatchCall)> + 'a {
         let mut runs: Vec<(DrapeMaterial, Range<usize>)> = Vec::new();
         for (index, chunk) in self.chunks.iter().enumerate() {
             match runs.last_mut().and_then(|run| Some((run.0.joined(chunk.material)?, run))) {
@@ -157,10 +230,12 @@ impl StoredDrapes {
                 None => runs.push((chunk.material, index..index + 1)),
             }
         }
-        runs.into_iter().enumerate().flat_map(|(place, (material, run))| {
-            self.chunks[run].iter().map(move |chunk| {
-                let (vertices, indices) = (chunk.vertices.clone(), chunk.indices.clone());
-                (place, material, PatchCall { vertices, indices, drawn: 0..chunk.count })
+        runs.into_iter().enumerate().flat_map(move |(place, (material, run))| {
+            self.chunks[run].iter().flat_map(move |chunk| {
+                chunk.seen(view).into_iter().map(move |drawn| {
+                    let (vertices, indices) = (chunk.vertices.clone(), chunk.indices.clone());
+                    (place, material, PatchCall { vertices, indices, drawn })
+                })
             })
         })
     }
@@ -210,25 +285,27 @@ impl DrapeArenas {
     ) -> Result<(Option<DrapeChunk>, u64), GpuError> {
         let corners = pieces.iter().map(|piece| piece.mesh.triangles.len() * 3).sum();
         let mut merged = DrapedMesh::with_corners(corners);
+        let mut held = Vec::with_capacity(pieces.len());
         for DrapedPiece { mesh, material, .. } in pieces {
             let corners = mesh.triangles.iter().flatten().map(|id| &mesh.vertices[id.index()]);
             corners.for_each(|corner| merged.add(corner, MaterialRow::from(*material)));
+            held.push(ChunkPiece {
+                mesh: Arc::downgrade(mesh),
+                material: *material,
+                place: PiecePlace::of(mesh),
+                end: merged.indices.len() as u32,
+            });
         }
         let DrapedMesh { vertices, indices, .. } = &merged;
         if indices.is_empty() {
             return Ok((None, 0));
         }
         let [vertex_bytes, index_bytes]: [&[u8]; 2] = [cast_slice(vertices), cast_slice(indices)];
-        let of_piece = |DrapedPiece { mesh, material, .. }: &DrapedPiece| ChunkPiece {
-            mesh: Arc::downgrade(mesh),
-            material: *material,
-        };
         let chunk = DrapeChunk {
-            pieces: pieces.iter().map(of_piece).collect(),
+            pieces: held,
             material,
             vertices: self.vertices.store(gpu, vertex_bytes)?,
             indices: self.indices.store(gpu, index_bytes)?,
-            count: indices.len() as u32,
         };
         Ok((Some(chunk), (vertex_bytes.len() + index_bytes.len()) as u64))
     }
@@ -293,7 +370,8 @@ mod tests {
     use super::*;
     use sandtable_draw::color::Srgba;
     use sandtable_draw::list::{DepthLayer, DrawVertex, FeatureId};
-    use sandtable_mesh::sink::{MeshSink, VertexId};
+    use sandtable_mesh::sink::MeshSink;
+    use sandtable_view::camera::Camera;
 
     fn piece(vertices: usize) -> DrapedPiece {
         let mut mesh = DrawMesh::default();
@@ -312,12 +390,16 @@ mod tests {
         let chunk = |held: &&[&DrapedPiece]| DrapeChunk {
             pieces: held
                 .iter()
-                .map(|piece| ChunkPiece { mesh: Arc::downgrade(&piece.mesh), material: piece.material })
+                .map(|piece| ChunkPiece {
+                    mesh: Arc::downgrade(&piece.mesh),
+                    material: piece.material,
+                    place: PiecePlace::default(),
+                    end: 3,
+                })
                 .collect(),
             material: DrapeMaterial::default(),
             vertices: stored(),
             indices: stored(),
-            count: 3,
         };
         let before = StoredDrapes { chunks: before.iter().map(chunk).collect() };
         let materials = vec![DrapeMaterial::default(); pieces.len()];
@@ -372,5 +454,69 @@ mod tests {
         let chunk: &[&DrapedPiece] = &before;
         let (chunks, _) = planned(&[chunk], &[piece(9)]);
         assert_eq!(chunks, [(false, 0..1)], "equal, but cut again");
+    }
+
+    /// A chunk of ribbons 900 m long across the view of `camera`, each so far ahead, so far aside and so wide, in meters.
+    fn chunk(ribbons: &[(f32, f32, f32)]) -> DrapeChunk {
+        let mesh = |&(y, x, width): &(f32, f32, f32)| {
+            let mut mesh = DrawMesh::default();
+            for (x, y) in [(x - 450.0, y), (x + 450.0, y), (x + 450.0, y + width), (x - 450.0, y + width)] {
+                let (normal, color) = ([0.0, 0.0, 1.0], Srgba::WHITE);
+                mesh.vertex(DrawVertex { position: [x, y, 0.0], normal, uv: [0.0; 2], color });
+            }
+            // As many triangles as would not be drawn for nothing.
+            for _ in 0..20 {
+                mesh.triangle([0, 1, 2].map(VertexId));
+                mesh.triangle([0, 2, 3].map(VertexId));
+            }
+            let mut place = PiecePlace::of(&mesh);
+            place.width_m /= 20.0;
+            place
+        };
+        let piece = |(number, ribbon): (u32, &(f32, f32, f32))| ChunkPiece {
+            mesh: Weak::new(),
+            material: MaterialId(0),
+            place: mesh(ribbon),
+            end: number * 120,
+        };
+        let stored = || StoredRange { block: 0, bytes: 0..4 };
+        DrapeChunk {
+            pieces: (1..).zip(ribbons).map(piece).collect(),
+            material: DrapeMaterial::default(),
+            vertices: stored(),
+            indices: stored(),
+        }
+    }
+
+    #[test]
+    fn a_frame_draws_the_pieces_that_it_sees_and_one_that_moves_those_wide_enough() {
+        let camera =
+            Camera::new(Vec3::Z * 500.0, Vec3::new(0.0, 2000.0, 0.0), 1.0, (100, 100), (1.0, 50_000.0));
+        let view = CullingView::new(&camera.expect("sound"));
+        // At 5 km a pixel is 55 m wide.
+        let chunk = chunk(&[
+            (5000.0, 0.0, 90.0),
+            (5000.0, 0.0, 9.0),
+            (-5000.0, 0.0, 90.0),
+            (5000.0, 9000.0, 90.0),
+            (1000.0, 0.0, 9.0),
+            (5000.0, 0.0, 90.0),
+        ]);
+        let seen = |leaves_narrow| chunk.seen(&DrapeView { view, leaves_narrow });
+        assert_eq!(seen(false), [0..240, 480..720]);
+        assert_eq!(seen(true), [0..120, 480..720]);
+    }
+
+    #[test]
+    fn few_triangles_that_are_not_seen_part_no_call() {
+        let camera = Camera::new(Vec3::ZERO, Vec3::Y, 1.0, (100, 100), (1.0, 50_000.0)).expect("sound");
+        let mut chunk = chunk(&[(5000.0, 0.0, 90.0), (-5000.0, 0.0, 90.0), (5000.0, 0.0, 90.0)]);
+        let view = DrapeView { view: CullingView::new(&camera), leaves_narrow: false };
+        let mut seen = |between: u32| {
+            chunk.pieces[1].end = 120 + between;
+            chunk.seen(&view)
+        };
+        assert_eq!(seen(HIDDEN_INDICES), [0..360]);
+        assert_eq!(seen(HIDDEN_INDICES + 3), [0..120, 123 + HIDDEN_INDICES..360]);
     }
 }

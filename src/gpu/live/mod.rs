@@ -36,10 +36,12 @@ mod targets;
 use std::sync::Arc;
 
 use crate::adapter::Gpu;
+use crate::culling::CullingView;
 use crate::error::GpuError;
 use crate::frame::{FrameGroup, FrameTextures};
 use crate::geometry::GpuGeometry;
 use crate::layouts::Layouts;
+use crate::live::drapes::DrapeView;
 use crate::live::encode::Encoder;
 use crate::live::ground_map::EditedMap;
 use crate::live::moving::MovingPipelines;
@@ -392,7 +394,9 @@ impl LiveRenderer {
         let drawn = gpu.guarded("drawing a frame", || {
             scene.frame.write(gpu, &scene.constants(camera, size));
             let patches = scene.patches.shown(camera);
-            let calls = scene.patches.calls(gpu, &patches)?;
+            let leaves_narrow = options.detail == LiveDetail::Moving && gpu.is_software;
+            let view = DrapeView { view: CullingView::new(camera), leaves_narrow };
+            let calls = scene.patches.calls(gpu, &patches, &view)?;
             let lines: &[PatchId] = if options.wireframe { &patches } else { &[] };
             if options.wireframe {
                 scene.patches.store_lines(gpu, lines)?;

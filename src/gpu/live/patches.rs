@@ -13,7 +13,7 @@ use crate::adapter::Gpu;
 use crate::draped_vertex::DrapedVertex;
 use crate::error::GpuError;
 use crate::live::arena::{Arena, StoredRange};
-use crate::live::drapes::{DrapeArenas, DrapeMaterial, DrapeMaterials, StoredDrapes};
+use crate::live::drapes::{DrapeArenas, DrapeMaterial, DrapeMaterials, DrapeView, StoredDrapes};
 use crate::live::patch_calls::{CallSource, PatchCall, PatchCalls};
 use crate::live::{LiveStatistics, UploadedBytes};
 use crate::materials::{ArrayId, TexturePlaces};
@@ -123,8 +123,8 @@ impl PatchStore {
         order.into_iter().map(|(_, id)| id).collect()
     }
 
-    /// What patches show, to be drawn before the next submission.
-    pub fn calls(&mut self, gpu: &Gpu, shown: &[PatchId]) -> Result<ShownCalls, GpuError> {
+    /// What patches show in a view, to be drawn before the next submission.
+    pub fn calls(&mut self, gpu: &Gpu, shown: &[PatchId], view: &DrapeView) -> Result<ShownCalls, GpuError> {
         let patches = || shown.iter().filter_map(|id| self.patches.get(id));
         let ground = |patch: &StoredPatch| {
             let (vertices, triangles) = (patch.positions.clone()?, patch.triangles.as_ref()?);
@@ -134,7 +134,7 @@ impl PatchStore {
         let ground: Vec<((), PatchCall)> = patches().filter_map(ground).collect();
         // What lies on one patch does not lie on another: the order of the features of each counts, not that of patches.
         let mut drapes: Vec<(usize, DrapeMaterial, PatchCall)> =
-            patches().flat_map(|patch| patch.drapes.calls()).collect();
+            patches().flat_map(|patch| patch.drapes.calls(view)).collect();
         drapes.sort_by_key(|(place, material, call)| (*place, *material, call.blocks()));
         let drapes = drapes.into_iter().map(|(_, material, call)| (material, call));
         let [mut of_ground, mut of_drapes] = std::mem::take(&mut self.call_arguments);
