@@ -217,8 +217,8 @@ impl DrapeChunk {
 }
 
 impl StoredDrapes {
-    /// The calls that draw what `view` shows of them, each with its place in their order and with what it is drawn with; calls of the same place
-    /// are drawn alike.
+    /// The calls that draw what `view` shows of them, each with its place in their order and with what it is drawn with; calls of
+    /// the same place are drawn alike.
     pub fn calls<'a>(
         &'a self,
         view: &'a DrapeView,
