@@ -57,17 +57,15 @@ pub fn lift_level_ground(posts: &mut [GroundPost], size: PostCount, contours: &C
     let seeds = found.iter().filter(|(_, kind)| *kind == LevelPost::Inner).map(|(index, _)| *index);
     let lifted = ground.connected(seeds.collect());
     let outer: Vec<(usize, f32)> = found
-        .iter()
+        .par_iter()
         .filter(|(index, _)| !lifted.holds(*index))
         .filter(|(index, kind)| *kind != LevelPost::Slope || beside.holds(*index))
         .filter_map(|(index, kind)| Some((*index, ground.moved(*index, *kind)?)))
         .collect();
-    for index in 0..posts.len() {
-        if lifted.holds(index) {
-            let ground = ContourGround { posts, size, interval_m, least_fall_m };
-            let height_m = ground.lifted(index, LIFT * interval_m);
-            posts[index].height_m = height_m;
-        }
+    for index in lifted.rising() {
+        let ground = ContourGround { posts, size, interval_m, least_fall_m };
+        let height_m = ground.lifted(index, LIFT * interval_m);
+        posts[index].height_m = height_m;
     }
     outer.into_iter().for_each(|(index, height_m)| posts[index].height_m = height_m);
 }
@@ -231,6 +229,12 @@ impl PostSet {
 
     fn holds(&self, index: usize) -> bool {
         self.0[index / 64] >> (index % 64) & 1 == 1
+    }
+
+    /// The posts, rising.
+    fn rising(&self) -> impl Iterator<Item = usize> + '_ {
+        let some = self.0.iter().enumerate().filter(|(_, word)| **word != 0);
+        some.flat_map(|(place, word)| (0..64).filter(move |bit| word >> bit & 1 == 1).map(move |bit| place * 64 + bit))
     }
 
     /// Adds a post; returns whether it is new.

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use crate::nodata_span::NoDataSpan;
 use crate::raster::{Raster, SampleFloat, Samples};
+use sandtable_base::vectorized::vectorized;
 
 /// Values that mean no data in many files.
 pub(crate) const USUAL: [f64; 25] = [
@@ -64,6 +65,9 @@ const LEAST_FAR: u64 = 9;
 /// More values than these that no ground has are heights in another unit.
 const MOST_FAR: usize = 1024;
 
+/// Samples whose range is looked at first: nearly all are plain together.
+const PLAIN_TOGETHER: usize = 64;
+
 /// Samples that a thread counts together.
 const TOGETHER: usize = 1 << 16;
 
@@ -71,6 +75,8 @@ const TOGETHER: usize = 1 << 16;
 #[derive(Clone)]
 pub(crate) struct OddValues {
     spans: [NoDataSpan; USUAL.len()],
+    /// Where values are near usual ones or count as one, and a little more: apart and rising.
+    near_usual: Vec<(f64, f64)>,
     usual: [ValueCount; USUAL.len()],
     /// Values beyond all ground, by their bits in the order of numbers; none where they are too many.
     far: Option<BTreeMap<u64, u64>>,
@@ -103,6 +109,7 @@ impl OddValues {
         let unit_m = if raster.meters_per_z > 0.0 { raster.meters_per_z } else { 1.0 };
         Self {
             spans: USUAL.map(NoDataSpan::around),
+            near_usual: near_usual(),
             usual: [ValueCount::default(); USUAL.len()],
             far: Some(BTreeMap::new()),
             ground: (GROUND_M.0 / unit_m, GROUND_M.1 / unit_m),
@@ -133,25 +140,31 @@ impl OddValues {
 
     fn counted<T: SampleFloat>(mut self, values: &[T]) -> Self {
         self.samples = values.len() as u64;
-        for &value in values {
-            let value: f64 = value.into();
-            if value > PLAIN.0 && value < PLAIN.1 {
-                self.low = if value < self.low { value } else { self.low };
-                self.high = if value > self.high { value } else { self.high };
-            } else if !value.is_nan() {
-                self.add_odd(value);
+        for few in values.chunks(PLAIN_TOGETHER) {
+            let plain = vectorized(
+                #[inline(always)]
+                || plain_range(few),
+            );
+            if let Some((low, high)) = plain {
+                (self.low, self.high) = (self.low.min(low.into()), self.high.max(high.into()));
+                continue;
+            }
+            for &value in few {
+                let value: f64 = value.into();
+                if value > PLAIN.0 && value < PLAIN.1 {
+                    (self.low, self.high) = (self.low.min(value), self.high.max(value));
+                } else if !value.is_nan() {
+                    self.add_odd(value);
+                }
             }
         }
         self
     }
 
     fn add_odd(&mut self, value: f64) {
-        if let Some(at) = self.spans.iter().position(|span| span.contains(value)) {
-            self.usual[at].equal += 1;
+        let after = self.near_usual.partition_point(|span| span.1 < value);
+        if self.near_usual.get(after).is_some_and(|span| span.0 <= value) && self.add_near(value) {
             return;
-        }
-        for (count, usual) in self.usual.iter_mut().zip(USUAL) {
-            count.near += u64::from((value - usual).abs() <= reach(usual));
         }
         if value > self.ground.0 && value < self.ground.1 {
             (self.low, self.high) = (self.low.min(value), self.high.max(value));
@@ -161,6 +174,18 @@ impl OddValues {
                 self.far = None;
             }
         }
+    }
+
+    /// Counts a value for the usual ones that it is near; whether it is one of them.
+    fn add_near(&mut self, value: f64) -> bool {
+        if let Some(at) = self.spans.iter().position(|span| span.contains(value)) {
+            self.usual[at].equal += 1;
+            return true;
+        }
+        for (count, usual) in self.usual.iter_mut().zip(USUAL) {
+            count.near += u64::from((value - usual).abs() <= reach(usual));
+        }
+        false
     }
 
     fn join(&mut self, later: Self) {
@@ -226,6 +251,44 @@ pub fn written(value: f64) -> String {
 fn tenths(value: f64) -> f64 {
     // Adding 0 makes 0 of -0.
     (value * 10.0).round() / 10.0 + 0.0
+}
+
+/// The least and the greatest of some values; `None` where one is not [`PLAIN`], or there is none.
+#[inline(always)]
+fn plain_range<T: SampleFloat>(values: &[T]) -> Option<(T, T)> {
+    /// Values that a processor compares at once.
+    const LANES: usize = 8;
+    let (least, most) = (T::from_f64(PLAIN.0), T::from_f64(PLAIN.1));
+    if !values.iter().fold(true, |all, &value| all & (value > least) & (value < most)) {
+        return None;
+    }
+    let (mut low, mut high) = ([*values.first()?; LANES], [*values.first()?; LANES]);
+    let (groups, rest) = values.as_chunks::<LANES>();
+    for group in groups.iter().map(|group| &group[..]).chain([rest]) {
+        for ((low, high), &value) in low.iter_mut().zip(&mut high).zip(group) {
+            *low = if value < *low { value } else { *low };
+            *high = if value > *high { value } else { *high };
+        }
+    }
+    let lesser = |a: T, b: T| if b < a { b } else { a };
+    let greater = |a: T, b: T| if b > a { b } else { a };
+    Some((low.into_iter().reduce(lesser)?, high.into_iter().reduce(greater)?))
+}
+
+/// [`OddValues::near_usual`].
+fn near_usual() -> Vec<(f64, f64)> {
+    /// More than is lost where the ends of a span are rounded.
+    const MORE: f64 = 1.0 + 1e-9;
+    let mut spans = USUAL.map(|usual| (usual - reach(usual) * MORE, usual + reach(usual) * MORE));
+    spans.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut apart: Vec<(f64, f64)> = Vec::new();
+    for span in spans {
+        match apart.last_mut() {
+            Some(last) if span.0 <= last.1 => last.1 = last.1.max(span.1),
+            _ => apart.push(span),
+        }
+    }
+    apart
 }
 
 /// How far from a value samples count as near it.
