@@ -53,7 +53,8 @@ pub fn lift_level_ground(posts: &mut [GroundPost], size: PostCount, contours: &C
         return;
     }
     let broad = found.iter().filter(|(_, kind)| is_broad(kind)).map(|(index, _)| *index);
-    let beside = ground.level_beside(broad.collect());
+    let slopes = found.iter().filter(|(_, kind)| *kind == LevelPost::Slope).map(|(index, _)| *index);
+    let beside = ground.level_beside(broad.collect(), slopes);
     let seeds = found.iter().filter(|(_, kind)| *kind == LevelPost::Inner).map(|(index, _)| *index);
     let lifted = ground.connected(seeds.collect());
     let outer: Vec<(usize, f32)> = found
@@ -146,15 +147,18 @@ impl ContourGround<'_> {
         Some(if has(1) { LevelPost::Slope } else { LevelPost::Crest })
     }
 
-    /// The posts of slopes at the height of a line that hang together with level ground.
-    fn level_beside(&self, broad: Vec<usize>) -> PostSet {
+    /// The posts of `slopes` at the height of a line that hang together with level ground.
+    fn level_beside(&self, broad: Vec<usize>, slopes: impl Iterator<Item = usize>) -> PostSet {
+        let mut is_slope = PostSet::new(self.posts.len());
+        slopes.for_each(|post| {
+            is_slope.insert(post);
+        });
         let mut set = PostSet::new(self.posts.len());
         let mut open: Vec<usize> = broad.into_iter().filter(|&post| set.insert(post)).collect();
         while let Some(index) = open.pop() {
             let line_m = self.line_m(index);
             for near in self.round(index).into_iter().flatten() {
-                let is_same = self.line_m(near) == line_m && !set.holds(near);
-                if is_same && self.level_post(near) == Some(LevelPost::Slope) {
+                if is_slope.holds(near) && !set.holds(near) && self.line_m(near) == line_m {
                     set.insert(near);
                     open.push(near);
                 }

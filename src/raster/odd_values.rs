@@ -75,8 +75,8 @@ const TOGETHER: usize = 1 << 16;
 #[derive(Clone)]
 pub(crate) struct OddValues {
     spans: [NoDataSpan; USUAL.len()],
-    /// Where values are near usual ones or count as one, and a little more: apart and rising.
-    near_usual: Vec<(f64, f64)>,
+    /// Where values may be near usual ones: apart and rising.
+    near_usual: Vec<NearUsual>,
     usual: [ValueCount; USUAL.len()],
     /// Values beyond all ground, by their bits in the order of numbers; none where they are too many.
     far: Option<BTreeMap<u64, u64>>,
@@ -87,6 +87,15 @@ pub(crate) struct OddValues {
     /// The lowest and the highest of the other heights.
     low: f64,
     high: f64,
+}
+
+/// Values that may be near some usual ones.
+#[derive(Clone)]
+struct NearUsual {
+    low: f64,
+    high: f64,
+    /// The places of the usual ones, rising.
+    usual: Vec<usize>,
 }
 
 #[derive(Clone, Copy, Default)]
@@ -162,9 +171,15 @@ impl OddValues {
     }
 
     fn add_odd(&mut self, value: f64) {
-        let after = self.near_usual.partition_point(|span| span.1 < value);
-        if self.near_usual.get(after).is_some_and(|span| span.0 <= value) && self.add_near(value) {
-            return;
+        let after = self.near_usual.partition_point(|near| near.high < value);
+        if let Some(near) = self.near_usual.get(after).filter(|near| near.low <= value) {
+            if let Some(&at) = near.usual.iter().find(|&&at| self.spans[at].contains(value)) {
+                self.usual[at].equal += 1;
+                return;
+            }
+            for &at in &near.usual {
+                self.usual[at].near += u64::from((value - USUAL[at]).abs() <= reach(USUAL[at]));
+            }
         }
         if value > self.ground.0 && value < self.ground.1 {
             (self.low, self.high) = (self.low.min(value), self.high.max(value));
@@ -174,18 +189,6 @@ impl OddValues {
                 self.far = None;
             }
         }
-    }
-
-    /// Counts a value for the usual ones that it is near; whether it is one of them.
-    fn add_near(&mut self, value: f64) -> bool {
-        if let Some(at) = self.spans.iter().position(|span| span.contains(value)) {
-            self.usual[at].equal += 1;
-            return true;
-        }
-        for (count, usual) in self.usual.iter_mut().zip(USUAL) {
-            count.near += u64::from((value - usual).abs() <= reach(usual));
-        }
-        false
     }
 
     fn join(&mut self, later: Self) {
@@ -276,16 +279,24 @@ fn plain_range<T: SampleFloat>(values: &[T]) -> Option<(T, T)> {
 }
 
 /// [`OddValues::near_usual`].
-fn near_usual() -> Vec<(f64, f64)> {
-    /// More than is lost where the ends of a span are rounded.
+fn near_usual() -> Vec<NearUsual> {
+    /// More than is lost where the ends are rounded.
     const MORE: f64 = 1.0 + 1e-9;
-    let mut spans = USUAL.map(|usual| (usual - reach(usual) * MORE, usual + reach(usual) * MORE));
-    spans.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut apart: Vec<(f64, f64)> = Vec::new();
-    for span in spans {
+    let around = |at: usize| {
+        let (usual, reach) = (USUAL[at], reach(USUAL[at]) * MORE);
+        NearUsual { low: usual - reach, high: usual + reach, usual: vec![at] }
+    };
+    let mut all: Vec<NearUsual> = (0..USUAL.len()).map(around).collect();
+    all.sort_by(|a, b| a.low.total_cmp(&b.low));
+    let mut apart: Vec<NearUsual> = Vec::new();
+    for next in all {
         match apart.last_mut() {
-            Some(last) if span.0 <= last.1 => last.1 = last.1.max(span.1),
-            _ => apart.push(span),
+            Some(last) if next.low <= last.high => {
+                last.high = last.high.max(next.high);
+                last.usual.extend(next.usual);
+                last.usual.sort_unstable();
+            }
+            _ => apart.push(next),
         }
     }
     apart
