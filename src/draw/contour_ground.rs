@@ -238,7 +238,9 @@ impl PostSet {
     /// The posts, rising.
     fn rising(&self) -> impl Iterator<Item = usize> + '_ {
         let some = self.0.iter().enumerate().filter(|(_, word)| **word != 0);
-        some.flat_map(|(place, word)| (0..64).filter(move |bit| word >> bit & 1 == 1).map(move |bit| place * 64 + bit))
+        some.flat_map(|(place, word)| {
+            (0..64).filter(move |bit| word >> bit & 1 == 1).map(move |bit| place * 64 + bit)
+        })
     }
 
     /// Adds a post; returns whether it is new.

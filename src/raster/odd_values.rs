@@ -350,6 +350,24 @@ mod tests {
     }
 
     #[test]
+    fn near_a_usual_value_is_what_its_reach_says() {
+        for (usual, sign) in USUAL.into_iter().flat_map(|usual| [(usual, -1.0), (usual, 1.0)]) {
+            for share in [0.0, 1e-9, 0.5, 1.0 - 1e-12, 1.0, 1.0 + 1e-12, 1.01] {
+                let value = usual + sign * share * reach(usual);
+                let mut counts = OddValues::new(&Raster::new(1, Samples::F64(vec![value])));
+                counts.add(&Samples::F64(vec![value]));
+                let is_plain = value > PLAIN.0 && value < PLAIN.1;
+                let is_usual = counts.spans.iter().any(|span| span.contains(value));
+                assert_eq!(counts.usual.iter().map(|count| count.equal).sum::<u64>(), u64::from(is_usual));
+                for (count, other) in counts.usual.iter().zip(USUAL) {
+                    let is_near = (value - other).abs() <= reach(other) && !is_usual && !is_plain;
+                    assert_eq!(count.near, u64::from(is_near), "{value} beside {other}");
+                }
+            }
+        }
+    }
+
+    #[test]
     fn heights_are_not_found_where_ground_reaches_them() {
         // A trench of the sea, a mountain in feet, and heights in centimeters with a lake.
         assert!(found(1.0, mixed(-9999.0, -10_400.0, 0.2)).is_empty());

@@ -141,6 +141,20 @@ mod tests {
     }
 
     #[test]
+    fn any_number_of_threads_puts_in_the_same_posts() {
+        let mut coarse = hills(61, 47);
+        coarse.pin(Post { column: 8, row: 9 }, f32::NAN);
+        let with = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+            let dense = pool.install(|| densify(&coarse, 2)).expect("sound");
+            dense.heights().iter().map(|height| height.to_bits()).collect::<Vec<_>>()
+        };
+        let one = with(1);
+        assert_eq!(one.len(), 241 * 185);
+        assert!([2, 3, 16].iter().all(|&threads| with(threads) == one));
+    }
+
+    #[test]
     fn origin_extent_and_old_posts_keep_their_positions_to_the_last_bit() {
         let coarse = hills(9, 6);
         let dense = densify(&coarse, 3).expect("sound");

@@ -136,9 +136,8 @@ const MOST_WAITING: usize = 4_000_000;
 /// What channels would have of the posts under their water and banks: for each post the wish of the nearest channel, of equals
 /// the first.
 fn wishes(lattice: &Lattice, courses: &[ChannelCourse<'_>]) -> Result<Vec<Wish>, ChannelError> {
-    let stretches = |course| {
-        ChannelCourse::pairs(course).filter_map(move |ends| StretchPosts::of(lattice, course, ends))
-    };
+    let stretches =
+        |course| ChannelCourse::pairs(course).filter_map(move |ends| StretchPosts::of(lattice, course, ends));
     let posts = |course| stretches(course).map(|around| around.posts()).fold(0, usize::saturating_add);
     if courses.par_iter().map(posts).reduce(|| 0, usize::saturating_add) > RIVER_POSTS.count() {
         return Err(ChannelError::TooWide);

@@ -80,8 +80,7 @@ pub fn fitted_aim(scene: &SceneModel, view: &FittedView, fov_y_rad: f32, size: (
         Aimed { axes, eye, filled }
     };
     let pitched = |azimuth_rad: f32, pitches: &[f32]| {
-        let views: Vec<Aimed> =
-            pitches.par_iter().map(|&pitch_rad| aimed(azimuth_rad, pitch_rad)).collect();
+        let views: Vec<Aimed> = pitches.par_iter().map(|&pitch_rad| aimed(azimuth_rad, pitch_rad)).collect();
         fullest(views)
     };
     let usual = |azimuth_rad: f32| pitched(azimuth_rad, &PITCHES);
@@ -92,7 +91,8 @@ pub fn fitted_aim(scene: &SceneModel, view: &FittedView, fov_y_rad: f32, size: (
             let north = stated.map_or_else(|| usual(0.0), |pitch_rad| aimed(0.0, pitch_rad));
             if north.filled < LEAST_FILLED {
                 let all: Vec<f32> = stated.map_or_else(|| pitches().collect(), |pitch_rad| vec![pitch_rad]);
-                let mut views: Vec<Aimed> = TURNS.par_iter().map(|&turn_rad| pitched(turn_rad, &all)).collect();
+                let mut views: Vec<Aimed> =
+                    TURNS.par_iter().map(|&turn_rad| pitched(turn_rad, &all)).collect();
                 let north = views.remove(0);
                 let aside = fullest(views);
                 if aside.filled > north.filled * TURN_GAIN { aside } else { north }

@@ -165,9 +165,8 @@ fn join_columns<R: Reduction>(
 ) {
     for (value, first) in values.iter_mut().zip((0..).step_by(by)) {
         let counting = sums[first..=first + before + by / 2].iter().zip(0i32..);
-        let joined = counting.fold(R::NONE, |sum, (column, at)| {
-            reduction.join(sum, *column, (at - before as i32) as f32)
-        });
+        let joined = counting
+            .fold(R::NONE, |sum, (column, at)| reduction.join(sum, *column, (at - before as i32) as f32));
         *value = reduction.value(joined);
     }
 }
@@ -210,6 +209,31 @@ mod tests {
                 assert_eq!(line.len(), columns);
                 let pairs = line.iter().zip(fine.line(row)).take(columns - 2 * by).skip(by);
                 assert!(pairs.into_iter().all(|(value, exact)| (value - exact).abs() < 1e-4), "{row}, {by}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_value_is_the_mean_of_those_around_it_at_the_borders_too() {
+        for (columns, rows) in [(1, 1), (2, 5), (3, 2), (17, 9), (64, 33), (131, 7)] {
+            let mut fine = plane(columns, rows);
+            fine.values.to_mut().iter_mut().step_by(7).for_each(|value| *value = f32::NAN);
+            for by in 1..9 {
+                let coarse = fine.reduced(by, &Mean);
+                for (at, value) in coarse.values.iter().enumerate() {
+                    let (column, row) = (at % coarse.columns, at / coarse.columns);
+                    let sum_of = |from: usize| {
+                        let south = around::<Mean>(row, by, rows);
+                        south.fold(Mean::NONE, |sum, (row, _)| Mean.add(sum, fine.line(row)[from], 0.0))
+                    };
+                    let plain = around::<Mean>(column, by, columns)
+                        .fold(Mean::NONE, |sum, (from, east)| Mean.join(sum, sum_of(from), east));
+                    let same = value.to_bits() == Mean.value(plain).to_bits() || value.is_nan();
+                    assert!(
+                        same && value.is_nan() == Mean.value(plain).is_nan(),
+                        "{columns}×{rows} {by}: {at}"
+                    );
+                }
             }
         }
     }
