@@ -50,26 +50,15 @@ pub(super) fn map_level(scene: &SceneModel, camera: &Camera) -> u32 {
     (libm::log2f(posts.max(1.0)) as u32).min(most)
 }
 
-/// The displayed ground and the walls below its edge.
-pub(super) fn meshes(scene: &SceneModel, displayed: &DisplayedTerrain) -> (DrawMesh, DrawMesh) {
+/// Adds the ground and returns the walls below its edge.
+pub(super) fn add(list: &mut DrawList, scene: &SceneModel, displayed: &DisplayedTerrain) -> DrawMesh {
     let mut sink = GroundSink(DrawMesh::default());
     displayed.emit(&mut sink);
     let walls = plinth(&sink.0, scene.ground().lattice(), scene.bounds);
-    (sink.0, walls)
-}
-
-/// Adds the ground and returns the walls below its edge.
-pub(super) fn add(list: &mut DrawList, scene: &SceneModel, displayed: &DisplayedTerrain) -> DrawMesh {
-    let (mesh, walls) = meshes(scene, displayed);
-    add_ground(list, scene, mesh);
-    walls
-}
-
-/// Adds the triangles of the ground.
-pub(super) fn add_ground(list: &mut DrawList, scene: &SceneModel, mesh: DrawMesh) {
     let material = add_material(list);
     list.materials[material.0 as usize].shows_edges = scene.wireframe;
-    add_mesh(list, mesh, material, DepthLayer::Ground, FeatureId::GROUND);
+    add_mesh(list, sink.0, material, DepthLayer::Ground, FeatureId::GROUND);
+    walls
 }
 
 /// Adds the material of the ground.

@@ -173,23 +173,17 @@ fn listed(
     let camera = viewer.camera();
     let to_sun = scene.sunlight.to_sun(camera);
     let level = camera.map_or(0, |camera| ground::map_level(scene, camera));
-    let key = GroundMapKey { level, to_sun };
-    if purpose == ListPurpose::Picture && !scene.holds_map(key) {
-        progress("lighting terrain");
-    }
-    let map = || match purpose {
-        ListPurpose::Picture => scene.map(key, || ()),
+    let map = match purpose {
+        ListPurpose::Picture => scene.map(GroundMapKey { level, to_sun }, || progress("lighting terrain")),
         ListPurpose::Shapes | ListPurpose::Relief => Arc::new(GroundMap::level()),
     };
-    // One thread makes the triangles, while all others light them.
-    let (map, (ground_mesh, walls)) = rayon::join(map, || ground::meshes(scene, displayed));
     let lighting = match camera {
         Some(camera) => lighting(scene, camera, to_sun),
         None => Lighting { to_sun, ..Lighting::default() },
     };
     let mut list = DrawList { ground: Some(map), lighting, ..DrawList::default() };
     let setting = camera.map(|camera| PictureSetting::new(camera, scene.bounds));
-    ground::add_ground(&mut list, scene, ground_mesh);
+    let walls = ground::add(&mut list, scene, displayed);
     let ground_triangles = list.triangle_count();
     progress("draping features");
     let raised = drapes::add(&mut list, scene, displayed, viewer);

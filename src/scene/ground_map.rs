@@ -27,11 +27,6 @@ impl SceneModel {
             ground_map(self, key)
         })
     }
-
-    /// Whether the last picture had the ground map of a key, so that its light need not be computed.
-    pub fn holds_map(&self, key: GroundMapKey) -> bool {
-        self.maps.holds(key)
-    }
 }
 
 /// The height, slope and light at a level of the posts; 0 is all of them, each further level every second post of the one

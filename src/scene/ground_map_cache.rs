@@ -35,12 +35,6 @@ impl GroundMapCache {
         }
     }
 
-    /// Whether the map of a key was the last that was made.
-    pub(super) fn holds(&self, key: GroundMapKey) -> bool {
-        let last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        last.as_ref().is_some_and(|(of, _)| *of == key)
-    }
-
     /// Whether no map has been made.
     pub(super) fn is_empty(&self) -> bool {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).is_none()
