@@ -75,7 +75,7 @@ const TOGETHER: usize = 1 << 16;
 #[derive(Clone)]
 pub(crate) struct OddValues {
     spans: [NoDataSpan; USUAL.len()],
-    /// Where values may be near usual ones: apart and rising.
+    /// Where values may be near usual ones or count as one: apart and rising.
     near_usual: Vec<NearUsual>,
     usual: [ValueCount; USUAL.len()],
     /// Values beyond all ground, by their bits in the order of numbers; none where they are too many.
@@ -284,7 +284,9 @@ fn near_usual() -> Vec<NearUsual> {
     const MORE: f64 = 1.0 + 1e-9;
     let around = |at: usize| {
         let (usual, reach) = (USUAL[at], reach(USUAL[at]) * MORE);
-        NearUsual { low: usual - reach, high: usual + reach, usual: vec![at] }
+        // The span of a value that was written with few digits reaches farther.
+        let (least, most) = NoDataSpan::around(usual).ends::<f64>();
+        NearUsual { low: least.min(usual - reach), high: most.max(usual + reach), usual: vec![at] }
     };
     let mut all: Vec<NearUsual> = (0..USUAL.len()).map(around).collect();
     all.sort_by(|a, b| a.low.total_cmp(&b.low));
@@ -352,7 +354,7 @@ mod tests {
     #[test]
     fn near_a_usual_value_is_what_its_reach_says() {
         for (usual, sign) in USUAL.into_iter().flat_map(|usual| [(usual, -1.0), (usual, 1.0)]) {
-            for share in [0.0, 1e-9, 0.5, 1.0 - 1e-12, 1.0, 1.0 + 1e-12, 1.01] {
+            for share in [0.0, 1e-9, 0.5, 1.0 - 1e-12, 1.0, 1.0 + 1e-12, 1.01, 9.0, 11.0] {
                 let value = usual + sign * share * reach(usual);
                 let mut counts = OddValues::new(&Raster::new(1, Samples::F64(vec![value])));
                 counts.add(&Samples::F64(vec![value]));
