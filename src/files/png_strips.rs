@@ -198,7 +198,7 @@ fn moved(from: &[u8], bits: Range<usize>, first: usize) -> Vec<u8> {
 /// Adds [`moved`] bits, of which the first is number `first`, to a stream that ends before it, in the same byte or at its end.
 fn add_bits(stream: &mut Vec<u8>, first: usize, bytes: Vec<u8>) {
     match (stream.last_mut(), &bytes[..]) {
-        (Some(last), [shared, rest @ ..]) if first % 8 > 0 => {
+        (Some(last), [shared, rest @ ..]) if !first.is_multiple_of(8) => {
             *last |= shared;
             stream.extend(rest);
         }

@@ -457,16 +457,6 @@ impl Lattice {
         self.held.first.offset((index % columns) as u32, (index / columns) as u32)
     }
 
-    /// The lowest and highest height of the held posts; finite unless these are a part without data.
-    pub fn height_range(&self) -> (f32, f32) {
-        height_scan::range(&self.heights)
-    }
-
-    /// The number of posts without data.
-    pub fn missing_posts(&self) -> usize {
-        height_scan::missing(&self.heights)
-    }
-
     /// Map coordinates of a post.
     pub fn map_position(&self, post: Post) -> DVec2 {
         self.origin + (post.grid() + self.first.grid()) * self.cell
