@@ -264,7 +264,11 @@ impl RenderSeries<'_> {
         } else {
             progress("writing the picture");
             let description = picture_description(scene, camera);
-            write_sheet(outputs, &path, sheet, camera.dpi(), (scene.title.as_deref(), &description))?;
+            let texts = (scene.title.as_deref(), description.as_str());
+            // What was drawn is given back while the picture is packed.
+            let (written, ()) =
+                rayon::join(|| write_sheet(outputs, &path, sheet, camera.dpi(), texts), || drop(drawn));
+            written?;
             if let Some(draft) = draft {
                 let text = format!("{:#}\n", draft.finished(&annotations));
                 outputs.write(&sidecar_path(&path), text.as_bytes())?;

@@ -21,6 +21,7 @@ impl Srgba {
     }
 
     /// Red, green and blue in linear light, each in 0..=1.
+    #[inline]
     pub fn linear(self) -> Vec3 {
         let [red, green, blue, _] = self.0;
         Vec3::new(linear_from_srgb(red), linear_from_srgb(green), linear_from_srgb(blue))
@@ -32,6 +33,7 @@ impl Srgba {
     }
 
     /// The opaque color nearest to `linear` light; values outside 0..=1 are clamped.
+    #[inline]
     pub fn from_linear(linear: Vec3) -> Self {
         let [red, green, blue] = linear.to_array().map(srgb_from_linear);
         Self::opaque(red, green, blue)
@@ -39,6 +41,7 @@ impl Srgba {
 }
 
 /// The luminance of a color in linear light, 0..=1 (IEC 61966-2-1).
+#[inline]
 pub fn luminance(linear: Vec3) -> f32 {
     linear.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }

@@ -53,21 +53,20 @@ pub fn lift_level_ground(posts: &mut [GroundPost], size: PostCount, contours: &C
         return;
     }
     let broad = found.iter().filter(|(_, kind)| is_broad(kind)).map(|(index, _)| *index);
-    let beside = ground.level_beside(broad.collect());
+    let slopes = found.iter().filter(|(_, kind)| *kind == LevelPost::Slope).map(|(index, _)| *index);
+    let beside = ground.level_beside(broad.collect(), slopes);
     let seeds = found.iter().filter(|(_, kind)| *kind == LevelPost::Inner).map(|(index, _)| *index);
     let lifted = ground.connected(seeds.collect());
     let outer: Vec<(usize, f32)> = found
-        .iter()
+        .par_iter()
         .filter(|(index, _)| !lifted.holds(*index))
         .filter(|(index, kind)| *kind != LevelPost::Slope || beside.holds(*index))
         .filter_map(|(index, kind)| Some((*index, ground.moved(*index, *kind)?)))
         .collect();
-    for index in 0..posts.len() {
-        if lifted.holds(index) {
-            let ground = ContourGround { posts, size, interval_m, least_fall_m };
-            let height_m = ground.lifted(index, LIFT * interval_m);
-            posts[index].height_m = height_m;
-        }
+    for index in lifted.rising() {
+        let ground = ContourGround { posts, size, interval_m, least_fall_m };
+        let height_m = ground.lifted(index, LIFT * interval_m);
+        posts[index].height_m = height_m;
     }
     outer.into_iter().for_each(|(index, height_m)| posts[index].height_m = height_m);
 }
@@ -148,15 +147,18 @@ impl ContourGround<'_> {
         Some(if has(1) { LevelPost::Slope } else { LevelPost::Crest })
     }
 
-    /// The posts of slopes at the height of a line that hang together with level ground.
-    fn level_beside(&self, broad: Vec<usize>) -> PostSet {
+    /// The posts of `slopes` at the height of a line that hang together with level ground.
+    fn level_beside(&self, broad: Vec<usize>, slopes: impl Iterator<Item = usize>) -> PostSet {
+        let mut is_slope = PostSet::new(self.posts.len());
+        slopes.for_each(|post| {
+            is_slope.insert(post);
+        });
         let mut set = PostSet::new(self.posts.len());
         let mut open: Vec<usize> = broad.into_iter().filter(|&post| set.insert(post)).collect();
         while let Some(index) = open.pop() {
             let line_m = self.line_m(index);
             for near in self.round(index).into_iter().flatten() {
-                let is_same = self.line_m(near) == line_m && !set.holds(near);
-                if is_same && self.level_post(near) == Some(LevelPost::Slope) {
+                if is_slope.holds(near) && !set.holds(near) && self.line_m(near) == line_m {
                     set.insert(near);
                     open.push(near);
                 }
@@ -231,6 +233,14 @@ impl PostSet {
 
     fn holds(&self, index: usize) -> bool {
         self.0[index / 64] >> (index % 64) & 1 == 1
+    }
+
+    /// The posts, rising.
+    fn rising(&self) -> impl Iterator<Item = usize> + '_ {
+        let some = self.0.iter().enumerate().filter(|(_, word)| **word != 0);
+        some.flat_map(|(place, word)| {
+            (0..64).filter(move |bit| word >> bit & 1 == 1).map(move |bit| place * 64 + bit)
+        })
     }
 
     /// Adds a post; returns whether it is new.

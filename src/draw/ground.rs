@@ -102,6 +102,7 @@ impl ColorRamp {
     }
 
     /// `height_m` as a share of the range of the stops, 0..=1 between them; 0 where there is one stop.
+    #[inline]
     pub fn elevation(&self, height_m: f32) -> f32 {
         let (low, high) = self.height_range();
         if high > low { (height_m - low) / (high - low) } else { 0.0 }
@@ -203,6 +204,7 @@ impl Contours {
 }
 
 /// `land` with the undergrowth of the woods there.
+#[inline]
 fn undergrown(land: Vec3, post: &GroundPost) -> Vec3 {
     // Nearly everywhere there are no trees, and no share of undergrowth changes nothing.
     let woods = Undergrowth::cover(post.water);
@@ -316,6 +318,7 @@ impl GroundMap {
     }
 
     /// The ramp's color in linear light: that of land without a cover.
+    #[inline]
     pub fn tint(&self, post: &GroundPost) -> Vec3 {
         self.ramp.linear_at(post.height_m)
     }
@@ -345,6 +348,7 @@ impl GroundMap {
     }
 
     /// The upward unit normal by which `post` is shaded.
+    #[inline]
     pub fn shaded_normal(&self, post: &GroundPost) -> Vec3 {
         Vec3::new(-post.slope_east * self.z_factor, -post.slope_north * self.z_factor, 1.0).normalize()
     }
@@ -437,11 +441,13 @@ impl GroundPost {
     pub const MOST_SKY: f32 = 2.0;
 
     /// Combines each value with the same value of `other`.
+    #[inline]
     pub fn zip_with(&self, other: &Self, combine: impl Fn(f32, f32) -> f32) -> Self {
         let [own, other]: [[f32; 6]; 2] = [bytemuck::cast(*self), bytemuck::cast(*other)];
         bytemuck::cast::<[f32; 6], _>(std::array::from_fn(|index| combine(own[index], other[index])))
     }
 
+    #[inline]
     fn lerp(&self, other: &Self, share: f32) -> Self {
         self.zip_with(other, |a, b| a + (b - a) * share)
     }

@@ -112,6 +112,7 @@ pub fn coarser_post(
 }
 
 /// Adds `weight` times `post`.
+#[inline]
 pub fn add_weighted(sum: &mut GroundPost, post: &GroundPost, weight: f32) {
     *sum = sum.zip_with(post, |sum, value| sum + value * weight);
 }

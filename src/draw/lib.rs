@@ -5,6 +5,7 @@ pub mod area_texture;
 pub mod backdrop;
 pub mod bathymetry;
 pub mod border;
+pub mod box_blur;
 pub mod color;
 pub mod contour_ground;
 pub mod cover_noise;

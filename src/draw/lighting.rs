@@ -79,6 +79,7 @@ impl Lighting {
     }
 
     /// The light that a point of a solid returns that receives a part of the light, before haze.
+    #[inline]
     pub fn shade_received(&self, albedo: Vec3, normal: Vec3, received: ReceivedLight) -> Vec3 {
         let direct = self.sun * (normal.dot(self.to_sun).max(0.0) * received.sun);
         let ambient = self.bounce.lerp(self.sky, normal.z * 0.5 + 0.5) * received.sky;
@@ -208,6 +209,7 @@ impl ReliefShading {
 
     /// How much more light a place receives than level ground, no shadow being cast on it, and how much cast shadows take,
     /// both weighted by its contrast: `r` and `s` of the formula.
+    #[inline]
     pub fn relief(&self, point: &ReliefPoint) -> (f32, f32) {
         let facing = |normal: Vec3, light: Vec3| normal.dot(light).max(0.0);
         let [main, sides, form] = Self::SHARES;
@@ -240,6 +242,7 @@ impl ReliefShading {
     }
 
     /// A brightness bent toward the darkest and the brightest.
+    #[inline]
     pub fn soft(brightness: f32) -> f32 {
         let [toe, shoulder] = [Self::TOE - Self::DARKEST, Self::BRIGHTEST - Self::SHOULDER];
         if brightness < Self::TOE {

@@ -23,6 +23,9 @@ impl HeldPosts {
     /// The posts that are pinned now.
     pub fn pinned(lattice: &Lattice) -> Self {
         let mut runs: Vec<PostRun> = Vec::new();
+        if !lattice.has_pins() {
+            return Self { runs, doublings: lattice.doublings() };
+        }
         for (row, pinned) in (0..).zip(lattice.pinned().chunks_exact(lattice.columns() as usize)) {
             let mut from = 0;
             while let Some(start) = pinned[from..].iter().position(|&pin| pin).map(|at| from + at) {

@@ -88,9 +88,9 @@ pub fn flood(lattice: &mut Lattice, lakes: &[LakeBasin<'_>]) -> Vec<Flooded> {
     let plan = ShorePlan::new(lattice, lakes);
     let mut flooded: Vec<Flooded> = lakes.iter().map(|lake| plan.meets_lower(lattice, lake)).collect();
     let blends = plan.blends(lattice);
-    for index in (0..plan.claims.len()).filter(|&index| plan.claims[index] != Claim::NONE) {
-        let (post, lake) = (lattice.post_at(index), plan.claims[index].lake());
-        let rise_m = plan.rise_m(lattice, index);
+    for &place in &plan.claimed {
+        let (post, lake) = (lattice.post_at(place), plan.claim_of(place).lake());
+        let rise_m = plan.rise_m(lattice, place);
         flooded[lake].volumes += Volumes::from_rise(rise_m, lattice.cell_m2());
         lattice.pin(post, lakes[lake].level_m);
     }
@@ -138,14 +138,17 @@ struct ShoreBlend {
 /// Which lake moves which post.
 struct ShorePlan<'a> {
     lakes: &'a [LakeBasin<'a>],
-    /// One for each post, in the order of [`Lattice::heights`]; none at all where there is no lake.
-    claims: Vec<Claim>,
+    /// The number of a [`Claim`] for each post, in the order of [`Lattice::heights`]; none at all where there is no lake. Of a
+    /// large lattice, memory is taken for no more than lies near lakes.
+    claims: Vec<u32>,
+    /// The places of the posts that are claimed, rising.
+    claimed: Vec<usize>,
 }
 
 impl<'a> ShorePlan<'a> {
     fn new(lattice: &Lattice, lakes: &'a [LakeBasin<'a>]) -> Self {
         let count = if lakes.is_empty() { 0 } else { lattice.heights().len() };
-        let mut plan = Self { lakes, claims: vec![Claim::NONE; count] };
+        let mut plan = Self { lakes, claims: vec![Claim::NONE.0; count], claimed: Vec::new() };
         for (index, lake) in lakes.iter().enumerate() {
             for post in posts_touched(lattice, &lake.rings()) {
                 plan.claim(lattice.index(post), Claim::water(index));
@@ -155,42 +158,50 @@ impl<'a> ShorePlan<'a> {
             for post in lake.holes.iter().flat_map(|hole| posts_touched(lattice, std::slice::from_ref(hole)))
             {
                 let place = lattice.index(post);
-                if lattice.height(post) < lake.level_m && !plan.claims[place].is_water() {
+                if lattice.height(post) < lake.level_m && !plan.claim_of(place).is_water() {
                     plan.claim(place, Claim::island(index));
                 }
             }
         }
+        plan.claimed.sort_unstable();
         plan
+    }
+
+    fn claim_of(&self, place: usize) -> Claim {
+        Claim(self.claims[place])
     }
 
     /// Gives a post to a lake, unless one at no higher level has it.
     fn claim(&mut self, place: usize, claim: Claim) {
-        let (level_m, before) = (|claim: Claim| self.lakes[claim.lake()].level_m, self.claims[place]);
+        let (level_m, before) = (|claim: Claim| self.lakes[claim.lake()].level_m, self.claim_of(place));
         if before == Claim::NONE || level_m(claim).total_cmp(&level_m(before)).is_lt() {
-            self.claims[place] = claim;
+            self.claims[place] = claim.0;
+        }
+        if before == Claim::NONE {
+            self.claimed.push(place);
         }
     }
 
     /// The lowest of the lower lakes on a lake's posts, without volumes.
     fn meets_lower(&self, lattice: &Lattice, lake: &LakeBasin<'_>) -> Flooded {
         let posts = posts_touched(lattice, &lake.rings()).into_iter();
-        let levels = posts.map(|post| self.lakes[self.claims[lattice.index(post)].lake()].level_m);
+        let levels = posts.map(|post| self.lakes[self.claim_of(lattice.index(post)).lake()].level_m);
         let lower = levels.filter(|&level_m| level_m < lake.level_m).min_by(f32::total_cmp);
         Flooded { volumes: Volumes::default(), lower_level_m: lower }
     }
 
     /// How far a claimed post is moved; 0 where there is no ground.
     fn rise_m(&self, lattice: &Lattice, place: usize) -> f64 {
-        let level_m = self.lakes[self.claims[place].lake()].level_m;
+        let level_m = self.lakes[self.claim_of(place).lake()].level_m;
         let rise_m = f64::from(level_m) - f64::from(lattice.heights()[place]);
         if rise_m.is_nan() { 0.0 } else { rise_m }
     }
 
     /// Every post next to a bed: moved by half the mean move of its neighbors there, but not beyond their levels.
     fn blends(&self, lattice: &Lattice) -> Vec<ShoreBlend> {
-        let water = self.claims.iter().enumerate().filter(|(_, claim)| claim.is_water());
-        let beside = water.flat_map(|(place, _)| around(lattice, lattice.post_at(place)));
-        let mut ashore: Vec<usize> = beside.filter(|&place| self.claims[place] == Claim::NONE).collect();
+        let water = self.claimed.iter().filter(|&&place| self.claim_of(place).is_water());
+        let beside = water.flat_map(|&place| around(lattice, lattice.post_at(place)));
+        let mut ashore: Vec<usize> = beside.filter(|&place| self.claim_of(place) == Claim::NONE).collect();
         ashore.sort_unstable();
         ashore.dedup();
         let mut shores: Vec<Option<Shoreline>> = self.lakes.iter().map(|_| None).collect();
@@ -205,10 +216,10 @@ impl<'a> ShorePlan<'a> {
         if height_m.is_nan() {
             return None;
         }
-        let beds = || around(lattice, post).filter(|&place| self.claims[place].is_water());
+        let beds = || around(lattice, post).filter(|&place| self.claim_of(place).is_water());
         let (sum_m, count) =
             beds().fold((0.0, 0), |(sum_m, count), place| (sum_m + self.rise_m(lattice, place), count + 1));
-        let lakes = || beds().map(|place| self.claims[place].lake());
+        let lakes = || beds().map(|place| self.claim_of(place).lake());
         let (low_m, high_m) = lakes()
             .map(|lake| f64::from(self.lakes[lake].level_m))
             .fold((height_m, height_m), |(low_m, high_m), level_m| (low_m.min(level_m), high_m.max(level_m)));

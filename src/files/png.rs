@@ -1,5 +1,7 @@
 //! Pictures as PNG files, with notes on their print.
 
+use rayon::prelude::*;
+
 use crate::png_strips::{PngChannels, packed_pixels};
 use sandtable_draw::pixels::Pixels;
 
@@ -18,34 +20,14 @@ pub struct PngNotes {
     pub texts: Vec<(&'static str, String)>,
 }
 
-/// [`encode_png`] with notes in chunks `pHYs` and `iTXt` (PNG 3rd edition, sections 11.3.3 and 11.3.4).
-pub fn encode_png_with(pixels: &Pixels, notes: &PngNotes) -> Vec<u8> {
-    /// The signature, and the chunk IHDR with its length, name and check.
-    const HEAD: usize = SIGNATURE.len() + 25;
-    let mut png = encode_png(pixels);
-    let resolution = notes.dpi.map(|dpi| {
-        let per_meter = (libm::round(dpi / 0.0254).clamp(1.0, 2e9) as u32).to_be_bytes();
-        png_chunk(b"pHYs", &[&per_meter[..], &per_meter, &[1]].concat())
-    });
-    // Neither packed, nor in a language, nor with a keyword in one.
-    let text = |(key, text): &(&str, String)| {
-        png_chunk(b"iTXt", &[key.as_bytes(), &[0; 5], text.replace('\0', " ").as_bytes()].concat())
-    };
-    let chunks: Vec<u8> = resolution.into_iter().chain(notes.texts.iter().map(text)).flatten().collect();
-    png.splice(HEAD..HEAD, chunks);
-    png
-}
-
-fn png_chunk(name: &[u8; 4], data: &[u8]) -> Vec<u8> {
-    let mut check = flate2::Crc::new();
-    check.update(name);
-    check.update(data);
-    [&(data.len() as u32).to_be_bytes()[..], name, data, &check.sum().to_be_bytes()].concat()
-}
-
-/// The bytes of a PNG file, without alpha where all pixels are opaque. `pixels` must not be empty. Spread over all threads;
-/// the same for any number of them.
+/// The bytes of a PNG file without notes; see [`encode_png_with`].
 pub fn encode_png(pixels: &Pixels) -> Vec<u8> {
+    encode_png_with(pixels, &PngNotes::default())
+}
+
+/// The bytes of a PNG file, without alpha where all pixels are opaque, with notes in chunks `pHYs` and `iTXt` (PNG 3rd edition,
+/// sections 11.3.3 and 11.3.4). `pixels` must not be empty. Spread over all threads; the same for any number of them.
+pub fn encode_png_with(pixels: &Pixels, notes: &PngNotes) -> Vec<u8> {
     /// Eight bits a channel; the one packing, filtering and order of rows there is but for interlaced ones.
     const DEPTH: u8 = 8;
     let channels = PngChannels::of(pixels);
@@ -53,14 +35,45 @@ pub fn encode_png(pixels: &Pixels) -> Vec<u8> {
         PngChannels::Opaque => 2,
         PngChannels::WithAlpha => 6,
     };
+    let packed = packed_pixels(pixels, channels);
+    let mut png = Vec::with_capacity(packed.len() + packed.len() / 8);
+    png.extend(SIGNATURE);
     let size = [pixels.width().to_be_bytes(), pixels.height().to_be_bytes()].concat();
-    let mut png = SIGNATURE.to_vec();
-    png.extend(png_chunk(b"IHDR", &[&size[..], &[DEPTH, color_type, 0, 0, 0]].concat()));
-    for data in packed_pixels(pixels, channels).chunks(MOST_CHUNK) {
-        png.extend(png_chunk(b"IDAT", data));
+    add_chunk(&mut png, b"IHDR", &[&size[..], &[DEPTH, color_type, 0, 0, 0]].concat());
+    if let Some(dpi) = notes.dpi {
+        let per_meter = (libm::round(dpi / 0.0254).clamp(1.0, 2e9) as u32).to_be_bytes();
+        add_chunk(&mut png, b"pHYs", &[&per_meter[..], &per_meter, &[1]].concat());
     }
-    png.extend(png_chunk(b"IEND", &[]));
+    for (key, text) in &notes.texts {
+        // Neither packed, nor in a language, nor with a keyword in one.
+        let text = text.replace('\0', " ");
+        add_chunk(&mut png, b"iTXt", &[key.as_bytes(), &[0; 5], text.as_bytes()].concat());
+    }
+    packed.chunks(MOST_CHUNK).for_each(|data| add_chunk(&mut png, b"IDAT", data));
+    add_chunk(&mut png, b"IEND", &[]);
     png
+}
+
+fn add_chunk(png: &mut Vec<u8>, name: &[u8; 4], data: &[u8]) {
+    png.extend((data.len() as u32).to_be_bytes());
+    png.extend(name);
+    png.extend(data);
+    png.extend(check(name, data).to_be_bytes());
+}
+
+/// The CRC of a chunk, its parts looked at on all threads.
+fn check(name: &[u8; 4], data: &[u8]) -> u32 {
+    /// Bytes of a part.
+    const PART: usize = 1 << 20;
+    let of = |bytes: &[u8]| {
+        let mut check = flate2::Crc::new();
+        check.update(bytes);
+        check
+    };
+    let mut check = of(name);
+    let parts: Vec<flate2::Crc> = data.par_chunks(PART).map(of).collect();
+    parts.iter().for_each(|part| check.combine(part));
+    check.sum()
 }
 
 #[cfg(test)]

@@ -104,7 +104,7 @@ pub(super) fn packed_pixels(pixels: &Pixels, channels: PngChannels) -> Vec<u8> {
         PackedStrip { code_bits: last_bit(&stream) - last_bit(&empty), stream, packed }
     };
     let strips: Vec<PackedStrip> = firsts.into_par_iter().map(strip).collect();
-    let joined = joined(&empty, &strips);
+    let joined = joined(&empty, strips);
     let rows_bytes = pixels.height() as usize * (row_bytes + 1);
     // Noise packs to more than it is.
     let is_small = joined.len() <= StoredOnlyCompressor::<()>::compressed_size(rows_bytes);
@@ -159,23 +159,51 @@ fn last_bit(stream: &[u8]) -> usize {
     last * 8 + 7 - block[last].leading_zeros() as usize
 }
 
-/// One stream of the codes of all strips.
-fn joined(empty: &[u8], strips: &[PackedStrip]) -> Vec<u8> {
-    let bytes: usize = strips.iter().map(|strip| strip.stream.len()).sum();
-    let mut joined = BitSink { bytes: Vec::with_capacity(bytes), kept: 0, count: 0 };
-    joined.append(empty, 0..HEAD_BITS);
-    for strip in strips {
-        joined.append(&strip.stream, HEAD_BITS..HEAD_BITS + strip.code_bits);
-    }
-    joined.append(empty, HEAD_BITS..HEAD_BITS + END_BITS);
+/// One stream of the codes of all strips. Each is moved on to its first bit in a byte by itself, on all threads.
+fn joined(empty: &[u8], strips: Vec<PackedStrip>) -> Vec<u8> {
     let check = strips.iter().fold(1, |check, strip| {
         let (_, own) = strip.stream.split_at(strip.stream.len() - CHECK_BYTES);
         let own = own.iter().fold(0, |value, &byte| value << 8 | u32::from(byte));
         joined_check(check, own, strip.packed)
     });
-    let mut stream = joined.finish();
+    let mut end = HEAD_BITS;
+    let placed: Vec<(usize, PackedStrip)> = strips
+        .into_iter()
+        .map(|strip| {
+            let first = end;
+            end += strip.code_bits;
+            (first, strip)
+        })
+        .collect();
+    let codes = |(first, strip): (usize, PackedStrip)| {
+        (first, moved(&strip.stream, HEAD_BITS..HEAD_BITS + strip.code_bits, first))
+    };
+    let parts: Vec<(usize, Vec<u8>)> = placed.into_par_iter().map(codes).collect();
+    let mut stream = Vec::with_capacity((end + END_BITS).div_ceil(8) + CHECK_BYTES);
+    add_bits(&mut stream, 0, moved(empty, 0..HEAD_BITS, 0));
+    parts.into_iter().for_each(|(first, part)| add_bits(&mut stream, first, part));
+    add_bits(&mut stream, end, moved(empty, HEAD_BITS..HEAD_BITS + END_BITS, end));
     stream.extend(check.to_be_bytes());
     stream
+}
+
+/// Bits of `from` in bytes, the first at the place in its byte of bit `first` of a stream, with zeros before it.
+fn moved(from: &[u8], bits: Range<usize>, first: usize) -> Vec<u8> {
+    let bytes = Vec::with_capacity(bits.len() / 8 + WORD_BITS / 8);
+    let mut sink = BitSink { bytes, kept: 0, count: first % 8 };
+    sink.append(from, bits);
+    sink.finish()
+}
+
+/// Adds [`moved`] bits, of which the first is number `first`, to a stream that ends before it, in the same byte or at its end.
+fn add_bits(stream: &mut Vec<u8>, first: usize, bytes: Vec<u8>) {
+    match (stream.last_mut(), &bytes[..]) {
+        (Some(last), [shared, rest @ ..]) if !first.is_multiple_of(8) => {
+            *last |= shared;
+            stream.extend(rest);
+        }
+        _ => stream.extend(bytes),
+    }
 }
 
 /// The Adler-32 of some bytes with the check `before` and `count` more with the check `own`.

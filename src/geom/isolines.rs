@@ -9,6 +9,7 @@
 //! ```
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 /// Values in rows, X right and Y down; NaN is a void.
 pub struct ValueGrid<'a> {
@@ -44,20 +45,21 @@ struct CellPassage {
 }
 
 /// The lines at whole multiples of `interval`, each in one piece between voids. Cells for which `is_open` is false, that
-/// touch a void, or that more than `most` lines cross are void. Empty where `interval` is not positive.
+/// touch a void, or that more than `most` lines cross are void. Empty where `interval` is not positive. Cells are looked at on
+/// all threads; the lines are the same for any number of them.
 pub fn isolines(
     grid: &ValueGrid<'_>,
     interval: f32,
     most: usize,
-    is_open: impl Fn(usize, usize) -> bool,
+    is_open: impl Fn(usize, usize) -> bool + Sync,
 ) -> Vec<Isoline> {
     let columns = grid.columns;
     if columns < 2 || interval.is_nan() || interval <= 0.0 {
         return Vec::new();
     }
     let rows = grid.values.len() / columns;
-    let mut passages = Vec::new();
-    for row in 0..rows.saturating_sub(1) {
+    let of_row = |row: usize| {
+        let mut passages = Vec::new();
         for column in 0..columns - 1 {
             let at = |x: usize, y: usize| grid.values[(row + y) * columns + column + x] / interval;
             let corners = [at(0, 0), at(1, 0), at(1, 1), at(0, 1)];
@@ -71,8 +73,9 @@ pub fn isolines(
                     .for_each(|level| pass(level, corners, (column, row), columns, &mut passages));
             }
         }
-    }
-    linked(passages)
+        passages
+    };
+    linked((0..rows.saturating_sub(1)).into_par_iter().flat_map_iter(of_row).collect())
 }
 
 /// Adds the ways of the line at `level` through a cell.

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use crate::nodata_span::NoDataSpan;
 use crate::raster::{Raster, SampleFloat, Samples};
+use sandtable_base::vectorized::vectorized;
 
 /// Values that mean no data in many files.
 pub(crate) const USUAL: [f64; 25] = [
@@ -64,6 +65,9 @@ const LEAST_FAR: u64 = 9;
 /// More values than these that no ground has are heights in another unit.
 const MOST_FAR: usize = 1024;
 
+/// Samples whose range is looked at first: nearly all are plain together.
+const PLAIN_TOGETHER: usize = 64;
+
 /// Samples that a thread counts together.
 const TOGETHER: usize = 1 << 16;
 
@@ -71,6 +75,8 @@ const TOGETHER: usize = 1 << 16;
 #[derive(Clone)]
 pub(crate) struct OddValues {
     spans: [NoDataSpan; USUAL.len()],
+    /// Where values may be near usual ones or count as one: apart and rising.
+    near_usual: Vec<NearUsual>,
     usual: [ValueCount; USUAL.len()],
     /// Values beyond all ground, by their bits in the order of numbers; none where they are too many.
     far: Option<BTreeMap<u64, u64>>,
@@ -81,6 +87,15 @@ pub(crate) struct OddValues {
     /// The lowest and the highest of the other heights.
     low: f64,
     high: f64,
+}
+
+/// Values that may be near some usual ones.
+#[derive(Clone)]
+struct NearUsual {
+    low: f64,
+    high: f64,
+    /// The places of the usual ones, rising.
+    usual: Vec<usize>,
 }
 
 #[derive(Clone, Copy, Default)]
@@ -103,6 +118,7 @@ impl OddValues {
         let unit_m = if raster.meters_per_z > 0.0 { raster.meters_per_z } else { 1.0 };
         Self {
             spans: USUAL.map(NoDataSpan::around),
+            near_usual: near_usual(),
             usual: [ValueCount::default(); USUAL.len()],
             far: Some(BTreeMap::new()),
             ground: (GROUND_M.0 / unit_m, GROUND_M.1 / unit_m),
@@ -133,25 +149,37 @@ impl OddValues {
 
     fn counted<T: SampleFloat>(mut self, values: &[T]) -> Self {
         self.samples = values.len() as u64;
-        for &value in values {
-            let value: f64 = value.into();
-            if value > PLAIN.0 && value < PLAIN.1 {
-                self.low = if value < self.low { value } else { self.low };
-                self.high = if value > self.high { value } else { self.high };
-            } else if !value.is_nan() {
-                self.add_odd(value);
+        for few in values.chunks(PLAIN_TOGETHER) {
+            let plain = vectorized(
+                #[inline(always)]
+                || plain_range(few),
+            );
+            if let Some((low, high)) = plain {
+                (self.low, self.high) = (self.low.min(low.into()), self.high.max(high.into()));
+                continue;
+            }
+            for &value in few {
+                let value: f64 = value.into();
+                if value > PLAIN.0 && value < PLAIN.1 {
+                    (self.low, self.high) = (self.low.min(value), self.high.max(value));
+                } else if !value.is_nan() {
+                    self.add_odd(value);
+                }
             }
         }
         self
     }
 
     fn add_odd(&mut self, value: f64) {
-        if let Some(at) = self.spans.iter().position(|span| span.contains(value)) {
-            self.usual[at].equal += 1;
-            return;
-        }
-        for (count, usual) in self.usual.iter_mut().zip(USUAL) {
-            count.near += u64::from((value - usual).abs() <= reach(usual));
+        let after = self.near_usual.partition_point(|near| near.high < value);
+        if let Some(near) = self.near_usual.get(after).filter(|near| near.low <= value) {
+            if let Some(&at) = near.usual.iter().find(|&&at| self.spans[at].contains(value)) {
+                self.usual[at].equal += 1;
+                return;
+            }
+            for &at in &near.usual {
+                self.usual[at].near += u64::from((value - USUAL[at]).abs() <= reach(USUAL[at]));
+            }
         }
         if value > self.ground.0 && value < self.ground.1 {
             (self.low, self.high) = (self.low.min(value), self.high.max(value));
@@ -228,6 +256,54 @@ fn tenths(value: f64) -> f64 {
     (value * 10.0).round() / 10.0 + 0.0
 }
 
+/// The least and the greatest of some values; `None` where one is not [`PLAIN`], or there is none.
+#[inline(always)]
+fn plain_range<T: SampleFloat>(values: &[T]) -> Option<(T, T)> {
+    /// Values that a processor compares at once.
+    const LANES: usize = 8;
+    let (least, most) = (T::from_f64(PLAIN.0), T::from_f64(PLAIN.1));
+    if !values.iter().fold(true, |all, &value| all & (value > least) & (value < most)) {
+        return None;
+    }
+    let (mut low, mut high) = ([*values.first()?; LANES], [*values.first()?; LANES]);
+    let (groups, rest) = values.as_chunks::<LANES>();
+    for group in groups.iter().map(|group| &group[..]).chain([rest]) {
+        for ((low, high), &value) in low.iter_mut().zip(&mut high).zip(group) {
+            *low = if value < *low { value } else { *low };
+            *high = if value > *high { value } else { *high };
+        }
+    }
+    let lesser = |a: T, b: T| if b < a { b } else { a };
+    let greater = |a: T, b: T| if b > a { b } else { a };
+    Some((low.into_iter().reduce(lesser)?, high.into_iter().reduce(greater)?))
+}
+
+/// [`OddValues::near_usual`].
+fn near_usual() -> Vec<NearUsual> {
+    /// More than is lost where the ends are rounded.
+    const MORE: f64 = 1.0 + 1e-9;
+    let around = |at: usize| {
+        let (usual, reach) = (USUAL[at], reach(USUAL[at]) * MORE);
+        // The span of a value that was written with few digits reaches farther.
+        let (least, most) = NoDataSpan::around(usual).ends::<f64>();
+        NearUsual { low: least.min(usual - reach), high: most.max(usual + reach), usual: vec![at] }
+    };
+    let mut all: Vec<NearUsual> = (0..USUAL.len()).map(around).collect();
+    all.sort_by(|a, b| a.low.total_cmp(&b.low));
+    let mut apart: Vec<NearUsual> = Vec::new();
+    for next in all {
+        match apart.last_mut() {
+            Some(last) if next.low <= last.high => {
+                last.high = last.high.max(next.high);
+                last.usual.extend(next.usual);
+                last.usual.sort_unstable();
+            }
+            _ => apart.push(next),
+        }
+    }
+    apart
+}
+
 /// How far from a value samples count as near it.
 fn reach(value: f64) -> f64 {
     (value.abs() * NEAR_SHARE).max(NEAR)
@@ -273,6 +349,24 @@ mod tests {
         let narrow = f64::from(-9999.9_f32);
         assert_eq!(found(1.0, mixed(narrow, 100.0, 0.1)), [(-9999.9, 500)]);
         assert_eq!(found(1.0, mixed(f64::from(f32::MIN), 100.0, 0.1)), [(f64::from(f32::MIN), 500)]);
+    }
+
+    #[test]
+    fn near_a_usual_value_is_what_its_reach_says() {
+        for (usual, sign) in USUAL.into_iter().flat_map(|usual| [(usual, -1.0), (usual, 1.0)]) {
+            for share in [0.0, 1e-9, 0.5, 1.0 - 1e-12, 1.0, 1.0 + 1e-12, 1.01, 9.0, 11.0] {
+                let value = usual + sign * share * reach(usual);
+                let mut counts = OddValues::new(&Raster::new(1, Samples::F64(vec![value])));
+                counts.add(&Samples::F64(vec![value]));
+                let is_plain = value > PLAIN.0 && value < PLAIN.1;
+                let is_usual = counts.spans.iter().any(|span| span.contains(value));
+                assert_eq!(counts.usual.iter().map(|count| count.equal).sum::<u64>(), u64::from(is_usual));
+                for (count, other) in counts.usual.iter().zip(USUAL) {
+                    let is_near = (value - other).abs() <= reach(other) && !is_usual && !is_plain;
+                    assert_eq!(count.near, u64::from(is_near), "{value} beside {other}");
+                }
+            }
+        }
     }
 
     #[test]

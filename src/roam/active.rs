@@ -35,6 +35,13 @@ impl ActiveSet {
         self.bits[index / 64] >> (index % 64) & 1 == 1
     }
 
+    /// The vertices that are active in one of two sets of a layout, or in both.
+    pub fn joined(mut self, other: Self) -> Self {
+        assert_eq!(self.layout, other.layout, "sets of one layout");
+        self.bits.iter_mut().zip(other.bits).for_each(|(own, other)| *own |= other);
+        self
+    }
+
     /// Activates a vertex and first its inactive parents, up to the roots: the forced split.
     #[inline]
     pub fn activate(&mut self, vertex: Vertex) {

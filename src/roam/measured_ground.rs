@@ -12,7 +12,7 @@ use crate::errors::ErrorMap;
 use crate::graph::Vertex;
 use crate::layout::PatchLayout;
 use crate::patched_ground::PatchedGround;
-use crate::refine::rebuild::rebuild;
+use crate::refine::rebuild::rebuild_by_parts;
 use crate::shown::{LocalTriangle, local};
 use sandtable_terrain::lattice::Lattice;
 use sandtable_view::camera::Camera;
@@ -151,7 +151,7 @@ impl MeasuredGround {
     }
 
     fn displayed(&self, criterion: &impl Criterion, patches: Vec<Vertex>) -> DisplayedTerrain {
-        let active = rebuild(&self.layout, criterion, patches.iter().copied());
+        let active = rebuild_by_parts(&self.layout, criterion, &patches);
         DisplayedTerrain::new(Arc::clone(&self.lattice), active, patches)
     }
 }

@@ -8,6 +8,7 @@
 use glam::{DVec2, UVec2, Vec2, Vec3};
 use rayon::prelude::*;
 
+use sandtable_draw::box_blur::box_blurred;
 use sandtable_geom::rect::Rect;
 use sandtable_terrain::lattice::{Lattice, Post};
 
@@ -60,12 +61,12 @@ impl TableShadow<'_> {
             .map(|index| self.hidden_share(&block, place(index), step.min_element()))
             .collect();
         // The block's samples are coarse: their steps would show in the shadow's edge.
-        let cast = blurred(&cast, side as usize, 1);
+        let cast = box_blurred(&cast, side as usize, 1);
         let is_covered = |index| f32::from(block.at(place(index)).is_finite());
         let covered: Vec<f32> = (0..count).into_par_iter().map(is_covered).collect();
         let reach = ((side as f32 * CONTACT_REACH) as usize).max(1);
-        let contact = blurred(&blurred(&covered, side as usize, reach), side as usize, reach);
-        cast.iter()
+        let contact = box_blurred(&box_blurred(&covered, side as usize, reach), side as usize, reach);
+        cast.par_iter()
             .zip(contact)
             .map(|(cast, near)| 1.0 - (1.0 - cast * CAST) * (1.0 - near * CONTACT))
             .collect()
@@ -129,29 +130,6 @@ impl BlockHeights {
         let index = index.as_uvec2();
         if is_on { self.heights[(index.y * self.size.x + index.x) as usize] } else { f32::NAN }
     }
-}
-
-/// A square map with each value replaced by the mean of the square around it that reaches `reach` values far.
-fn blurred(map: &[f32], side: usize, reach: usize) -> Vec<f32> {
-    let columns = transposed(&blurred_rows(map, side, reach), side);
-    transposed(&blurred_rows(&columns, side, reach), side)
-}
-
-/// The same along rows alone.
-fn blurred_rows(map: &[f32], side: usize, reach: usize) -> Vec<f32> {
-    let mut means = vec![0.0; map.len()];
-    means.par_chunks_exact_mut(side).zip(map.par_chunks_exact(side)).for_each(|(means, line)| {
-        for (place, mean) in means.iter_mut().enumerate() {
-            let near = &line[place.saturating_sub(reach)..(place + reach + 1).min(side)];
-            *mean = near.iter().sum::<f32>() / near.len() as f32;
-        }
-    });
-    means
-}
-
-/// A square map with its rows as columns.
-fn transposed(map: &[f32], side: usize) -> Vec<f32> {
-    (0..side).flat_map(|column| map.iter().copied().skip(column).step_by(side)).collect()
 }
 
 /// The rectangle of world X and Y that a lattice covers, grown by `margin_m` on all sides.

@@ -5,6 +5,7 @@
 //! where a hill hides it, and the work is that of the picture, not of the ground.
 
 use glam::Vec2;
+use rayon::prelude::*;
 
 use crate::shown_elevation::shown_elevation_m;
 use sandtable_annotate::annotation::{ContourMarks, NumberedContour};
@@ -41,11 +42,11 @@ pub fn contour_marks(
     let numbered_m = contours.interval_m * contours.major_every.max(1) as f32;
     let grid = ValueGrid { columns: read.columns, values: &read.elevations_m };
     let is_open = |column: usize, row: usize| read.is_one_hill(column, row);
-    let numbered = isolines(&grid, numbered_m, MOST_IN_CELL, is_open).into_iter();
-    let all = isolines(&grid, contours.interval_m, MOST_IN_CELL, is_open);
+    let lines = |interval_m: f32| isolines(&grid, interval_m, MOST_IN_CELL, is_open);
+    let (numbered, all) = rayon::join(|| lines(numbered_m), || lines(contours.interval_m));
     let hollows = all.iter().filter(|line| line.is_closed() && is_hollow(line));
     Some(ContourMarks {
-        numbered: numbered.map(|line| read.numbered(&line, numbered_m)).collect(),
+        numbered: numbered.iter().map(|line| read.numbered(line, numbered_m)).collect(),
         ticks: hollows.flat_map(|line| ticks(&read.on_picture(line))).collect(),
         color: contours.color,
     })
@@ -65,13 +66,13 @@ impl ReadGround {
         let (width, height) = (picture.pixels.width() as usize, picture.pixels.height() as usize);
         let step = (height / ROWS).max(LEAST_STEP);
         let (columns, rows) = (width.div_ceil(step), height.div_ceil(step));
-        let (mut elevations_m, mut depths_m) = (Vec::new(), Vec::new());
-        for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
-            let (x, y) = (column * step, row * step);
-            depths_m.push(picture.depth_m[y * width + x]);
+        let read = |index: usize| {
+            let (x, y) = (index % columns * step, index / columns * step);
             let pixel = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-            elevations_m.push(shown_elevation_m(list, camera, picture, pixel).unwrap_or(f32::NAN));
-        }
+            let elevation_m = shown_elevation_m(list, camera, picture, pixel).unwrap_or(f32::NAN);
+            (elevation_m, picture.depth_m[y * width + x])
+        };
+        let (elevations_m, depths_m) = (0..columns * rows).into_par_iter().map(read).unzip();
         Self { columns, step, elevations_m, depths_m }
     }
 

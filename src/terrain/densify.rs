@@ -19,11 +19,13 @@
 //! through the posts would look rounder, but would move ground that no feature touches.
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use crate::cell_triangle::Diagonal;
 use crate::lattice::{Lattice, LatticeError, Post};
 use crate::query::Interpolation;
 use crate::query::cell::interpolate;
+use crate::returned_memory::returned_zeros;
 use sandtable_base::limits::GROUND_POSTS;
 use sandtable_base::limits::GROUND_ROW_POSTS;
 
@@ -61,7 +63,8 @@ pub fn affordable_doublings(lattice: &Lattice, wanted: u32) -> u32 {
     (1..=wanted).rev().find(is_affordable).unwrap_or(0)
 }
 
-/// The same ground with its posts doubled `times` times; a post between pinned ones is pinned.
+/// The same ground with its posts doubled `times` times; a post between pinned ones is pinned. Spread over all threads; the
+/// same for any number of them.
 ///
 /// # Errors
 /// Those of [`Lattice::new`], of which a lattice that was made by it has none, and a lack of memory.
@@ -69,13 +72,18 @@ pub fn densify(lattice: &Lattice, times: u32) -> Result<Lattice, LatticeError> {
     let side = |posts: u32| ((posts - 1) << times) + 1;
     let (columns, rows) = (side(lattice.columns()), side(lattice.rows()));
     Lattice::check_memory(columns, rows)?;
-    let posts = || (0..rows).flat_map(move |row| (0..columns).map(move |column| Post { column, row }));
-    let heights = posts().map(|post| height(lattice, post, times)).collect();
+    let mut heights = returned_zeros(columns as usize * rows as usize);
+    heights.par_chunks_exact_mut(columns as usize).zip(0..rows).for_each(|(heights, row)| {
+        for (height_m, column) in heights.iter_mut().zip(0..columns) {
+            *height_m = height(lattice, Post { column, row }, times);
+        }
+    });
     let cell = lattice.cell() / f64::from(1u32 << times);
     let mut dense = Lattice::new(lattice.origin(), cell, columns, heights)?;
     dense.set_doublings(lattice.doublings() + times);
-    if lattice.pinned().contains(&true) {
-        for post in posts().filter(|&post| is_pinned(lattice, post, times)) {
+    if lattice.has_pins() {
+        let posts = (0..rows).flat_map(|row| (0..columns).map(move |column| Post { column, row }));
+        for post in posts.filter(|&post| is_pinned(lattice, post, times)) {
             dense.pin(post, dense.height(post));
         }
     }
@@ -130,6 +138,20 @@ mod tests {
             let [before, after] = heights.map(|height| height.expect("inside"));
             prop_assert!((before - after).abs() < 1e-4, "{before} became {after}");
         }
+    }
+
+    #[test]
+    fn any_number_of_threads_puts_in_the_same_posts() {
+        let mut coarse = hills(61, 47);
+        coarse.pin(Post { column: 8, row: 9 }, f32::NAN);
+        let with = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+            let dense = pool.install(|| densify(&coarse, 2)).expect("sound");
+            dense.heights().iter().map(|height| height.to_bits()).collect::<Vec<_>>()
+        };
+        let one = with(1);
+        assert_eq!(one.len(), 241 * 185);
+        assert!([2, 3, 16].iter().all(|&threads| with(threads) == one));
     }
 
     #[test]

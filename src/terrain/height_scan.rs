@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use crate::lattice::Lattice;
 use sandtable_base::vectorized::vectorized;
 
 /// Heights that a thread scans together: some tens of microseconds.
@@ -81,6 +82,18 @@ fn range_in_lanes(heights: &[f32]) -> (f32, f32) {
 fn wider(range: (f32, f32), other: (f32, f32)) -> (f32, f32) {
     let low = if other.0 < range.0 { other.0 } else { range.0 };
     (low, if other.1 > range.1 { other.1 } else { range.1 })
+}
+
+impl Lattice {
+    /// The lowest and highest height of the held posts; finite unless these are a part without data.
+    pub fn height_range(&self) -> (f32, f32) {
+        range(self.held_heights())
+    }
+
+    /// The number of posts without data.
+    pub fn missing_posts(&self) -> usize {
+        missing(self.held_heights())
+    }
 }
 
 #[cfg(test)]

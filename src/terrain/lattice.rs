@@ -45,6 +45,7 @@ pub struct Lattice {
     heights: Arc<Vec<f32>>,
     /// Shared with clones, until one is pinned.
     pinned: Arc<Vec<bool>>,
+    has_pins: bool,
     pin_slack_m: f32,
 }
 
@@ -233,6 +234,7 @@ impl Lattice {
             doublings: 0,
             heights: Arc::new(heights),
             pinned,
+            has_pins: false,
             pin_slack_m: PIN_SLACK_M,
         })
     }
@@ -247,7 +249,8 @@ impl Lattice {
             &self.heights[first..=self.index(Post { column: held.last.column, row })]
         };
         let heights = (held.first.row..=held.last.row).map(row).collect::<Vec<_>>().concat();
-        Self { held, pinned: vec![false; heights.len()].into(), heights: Arc::new(heights), ..*self }
+        let pinned = vec![false; heights.len()].into();
+        Self { held, pinned, has_pins: false, heights: Arc::new(heights), ..*self }
     }
 
     /// The lattice with every height times `factor`, which is above 0.
@@ -397,6 +400,11 @@ impl Lattice {
         &self.pinned
     }
 
+    /// Whether any post is pinned: told without a look at each.
+    pub fn has_pins(&self) -> bool {
+        self.has_pins
+    }
+
     /// The greatest difference of drawn ground from a pinned post, meters: rounding of heights, which
     /// [`Lattice::stretched`] multiplies.
     pub fn pin_slack_m(&self) -> f32 {
@@ -408,6 +416,7 @@ impl Lattice {
         let index = self.index(post);
         Arc::make_mut(&mut self.heights)[index] = height;
         Arc::make_mut(&mut self.pinned)[index] = true;
+        self.has_pins = true;
     }
 
     /// The heights of the posts from `first` to column `last` of its row, to be set. Pins stay.
@@ -446,16 +455,6 @@ impl Lattice {
     pub fn post_at(&self, index: usize) -> Post {
         let columns = self.held_columns() as usize;
         self.held.first.offset((index % columns) as u32, (index / columns) as u32)
-    }
-
-    /// The lowest and highest height of the held posts; finite unless these are a part without data.
-    pub fn height_range(&self) -> (f32, f32) {
-        height_scan::range(&self.heights)
-    }
-
-    /// The number of posts without data.
-    pub fn missing_posts(&self) -> usize {
-        height_scan::missing(&self.heights)
     }
 
     /// Map coordinates of a post.

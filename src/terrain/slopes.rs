@@ -112,7 +112,7 @@ impl Lattice {
     /// Which posts of a row of a densified lattice a pinned post may lie so near to that it has an effect on their slopes; empty
     /// where none does.
     fn near_pinned(&self, row: u32) -> Vec<bool> {
-        if self.doublings() == 0 {
+        if self.doublings() == 0 || !self.has_pins() {
             return Vec::new();
         }
         let (columns, row) = (self.columns() as usize, row as usize);

@@ -18,7 +18,7 @@ use sandtable_roam::layout::PatchLayout;
 use sandtable_roam::refine::changes::RefinementChanges;
 use sandtable_roam::refine::coherent::{Coherent, Hidden};
 use sandtable_roam::refine::queues::{Goal, MOST_LEAVES, Queues};
-use sandtable_roam::refine::rebuild::rebuild;
+use sandtable_roam::refine::rebuild::{rebuild, rebuild_by_parts};
 use terrain::{MONOTONE, Terrain, flights, terrains};
 
 const CRITERIA: usize = 8;
@@ -101,6 +101,7 @@ proptest! {
             let changes = refiner.update(&criterion, &patches);
             let anew = rebuild(&terrain.layout, &criterion, patches.iter().copied());
             prop_assert_eq!(refiner.active(), &anew, "{} in frame {}", name, frame);
+            prop_assert_eq!(&rebuild_by_parts(&terrain.layout, &criterion, &patches), &anew, "on all threads");
             refiner.check();
             prop_assert_eq!(changes, changes_between(&terrain, &before, &anew));
             prop_assert_eq!(refiner.update(&criterion, &patches), RefinementChanges::default(), "at rest");

@@ -4,6 +4,7 @@ use crate::channel::carve::CenterlinePiece;
 use crate::channel::course::{ChannelCourse, CourseStation};
 use crate::channel::river_cut::{ChannelError, Cut};
 use glam::DVec2;
+use rayon::prelude::*;
 use sandtable_base::limits::RIVER_POSTS;
 use sandtable_geom::segment;
 use sandtable_terrain::lattice::Lattice;
@@ -47,7 +48,7 @@ impl ChannelBed {
         let touched = pieces.iter().flat_map(|piece| piece.posts.map(|post| (post, piece)));
         let mut posts: Vec<u32> =
             wishes.iter().map(|wish| wish.post).chain(touched.clone().map(|(post, _)| post)).collect();
-        posts.sort_unstable();
+        posts.par_sort_unstable();
         posts.dedup();
         let heights = lattice.heights();
         let mut bed = Self {
@@ -128,35 +129,40 @@ impl ChannelBed {
     }
 }
 
-/// The most wishes before all but the nearest are dropped: 100 MB. On wide rivers each post has one per cell of river.
+/// The most wishes of all threads before all but the nearest are dropped: 100 MB. On wide rivers each post has one per cell of
+/// river.
 const MOST_WAITING: usize = 4_000_000;
 
-/// What channels would have of the posts under their water and banks: for each post the wish of the nearest channel.
+/// What channels would have of the posts under their water and banks: for each post the wish of the nearest channel, of equals
+/// the first.
 fn wishes(lattice: &Lattice, courses: &[ChannelCourse<'_>]) -> Result<Vec<Wish>, ChannelError> {
-    let stretches = || {
-        let of_course = |(course, channel): (_, u32)| {
-            let pairs = ChannelCourse::pairs(course);
-            pairs.filter_map(move |ends| Some((StretchPosts::of(lattice, course, ends)?, channel)))
-        };
-        courses.iter().zip(0..).flat_map(of_course)
-    };
-    if stretches().map(|(around, _)| around.posts()).fold(0, usize::saturating_add) > RIVER_POSTS.count() {
+    let stretches =
+        |course| ChannelCourse::pairs(course).filter_map(move |ends| StretchPosts::of(lattice, course, ends));
+    let posts = |course| stretches(course).map(|around| around.posts()).fold(0, usize::saturating_add);
+    if courses.par_iter().map(posts).reduce(|| 0, usize::saturating_add) > RIVER_POSTS.count() {
         return Err(ChannelError::TooWide);
     }
-    let (mut wishes, mut kept) = (Vec::new(), 0);
-    for (around, channel) in stretches() {
-        around.wish(lattice, channel, &mut wishes);
-        if wishes.len() > MOST_WAITING.max(2 * kept) {
-            keep_nearest(&mut wishes);
-            kept = wishes.len();
+    let most = MOST_WAITING / rayon::current_num_threads();
+    let of_course = |(course, channel)| {
+        let (mut wishes, mut kept) = (Vec::new(), 0);
+        for around in stretches(course) {
+            around.wish(lattice, channel, &mut wishes);
+            if wishes.len() > most.max(2 * kept) {
+                keep_nearest(&mut wishes);
+                kept = wishes.len();
+            }
         }
-    }
+        keep_nearest(&mut wishes);
+        wishes
+    };
+    let channels = 0..courses.len() as u32;
+    let mut wishes = courses.par_iter().zip(channels).map(of_course).collect::<Vec<_>>().concat();
     keep_nearest(&mut wishes);
     Ok(wishes)
 }
 
 fn keep_nearest(wishes: &mut Vec<Wish>) {
-    wishes.sort_by(|a, b| {
+    wishes.par_sort_by(|a, b| {
         a.post.cmp(&b.post).then(a.aside.total_cmp(&b.aside)).then(a.height_m.total_cmp(&b.height_m))
     });
     wishes.dedup_by_key(|wish| wish.post);

@@ -11,6 +11,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use rayon::prelude::*;
+
 use crate::channel::course::{ChannelCourse, CourseStation};
 use crate::channel::reaches::{Sill, reaches};
 use crate::channel::river_cut::{Climb, Cut};
@@ -38,7 +40,7 @@ struct Nodes {
 
 /// Finds the level at every station that has ground.
 pub(super) fn settle(courses: &mut [ChannelCourse<'_>]) {
-    courses.iter_mut().for_each(fit);
+    courses.par_iter_mut().for_each(fit);
     let mut nodes = Nodes::shared(courses);
     relax(courses, &mut nodes, lower);
     relax(courses, &mut nodes, raise_floor);

@@ -26,6 +26,8 @@ mod levels;
 mod reaches;
 pub mod river_cut;
 
+use rayon::prelude::*;
+
 use crate::channel::bed::ChannelBed;
 use crate::channel::carve::CenterlinePiece;
 use crate::channel::course::ChannelCourse;
@@ -39,7 +41,7 @@ use sandtable_terrain::lattice::Lattice;
 /// See [`ChannelError`]; the ground is then as it was.
 pub fn cut(lattice: &mut Lattice, channels: &[Channel]) -> Result<Cuts, ChannelError> {
     let mut courses: Vec<ChannelCourse<'_>> =
-        channels.iter().map(|channel| ChannelCourse::of(lattice, channel)).collect();
+        channels.par_iter().map(|channel| ChannelCourse::of(lattice, channel)).collect();
     levels::settle(&mut courses);
     let pieces = carve::pieces(lattice, &courses);
     let mut bed = ChannelBed::shaped(lattice, &courses, &pieces)?;

@@ -22,6 +22,7 @@ use std::ops::Range;
 use crate::bintree::Triangle;
 use crate::errors::survey::is_plain;
 use crate::graph::Vertex;
+use sandtable_base::vectorized::vectorized;
 use sandtable_terrain::lattice::Lattice;
 
 /// Posts that are measured together.
@@ -152,7 +153,10 @@ impl<'a> PostTriangle<'a> {
 
     /// Measures the posts of the given rows, all of them plain.
     pub fn scan(&self, rows: Range<i32>, hypotenuse: Hypotenuse, worst: &mut Worst) {
-        self.spans(rows, hypotenuse, |row, first, length| self.scan_span(row, first, length, worst));
+        vectorized(
+            #[inline(always)]
+            || self.spans(rows, hypotenuse, |row, first, length| self.scan_span(row, first, length, worst)),
+        );
     }
 
     /// Whether any post, all of them plain, is farther off than `tolerance_m`.

@@ -26,14 +26,19 @@ impl TileSurvey {
         let (held, heights) = (lattice.held(), lattice.held_heights());
         let columns = held.width();
         let tiles_east = columns.div_ceil(TILE);
+        let has_pins = lattice.has_pins();
         let mut blemished = vec![false; tiles_east * held.height().div_ceil(TILE)];
         blemished.par_chunks_mut(tiles_east).enumerate().for_each(|(north, tiles)| {
             let posts = north * TILE * columns..((north + 1) * TILE * columns).min(heights.len());
-            let rows = heights[posts.clone()].chunks_exact(columns);
-            for (heights, pinned) in rows.zip(lattice.pinned()[posts].chunks_exact(columns)) {
-                let pieces = heights.chunks(TILE).zip(pinned.chunks(TILE));
-                for (tile, (heights, pinned)) in tiles.iter_mut().zip(pieces) {
-                    *tile |= !is_plain(heights, pinned);
+            for heights in heights[posts.clone()].chunks_exact(columns) {
+                for (tile, heights) in tiles.iter_mut().zip(heights.chunks(TILE)) {
+                    *tile |= !is_plain(heights, &[]);
+                }
+            }
+            // Of ground without a pin they are not looked at.
+            for pinned in lattice.pinned()[posts].chunks_exact(columns).filter(|_| has_pins) {
+                for (tile, pinned) in tiles.iter_mut().zip(pinned.chunks(TILE)) {
+                    *tile |= !is_plain(&[], pinned);
                 }
             }
         });

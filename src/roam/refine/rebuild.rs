@@ -6,6 +6,8 @@
 //!
 //! Costs one evaluation of the criterion per triangle of the resulting tree, whatever the size of the terrain.
 
+use rayon::prelude::*;
+
 use crate::active::ActiveSet;
 use crate::bintree::Triangle;
 use crate::criterion::Criterion;
@@ -26,6 +28,15 @@ pub fn rebuild(
         }
     }
     active
+}
+
+/// [`rebuild`] on all threads, each of which has patches of its own; the same for any number of them.
+pub fn rebuild_by_parts(layout: &PatchLayout, criterion: &impl Criterion, patches: &[Vertex]) -> ActiveSet {
+    /// Parts for each thread: near patches have many times the triangles of far ones.
+    const PARTS: usize = 4;
+    let part = patches.len().div_ceil(PARTS * rayon::current_num_threads()).max(1);
+    let parts = patches.par_chunks(part).map(|part| rebuild(layout, criterion, part.iter().copied()));
+    parts.reduce_with(ActiveSet::joined).unwrap_or_else(|| ActiveSet::new(*layout))
 }
 
 /// Splits a triangle and its halves while they are wanted; the recursion is as deep as the patch has levels.

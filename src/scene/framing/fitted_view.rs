@@ -3,6 +3,7 @@
 use std::f32::consts::FRAC_PI_4;
 
 use glam::{DVec2, UVec2, Vec2, Vec3};
+use rayon::prelude::*;
 
 use crate::framing::fit::{FitFrame, fitted_eye, projected};
 use crate::plinth::base_z;
@@ -61,7 +62,7 @@ pub(super) fn turns() -> impl Iterator<Item = f32> + Clone {
     TURNS.into_iter()
 }
 
-/// The eye and the target of a fitted view on a picture of `size` pixels.
+/// The eye and the target of a fitted view on a picture of `size` pixels; its directions are tried on all threads.
 pub fn fitted_aim(scene: &SceneModel, view: &FittedView, fov_y_rad: f32, size: (u32, u32)) -> (Vec3, Vec3) {
     let points = silhouette(scene, view.shown);
     let half = half_picture(fov_y_rad, size);
@@ -78,24 +79,23 @@ pub fn fitted_aim(scene: &SceneModel, view: &FittedView, fov_y_rad: f32, size: (
         };
         Aimed { axes, eye, filled }
     };
-    let usual = |azimuth_rad: f32| {
-        let pitched = PITCHES.map(|pitch_rad| aimed(azimuth_rad, pitch_rad));
-        fullest(pitched)
+    let pitched = |azimuth_rad: f32, pitches: &[f32]| {
+        let views: Vec<Aimed> = pitches.par_iter().map(|&pitch_rad| aimed(azimuth_rad, pitch_rad)).collect();
+        fullest(views)
     };
+    let usual = |azimuth_rad: f32| pitched(azimuth_rad, &PITCHES);
     let Aimed { axes, eye, .. } = match (view.azimuth_rad, view.pitch_rad) {
         (Some(azimuth_rad), Some(pitch_rad)) => aimed(azimuth_rad, pitch_rad),
         (Some(azimuth_rad), None) => usual(azimuth_rad),
         (None, stated) => {
             let north = stated.map_or_else(|| usual(0.0), |pitch_rad| aimed(0.0, pitch_rad));
             if north.filled < LEAST_FILLED {
-                let toward = |turn_rad: f32| match stated {
-                    Some(pitch_rad) => aimed(turn_rad, pitch_rad),
-                    None => fullest(pitches().map(|pitch_rad| aimed(turn_rad, pitch_rad))),
-                };
-                let [north, aside @ ..] = TURNS.map(toward);
-                let least = north.filled * TURN_GAIN;
-                let aside = fullest(aside);
-                if aside.filled > least { aside } else { north }
+                let all: Vec<f32> = stated.map_or_else(|| pitches().collect(), |pitch_rad| vec![pitch_rad]);
+                let mut views: Vec<Aimed> =
+                    TURNS.par_iter().map(|&turn_rad| pitched(turn_rad, &all)).collect();
+                let north = views.remove(0);
+                let aside = fullest(views);
+                if aside.filled > north.filled * TURN_GAIN { aside } else { north }
             } else {
                 north
             }

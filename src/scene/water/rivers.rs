@@ -10,6 +10,7 @@
 use std::collections::BTreeMap;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use crate::builder::SceneBuilder;
 use crate::near::Clipped;
@@ -160,14 +161,15 @@ fn ribbons(streams: &[Stream], lattice: &Lattice, collected: &mut SceneBuilder) 
     let widest_m = |index: usize| streams[index].street.width_m;
     let mut order: Vec<usize> = (0..streams.len()).collect();
     order.sort_by(|&a, &b| widest_m(b).total_cmp(&widest_m(a)));
-    for index in order {
+    let of_stream = |&index: &usize| {
         let stream = &streams[index];
         let beyond = ends_of_one_width(stream, network.continuations[index]);
+        let mut plans = Vec::new();
         let mut lay = |street: &Street| {
             let mut ribbon = Clipped { plan: PlanMesh::default(), extent };
             let path = StrokePath { beyond, ..StrokePath::alone(&street.alignment) };
             stroke(&path, &street.options, &mut ribbon);
-            collected.lay(ribbon.plan, street.surface, stream.feature);
+            plans.push((ribbon.plan, street.surface, stream.feature));
         };
         lay(&stream.street);
         if stream.water == Water::Falls && !stream.is_culvert {
@@ -185,7 +187,10 @@ fn ribbons(streams: &[Stream], lattice: &Lattice, collected: &mut SceneBuilder) 
         if stream.bank_m > 0.0 {
             lay(&stream.street.with_more(2.0 * stream.bank_m, RibbonSurface::Bank));
         }
-    }
+        plans
+    };
+    let plans: Vec<Vec<_>> = order.par_iter().map(of_stream).collect();
+    plans.into_iter().flatten().for_each(|(plan, surface, feature)| collected.lay(plan, surface, feature));
     confluences(streams, &network.continuations, extent, collected);
 }
 

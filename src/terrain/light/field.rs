@@ -48,14 +48,17 @@ impl Reduction for Mean {
         by / 2
     }
 
+    #[inline(always)]
     fn add(&self, sum: Vec2, value: f32, _north: f32) -> Vec2 {
         sum + if value.is_nan() { Vec2::ZERO } else { Vec2::new(value, 1.0) }
     }
 
+    #[inline(always)]
     fn join(&self, sum: Vec2, column: Vec2, _east: f32) -> Vec2 {
         sum + column
     }
 
+    #[inline(always)]
     fn value(&self, sum: Vec2) -> f32 {
         sum.x / sum.y
     }
@@ -85,14 +88,23 @@ impl<'a> CoarseField<'a> {
         values.par_chunks_exact_mut(columns).enumerate().for_each(|(row, values)| {
             let mut sums = vec![R::NONE; self.columns];
             for (from, north) in around::<R>(row, by, self.rows) {
-                for (sum, &value) in sums.iter_mut().zip(self.line(from)) {
-                    *sum = reduction.add(*sum, value, north);
-                }
+                vectorized(
+                    #[inline(always)]
+                    || add_line(reduction, &mut sums, self.line(from), north),
+                );
             }
-            for (column, value) in values.iter_mut().enumerate() {
-                let sum = around::<R>(column, by, self.columns)
-                    .fold(R::NONE, |sum, (from, east)| reduction.join(sum, sums[from], east));
-                *value = reduction.value(sum);
+            let joined = |column: usize| {
+                around::<R>(column, by, self.columns)
+                    .fold(R::NONE, |sum, (from, east)| reduction.join(sum, sums[from], east))
+            };
+            // Between the borders as many columns count to each value.
+            let before = R::before(by);
+            let inner = 1..self.columns.saturating_sub(by / 2).div_ceil(by).clamp(1, columns);
+            for column in (0..inner.start).chain(inner.end..columns) {
+                values[column] = reduction.value(joined(column));
+            }
+            if !inner.is_empty() {
+                join_columns(reduction, &mut values[inner], &sums[by - before..], (by, before));
             }
         });
         let cell = self.cell * by as f32;
@@ -135,6 +147,30 @@ impl<'a> CoarseField<'a> {
     }
 }
 
+/// Adds the values of a line to the sums of their columns.
+#[inline(always)]
+fn add_line<R: Reduction>(reduction: &R, sums: &mut [R::Sum], line: &[f32], north: f32) {
+    for (sum, &value) in sums.iter_mut().zip(line) {
+        *sum = reduction.add(*sum, value, north);
+    }
+}
+
+/// Sets values, each from the sums of `before` columns before its own, of its own and of half of `by` after it; the first of
+/// `sums` is the first that counts to the first value.
+fn join_columns<R: Reduction>(
+    reduction: &R,
+    values: &mut [f32],
+    sums: &[R::Sum],
+    (by, before): (usize, usize),
+) {
+    for (value, first) in values.iter_mut().zip((0..).step_by(by)) {
+        let counting = sums[first..=first + before + by / 2].iter().zip(0i32..);
+        let joined = counting
+            .fold(R::NONE, |sum, (column, at)| reduction.join(sum, *column, (at - before as i32) as f32));
+        *value = reduction.value(joined);
+    }
+}
+
 /// The values of a line twice as fine.
 #[inline(always)]
 fn refine(finer: &mut [f32], line: &[f32]) {
@@ -173,6 +209,31 @@ mod tests {
                 assert_eq!(line.len(), columns);
                 let pairs = line.iter().zip(fine.line(row)).take(columns - 2 * by).skip(by);
                 assert!(pairs.into_iter().all(|(value, exact)| (value - exact).abs() < 1e-4), "{row}, {by}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_value_is_the_mean_of_those_around_it_at_the_borders_too() {
+        for (columns, rows) in [(1, 1), (2, 5), (3, 2), (17, 9), (64, 33), (131, 7)] {
+            let mut fine = plane(columns, rows);
+            fine.values.to_mut().iter_mut().step_by(7).for_each(|value| *value = f32::NAN);
+            for by in 1..9 {
+                let coarse = fine.reduced(by, &Mean);
+                for (at, value) in coarse.values.iter().enumerate() {
+                    let (column, row) = (at % coarse.columns, at / coarse.columns);
+                    let sum_of = |from: usize| {
+                        let south = around::<Mean>(row, by, rows);
+                        south.fold(Mean::NONE, |sum, (row, _)| Mean.add(sum, fine.line(row)[from], 0.0))
+                    };
+                    let plain = around::<Mean>(column, by, columns)
+                        .fold(Mean::NONE, |sum, (from, east)| Mean.join(sum, sum_of(from), east));
+                    let same = value.to_bits() == Mean.value(plain).to_bits() || value.is_nan();
+                    assert!(
+                        same && value.is_nan() == Mean.value(plain).is_nan(),
+                        "{columns}×{rows} {by}: {at}"
+                    );
+                }
             }
         }
     }

@@ -93,14 +93,17 @@ impl Reduction for Caster {
         (by - 1) / 2
     }
 
+    #[inline(always)]
     fn add(&self, sum: f32, value: f32, north: f32) -> f32 {
         sum.max(value - self.rise.y * north)
     }
 
+    #[inline(always)]
     fn join(&self, sum: f32, column: f32, east: f32) -> f32 {
         sum.max(column - self.rise.x * east)
     }
 
+    #[inline(always)]
     fn value(&self, sum: f32) -> f32 {
         sum
     }
