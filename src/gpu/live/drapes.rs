@@ -516,7 +516,7 @@ mod tests {
             chunk.pieces[1].end = 120 + between;
             chunk.seen(&view)
         };
-        assert_eq!(seen(HIDDEN_INDICES), [0..360]);
+        assert_eq!(seen(HIDDEN_INDICES), vec![0..360]);
         assert_eq!(seen(HIDDEN_INDICES + 3), [0..120, 123 + HIDDEN_INDICES..360]);
     }
 }
