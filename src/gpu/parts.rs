@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn what_moves_has_no_part_that_a_picture_at_rest_lacks_but_plain_shadows_and_ground() {
+    fn what_moves_adds_to_a_picture_at_rest_plain_shadows_and_plain_ground_alone() {
         let map = ShaderParts::COVER.with(ShaderParts::MAP_WATER);
         let whole = map.with(ShaderParts::WATER_RELIEF).with(ShaderParts::GRAIN);
         let plain = map.with(ShaderParts::PLAIN_GROUND);
