@@ -419,7 +419,7 @@ fn a_script_that_moves_the_sun_ends_without_a_question() {
 }
 
 #[test]
-fn a_picture_of_fewer_pixels_has_ground_for_these_and_the_whole_one_has_its_own_at_once() {
+fn fewer_pixels_have_ground_for_these_and_the_whole_picture_its_own_at_once() {
     let mut harness = window(Some(Path::new(concat!(env!("SANDTABLE_ROOT"), "scenes/road.toml"))));
     let context = harness.ctx.clone();
     let opened = harness.state_mut().as_mut().and_then(|app| app.opened.as_mut()).expect("open");
