@@ -7,6 +7,7 @@
 //!
 //! Forms on slopes are gullies down the fall line: waves across it around each point of the lattice, blended into each other (the
 //! idea of Lagae et al. 2009, "Procedural noise using sparse Gabor convolution"). Ridges of value noise alone look like worms.
+//! Each octave's fall line is that of the ground with the forms of wider octaves in it, so that gullies branch.
 //!
 //! The octaves of a pixel follow one from the other, so that a processor waits for each. Those of eight pixels are computed
 //! together, as vectors, in a third of the time: loops over pixels have no branch.
