@@ -40,7 +40,7 @@ pub fn ground_window(
     let columns = inner.first.column..=inner.last.column;
     let row = |row: u32| -> Vec<GroundPost> {
         let heights = shaded.filled_row(row, scene.height_range_m.0);
-        let slopes = shaded.slopes_of_row(row);
+        let slopes = shaded.shaded_slopes_of_row(row);
         let (sun, sky) = (light.sun(row as usize), light.sky(row as usize));
         let post = |column: u32| {
             let at = column as usize;

@@ -15,6 +15,24 @@ const WALL_SLOPE: f32 = 2.5;
 /// The columns eastward and the rows northward of the eight neighbors; each is four places from the opposite one.
 const AROUND: [(i64, i64); 8] = [(1, 1), (1, 0), (1, -1), (0, 1), (-1, -1), (-1, 0), (-1, 1), (0, -1)];
 
+/// What neighbors count for in slopes.
+#[derive(Clone, Copy)]
+enum SlopeWeights {
+    /// Those of Horn (1981): what lies aside counts for half of what lies in line.
+    Horn,
+    /// What lies in line alone.
+    InLine,
+}
+
+impl SlopeWeights {
+    fn aside(self) -> f32 {
+        match self {
+            Self::Horn => 1.0,
+            Self::InLine => 0.0,
+        }
+    }
+}
+
 impl Lattice {
     /// The slopes at a post, rise per meter eastward and northward, by the weights of Horn (1981) over the eight
     /// neighbors, as `gdaldem` and most hillshades have them. Missing neighbors take the post's own height. Zero where the
@@ -26,15 +44,20 @@ impl Lattice {
     /// are `WORKS_STEP` posts away: a batter's edges run aslant between posts, and slopes from post to post would show
     /// how each post lies to them, as teeth. What stands or falls like a wall beside them does not count either.
     pub fn slopes(&self, post: Post) -> Vec2 {
+        self.weighted_slopes(post, SlopeWeights::Horn)
+    }
+
+    /// The slopes at a post by these weights; beside works by Horn's.
+    fn weighted_slopes(&self, post: Post, weights: SlopeWeights) -> Vec2 {
         let own = self.height(post);
         if own.is_nan() {
             return Vec2::ZERO;
         }
         let is_land = self.doublings() > 0 && !self.is_beside_works(post);
-        let step = match self.doublings() {
-            0 => 1,
-            doublings if is_land => 1 << doublings,
-            _ => WORKS_STEP,
+        let (step, aside) = match self.doublings() {
+            0 => (1, weights.aside()),
+            doublings if is_land => (1 << doublings, weights.aside()),
+            _ => (WORKS_STEP, SlopeWeights::Horn.aside()),
         };
         let beside = AROUND.map(|(east, north)| self.beside(post, east * step, north * step));
         let heights = beside.map(|other| self.height(other));
@@ -57,10 +80,10 @@ impl Lattice {
             };
             if height.is_nan() { own } else { height }
         });
-        let east = (ne + 2.0 * e + se) - (nw + 2.0 * w + sw);
-        let north = (ne + 2.0 * n + nw) - (se + 2.0 * s + sw);
+        let east = (aside * ne + 2.0 * e + aside * se) - (aside * nw + 2.0 * w + aside * sw);
+        let north = (aside * ne + 2.0 * n + aside * nw) - (aside * se + 2.0 * s + aside * sw);
         let (low, high) = (self.beside(post, -step, -step), self.beside(post, step, step));
-        let span = |low: u32, high: u32| 4.0 * (high - low) as f32;
+        let span = |low: u32, high: u32| (2.0 + 2.0 * aside) * (high - low) as f32;
         Vec2::new(
             east / (span(low.column, high.column) * self.cell().x as f32),
             north / (span(low.row, high.row) * self.cell().y as f32),
@@ -81,22 +104,40 @@ impl Lattice {
 
     /// [`Lattice::slopes`] of the posts of a row, many times faster where no pinned post is near.
     pub fn slopes_of_row(&self, row: u32) -> Vec<Vec2> {
+        self.weighted_slopes_of_row(row, SlopeWeights::Horn)
+    }
+
+    /// The slopes by which a post is shaded; see [`Lattice::shaded_slopes_of_row`].
+    pub fn shaded_slopes(&self, post: Post) -> Vec2 {
+        self.weighted_slopes(post, SlopeWeights::InLine)
+    }
+
+    /// The slopes by which the posts of a row are shaded: those of [`Lattice::slopes`], but by differences of the neighbors in line
+    /// alone (Fleming and Hoffer 1979; `grdgradient` has them), which keep forms two posts wide that Horn's weights level.
+    pub fn shaded_slopes_of_row(&self, row: u32) -> Vec<Vec2> {
+        self.weighted_slopes_of_row(row, SlopeWeights::InLine)
+    }
+
+    fn weighted_slopes_of_row(&self, row: u32, weights: SlopeWeights) -> Vec<Vec2> {
+        let aside = weights.aside();
         let posts = (0..self.columns()).map(|column| Post { column, row });
         let (step, columns) = (1usize << self.doublings(), self.columns() as usize);
         if (row as usize) < step || row as usize + step >= self.rows() as usize || columns <= 2 * step {
-            return posts.map(|post| self.slopes(post)).collect();
+            return posts.map(|post| self.weighted_slopes(post, weights)).collect();
         }
         let line = |row: usize| &self.heights()[row * columns..][..columns];
         let [south, own, north] = [row as usize - step, row as usize, row as usize + step].map(line);
-        let span = (self.cell().as_vec2() * (8 * step) as f32).to_array();
+        let span = (self.cell().as_vec2() * ((4.0 + 4.0 * aside) * step as f32)).to_array();
         let mut slopes = vec![Vec2::NAN; columns];
         let (inner, wide) = (columns - 2 * step, 2 * step);
         let [sw, s, se] = [0, step, wide].map(|from| &south[from..from + inner]);
         let [w, o, e] = [0, step, wide].map(|from| &own[from..from + inner]);
         let [nw, n, ne] = [0, step, wide].map(|from| &north[from..from + inner]);
         for (at, slope) in slopes[step..step + inner].iter_mut().enumerate() {
-            let east = (ne[at] + 2.0 * e[at] + se[at]) - (nw[at] + 2.0 * w[at] + sw[at]);
-            let up = (ne[at] + 2.0 * n[at] + nw[at]) - (se[at] + 2.0 * s[at] + sw[at]);
+            let east = (aside * ne[at] + 2.0 * e[at] + aside * se[at])
+                - (aside * nw[at] + 2.0 * w[at] + aside * sw[at]);
+            let up = (aside * ne[at] + 2.0 * n[at] + aside * nw[at])
+                - (aside * se[at] + 2.0 * s[at] + aside * sw[at]);
             // NaN where any of the nine posts has no data.
             *slope = Vec2::new(east / span[0], up / span[1]) + 0.0 * o[at];
         }
@@ -104,7 +145,7 @@ impl Lattice {
             slopes[column] = Vec2::NAN;
         }
         for (slopes, post) in slopes.iter_mut().zip(posts).filter(|(slopes, _)| slopes.is_nan()) {
-            *slopes = self.slopes(post);
+            *slopes = self.weighted_slopes(post, weights);
         }
         slopes
     }
@@ -173,17 +214,36 @@ mod tests {
                     lattice.pin(post, 4.0 + number as f32);
                 }
                 for row in 0..lattice.rows() {
-                    let slopes = (0..lattice.columns()).map(|column| lattice.slopes(Post { column, row }));
+                    let posts = || (0..lattice.columns()).map(|column| Post { column, row });
                     let bits = |slopes: Vec<Vec2>| {
                         slopes.iter().map(|at| at.to_array().map(f32::to_bits)).collect::<Vec<_>>()
                     };
+                    let slopes = posts().map(|post| lattice.slopes(post)).collect();
+                    assert_eq!(bits(lattice.slopes_of_row(row)), bits(slopes), "{columns} {times} {row}");
+                    let shaded = posts().map(|post| lattice.shaded_slopes(post)).collect();
                     assert_eq!(
-                        bits(lattice.slopes_of_row(row)),
-                        bits(slopes.collect()),
+                        bits(lattice.shaded_slopes_of_row(row)),
+                        bits(shaded),
                         "{columns} {times} {row}"
                     );
                 }
             }
+        }
+    }
+
+    #[test]
+    fn shaded_slopes_keep_narrow_forms_that_horns_weights_level() {
+        let height = |index: u32| if (index % 9 + index / 9) % 4 < 2 { 0.0 } else { 10.0 };
+        let heights = (0..81).map(height).collect();
+        let lattice = Lattice::new(DVec2::ZERO, DVec2::splat(5.0), 9, heights).expect("sound");
+        let post = Post { column: 4, row: 4 };
+        let (shaded, leveled) = (lattice.shaded_slopes(post), lattice.slopes(post));
+        let height = |east: i64| lattice.height(lattice.beside(post, east, 0));
+        assert_eq!(shaded.x, (height(1) - height(-1)) / 10.0);
+        assert!(shaded.length() > 1.9 * leveled.length(), "{shaded} {leveled}");
+        let plane = plane();
+        for post in plane.posts() {
+            assert!((plane.shaded_slopes(post) - Vec2::new(0.2, -0.2)).length() < 1e-6, "{post:?}");
         }
     }
 

@@ -101,7 +101,7 @@ fn patch(
         if height_m.is_nan() {
             return before;
         }
-        let slopes = elevations.slopes(at);
+        let slopes = elevations.shaded_slopes(at);
         GroundPost {
             height_m,
             slope_east: scale.world_z(slopes.x),
