@@ -30,6 +30,8 @@ pub struct GroundMap {
     pub rows: u32,
     /// One entry per post, row by row from the south-west.
     pub posts: Vec<GroundPost>,
+    /// How often the cells of the model were halved: its own forms are `2^halvings` of the map's cells wide and wider.
+    pub halvings: u32,
     /// Color by height.
     pub ramp: ColorRamp,
     /// Contour lines; `None` draws none.
@@ -261,6 +263,7 @@ impl GroundMap {
             contours: None,
             imagery: None,
             cover: None,
+            halvings: 0,
             form_level: 0,
             z_factor: 1.0,
             shade_gain: ReliefShading::GAIN,
@@ -315,6 +318,11 @@ impl GroundMap {
             change_m: f32::MAX,
             noise: CoverNoise::none(),
         }))
+    }
+
+    /// The width of the model's cells, meters: narrower forms are the noise's.
+    pub fn model_cell_m(&self) -> f32 {
+        self.cell.max_element() * (1u32 << self.halvings) as f32
     }
 
     /// The ramp's color in linear light: that of land without a cover.
@@ -448,7 +456,7 @@ impl GroundPost {
     }
 
     #[inline]
-    fn lerp(&self, other: &Self, share: f32) -> Self {
+    pub(crate) fn lerp(&self, other: &Self, share: f32) -> Self {
         self.zip_with(other, |a, b| a + (b - a) * share)
     }
 
@@ -475,6 +483,7 @@ mod tests {
             contours: None,
             imagery: None,
             cover: None,
+            halvings: 0,
             form_level: 0,
             z_factor: 1.0,
             shade_gain: ReliefShading::GAIN,

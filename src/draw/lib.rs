@@ -20,6 +20,7 @@ pub mod ground_inset;
 pub mod ground_levels;
 pub mod ground_tops;
 pub mod ground_window;
+mod halved_cells;
 pub mod hatching;
 mod lanes;
 pub mod lighting;

@@ -61,7 +61,7 @@ fn color(map: &GroundMap, at: Vec2, step: Vec2) -> Srgba {
     let draped = map.imagery.as_deref().map(|imagery| imagery.at(at)).unwrap_or_default();
     let post = map.sample(at);
     let wide_m = step.max_element();
-    let noise = |_| CoverNoise::new(&map.noise_pixel(&post, at, wide_m, wide_m), map.cell.max_element());
+    let noise = |_| CoverNoise::new(&map.noise_pixel(&post, at, wide_m, wide_m), map.model_cell_m());
     let noise = map.cover.map(noise).unwrap_or_default();
     let land = map.land(&LandPixel { tint: map.tint(&post), post, change_m: change.height_m, noise });
     Srgba::from_linear(map.albedo(&post, change, &GroundDetail { grain: 1.0, land, draped, facing: 0.0 }))
@@ -87,6 +87,7 @@ mod tests {
             contours,
             imagery: None,
             cover: None,
+            halvings: 0,
             form_level: 0,
             z_factor: 1.0,
             shade_gain: ReliefShading::GAIN,

@@ -137,6 +137,7 @@ mod tests {
             contours: None,
             imagery: None,
             cover: None,
+            halvings: 0,
             form_level: 0,
             z_factor: 1.0,
             shade_gain: ReliefShading::GAIN,

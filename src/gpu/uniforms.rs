@@ -204,7 +204,7 @@ impl FrameUniforms {
         if let Some(cover) = map.cover {
             frame.cover = [cover.tree_m, cover.snow_m, cover.true_rise, cover.shady_north];
             let forms = f32::from(u8::from(cover.has_forms));
-            frame.cover_more = [cover.moisture, map.cell.max_element(), forms, 1.0];
+            frame.cover_more = [cover.moisture, map.model_cell_m(), forms, 1.0];
             frame.cover_colors = cover.colors.map(|color| with(color.hue, color.light));
         }
         if let Some(imagery) = &map.imagery {

@@ -35,19 +35,35 @@ impl MeshSink<Vec3> for GroundSink {
     }
 }
 
+/// The most posts of a ground map with cells of the model halved: so many for each pixel of a picture, as in perspective some are
+/// out of view, and a hundred megabytes.
+const POSTS_PER_PIXEL: u64 = 2;
+const MOST_HALVED_POSTS: u64 = 1 << 22;
+
+/// The most times that cells of the model are halved: what is wider in a picture is smooth.
+const MOST_HALVINGS: u32 = 3;
+
 /// The coarsest level of the ground's posts at which none is farther from the next than a pixel is wide where the ground
-/// comes nearest to the camera: a picture of wide ground reads none of the finer levels.
-pub(super) fn map_level(scene: &SceneModel, camera: &Camera) -> u32 {
+/// comes nearest to the camera: a picture of wide ground reads none of the finer levels. Below 0 where the posts of the model
+/// are farther apart, as far as the picture has pixels for that many.
+pub(super) fn map_level(scene: &SceneModel, camera: &Camera) -> i32 {
     let (min, max) = scene.bounds;
     let (ground, forward) = (Aabb { min, max }, camera.forward());
     let depth_m = (ground.center() - camera.eye()).dot(forward) - 0.5 * ground.size().dot(forward.abs());
-    if depth_m <= 0.0 && camera.parallel_frame().is_none() {
-        return 0;
-    }
-    let pixel_m = camera.pixels_per_meter(depth_m).recip();
+    let is_around = depth_m <= 0.0 && camera.parallel_frame().is_none();
+    let pixel_m = if is_around { 0.0 } else { camera.pixels_per_meter(depth_m).recip() };
     let posts = pixel_m / scene.lattice.cell().max_element() as f32;
-    let most = (scene.lattice.columns().max(scene.lattice.rows()) - 1).ilog2();
-    (libm::log2f(posts.max(1.0)) as u32).min(most)
+    if posts >= 1.0 {
+        let most = (scene.lattice.columns().max(scene.lattice.rows()) - 1).ilog2();
+        return libm::log2f(posts).min(most as f32) as i32;
+    }
+    let (width, height) = camera.size();
+    let most = (POSTS_PER_PIXEL * u64::from(width) * u64::from(height)).min(MOST_HALVED_POSTS);
+    let count = u64::from(scene.lattice.columns()) * u64::from(scene.lattice.rows());
+    let is_useful =
+        |halvings: u32| (posts * (1u32 << halvings) as f32) <= 1.0 && count << (2 * halvings) <= most;
+    let halvings = (1..=MOST_HALVINGS).take_while(|&halvings| is_useful(halvings)).count();
+    -(halvings as i32)
 }
 
 /// Adds the ground and returns the walls below its edge.

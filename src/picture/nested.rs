@@ -50,7 +50,7 @@ pub fn build_nested_draw_list(
     let to_sun = scene.sunlight.to_sun(Some(camera));
     let displayed = Arc::new(display(scene, camera));
     let parts: Vec<ShownPart<'_>> = nested.par_iter().map(|ground| ShownPart::new(ground, camera)).collect();
-    let level = ground::map_level(scene, camera);
+    let level = ground::map_level(scene, camera).max(0);
     let map = scene.map(GroundMapKey { level, to_sun }, || progress("lighting terrain"));
     let lit = lighting(scene, camera, to_sun);
     let mut list = DrawList { ground: Some(Arc::clone(&map)), lighting: lit, ..DrawList::default() };
@@ -142,7 +142,7 @@ fn add_features(list: &mut DrawList, scene: &SceneModel, displayed: &DisplayedTe
 /// The ground map of a part, in the colors of `scene`, with the light that passes the ground `around` it.
 fn inset(part: &ShownPart<'_>, scene: &SceneModel, around: &GroundInset, to_sun: Vec3) -> GroundInset {
     let NestedGround { scene: own, origin, .. } = part.ground;
-    let key = GroundMapKey { level: ground::map_level(own, &part.camera), to_sun };
+    let key = GroundMapKey { level: ground::map_level(own, &part.camera).max(0), to_sun };
     let (mut map, origin) = (ground_map(own, key), origin.as_vec2());
     let GroundMap { origin: first, cell, columns, .. } = map;
     map.posts.par_chunks_mut(columns as usize).enumerate().for_each(|(row, posts)| {

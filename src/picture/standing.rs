@@ -47,7 +47,7 @@ pub fn standing(
     head: &DrawList,
     progress: &dyn Fn(&'static str),
 ) -> DrawList {
-    let key = GroundMapKey { level: map_level(walked.lattice), to_sun: walked.to_sun };
+    let key = GroundMapKey { level: map_level(walked.lattice) as i32, to_sun: walked.to_sun };
     let map = scene.map(key, || progress("lighting terrain"));
     let lighting = lighting(scene, camera, walked.to_sun);
     let mut list = DrawList { ground: Some(map), lighting, ..head.clone() };

@@ -30,8 +30,9 @@ impl SceneModel {
 }
 
 /// The height, slope and light at a level of the posts; 0 is all of them, each further level every second post of the one
-/// before, smoothed.
-pub fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: GroundMapKey) -> GroundMap {
+/// before, smoothed, and each level below 0 twice as many posts a side.
+pub fn ground_map(scene: &SceneModel, GroundMapKey { level, to_sun }: GroundMapKey) -> GroundMap {
+    let (number, halvings) = (level.max(0) as u32, level.min(0).unsigned_abs());
     let lattice = &scene.lattice;
     let beside_light =
         || (&scene.water().is_water, WaterShore::new(lattice, scene.water()), undergrowth(scene));
@@ -48,7 +49,7 @@ pub fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: Gr
         let row_in_part = (row - first) as u32;
         let posts = PostRow {
             heights_m: &shaded.filled_row(row_in_part, scene.height_range_m.0),
-            slopes: &shaded.slopes_of_row(row_in_part),
+            slopes: &shaded.shaded_slopes_of_row(row_in_part),
             exaggeration: scene.scale.0,
             sun: &light.sun(row),
             sky: &light.sky(row),
@@ -84,7 +85,7 @@ pub fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: Gr
         };
         texture.apply(&mut posts, size, cell);
     }
-    GroundMap {
+    let map = GroundMap {
         origin: Vec2::ZERO,
         cell,
         z_per_m: scene.scale.0,
@@ -99,7 +100,10 @@ pub fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: Gr
         z_factor: TextureShading::eased(scene.texture, z_factor),
         shade_gain,
         has_grain: true,
-    }
+        halvings: 0,
+    };
+    // Posts of a densified lattice lie on planes between those of the land.
+    if halvings > 0 { map.with_halved_cells(halvings, lattice.doublings() == 0) } else { map }
 }
 
 /// The generalized ground keeps forms wider than this share of the extent: about as many as a map of the whole names.

@@ -9,8 +9,9 @@ use sandtable_draw::ground::GroundMap;
 /// The inputs that a scene's ground map depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundMapKey {
-    /// 0 for every post, each further level for every second post of the one before, smoothed.
-    pub level: u32,
+    /// 0 for every post, each further level for every second post of the one before, smoothed, and each level below 0 for twice
+    /// as many posts a side, [between those of the model](GroundMap::with_halved_cells).
+    pub level: i32,
     /// Unit vector toward the sun.
     pub to_sun: Vec3,
 }

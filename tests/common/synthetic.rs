@@ -170,6 +170,7 @@ fn ground_map() -> GroundMap {
         contours: None,
         imagery: None,
         cover: None,
+        halvings: 0,
         form_level: 0,
         z_factor: 1.0,
         shade_gain: ReliefShading::GAIN,

@@ -106,7 +106,7 @@ pub fn map(sections: &mut PageSections, map: &GroundMap) -> Value {
             "shadyNorth": cover.shady_north,
             "moisture": cover.moisture,
             "hasForms": cover.has_forms,
-            "cell": map.cell.max_element(),
+            "cell": map.model_cell_m(),
             "colors": cover.colors.map(|CoverColor { hue, light }| [hue.x, hue.y, hue.z, light]).concat(),
         })),
         "formLevel": map.form_level.saturating_sub(number),

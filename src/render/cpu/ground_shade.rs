@@ -159,7 +159,7 @@ impl<'a> GroundShader<'a> {
     }
 
     fn cell_m(&self) -> f32 {
-        self.map.cell.max_element()
+        self.map.model_cell_m()
     }
 
     fn noise_pixel(&self, point: &GroundPoint, hit: &FacePoint) -> NoisePixel {
@@ -357,6 +357,7 @@ mod tests {
             contours: None,
             imagery: None,
             cover: None,
+            halvings: 0,
             form_level: 0,
             z_factor: 1.0,
             shade_gain: ReliefShading::GAIN,
