@@ -110,14 +110,18 @@ impl Lighting {
 /// which grows with elevation as in aerial perspective (Jenny and Patterson 2020), `r = c · (shade − flat)`, `s = c · lost` and
 ///
 /// ```text
-/// lit = albedo · soft(1 + gain · r − GAIN · s) · mix(COOL, WARM, clamp(0.5 + 1.2 · (r − s), 0, 1))
-///     · mix(CLOSED, 1, sky visibility)
+/// lit = albedo · b · mix(COOL, WARM, clamp(0.5 + 1.2 · (r − s), 0, 1)) · mix(CLOSED, 1, sky visibility)
+/// b = soft(1 + gain · r − GAIN · s) · (1 + MOST · d / (MOST + |d|)),  MOST = MOST_DETAIL
+/// d = DETAIL · max(1 − sun visibility · max(n · to_sun, 0) / to_sun.z, 0) · (n − form) · to_sun
 /// ```
 ///
+/// `d` draws in the shade what the sun draws in the light: how much the normal `n` leans to the sun more than that of the generalized
+/// ground, `form`. Without it, ribs and gullies end where the shade begins, which a hand that shades a relief lets go on.
+///
 /// Natural ground also returns in its shade the light of the sky and of the slopes opposite,
-/// `fill · FILL · max(albedo + FILL_CHROMA · (albedo − gray), 0) · (1 − soft)`, `gray` being as light as the albedo. Much of it has
+/// `fill · FILL · max(albedo + FILL_CHROMA · (albedo − gray), 0) · (1 − b)`, `gray` being as light as the albedo. Much of it has
 /// met ground of the same color before, which deepens the tint: dark slopes keep their hues under the cool light. In its light it
-/// is paler and warmer, `mix(albedo, gray · GLARE_COLOR, fill · GLARE · (soft − 1) / (BRIGHTEST − 1))`: leaves and grass mirror the
+/// is paler and warmer, `mix(albedo, gray · GLARE_COLOR, fill · GLARE · (b − 1) / (BRIGHTEST − 1))`: leaves and grass mirror the
 /// sun besides.
 ///
 /// `gain` is [`Self::GAIN`] in light and [`Self::shade_gain`] in shade, so that the darkest slopes of gentle ground are as
@@ -163,14 +167,18 @@ impl ReliefShading {
     /// [`Self::shade_gain`] of a base map: more of it takes the contrast from dark lines and letters on shaded slopes, less
     /// loses the forms.
     pub const BASE_GAIN: f32 = 1.2;
-    /// The brightness that the deepest shade tends to: a shadowed cliff keeps about 0.15.
-    pub const DARKEST: f32 = 0.05;
+    /// The brightness that the deepest shade tends to: a shadowed cliff keeps about 0.18.
+    pub const DARKEST: f32 = 0.09;
     /// The brightness below which shade is softened.
     pub const TOE: f32 = 0.5;
     /// The brightness above which light is softened: pale tints would lose their color.
     pub const SHOULDER: f32 = 1.35;
     /// The brightness that the brightest slopes tend to.
     pub const BRIGHTEST: f32 = 1.9;
+    /// How strongly forms show in the shade: about as strongly as in the light.
+    pub const DETAIL: f32 = 1.8;
+    /// The most by which they change its brightness.
+    pub const MOST_DETAIL: f32 = 0.6;
     /// The color of the light on slopes toward the sun.
     pub const WARM: Vec3 = Vec3::new(1.06, 1.0, 0.90);
     /// The color of the light in shade.
@@ -226,11 +234,21 @@ impl ReliefShading {
         (contrast * (shade - self.flat()), contrast * sun * (1.0 - point.sun_visibility))
     }
 
+    /// The share by which small forms in the shade are brighter, less than [`Self::MOST_DETAIL`] either way.
+    #[inline]
+    fn shade_detail(&self, point: &ReliefPoint) -> f32 {
+        let lit = point.sun_visibility * point.normal.dot(self.to_sun).max(0.0);
+        let shade = (1.0 - lit / self.to_sun.z.max(LEAST_SINE)).max(0.0);
+        let detail = Self::DETAIL * shade * (point.normal - point.form).dot(self.to_sun);
+        Self::MOST_DETAIL * detail / (Self::MOST_DETAIL + detail.abs())
+    }
+
     /// The light that a place returns, linear, before haze.
     pub fn shade(&self, albedo: Vec3, point: &ReliefPoint) -> Vec3 {
         let (relief, shadow) = self.relief(point);
         let gain = if relief < 0.0 { self.shade_gain } else { Self::GAIN };
-        let brightness = Self::soft(1.0 + gain * relief - Self::GAIN * shadow);
+        let brightness =
+            Self::soft(1.0 + gain * relief - Self::GAIN * shadow) * (1.0 + self.shade_detail(point));
         let tint = Self::COOL.lerp(Self::WARM, (0.5 + 1.2 * (relief - shadow)).clamp(0.0, 1.0));
         let level = Self::COOL.lerp(Self::WARM, 0.5);
         let sky = Self::CLOSED + (1.0 - Self::CLOSED) * point.sky_visibility;
@@ -267,6 +285,9 @@ impl ReliefShading {
         }
     }
 }
+
+/// The sine of the sun's altitude below which level ground counts as shade.
+pub(crate) const LEAST_SINE: f32 = 0.1;
 
 /// Cosine and sine of the side lights' altitude, 30°.
 const SIDE_LEVEL: f32 = 0.866_025_4;
@@ -340,6 +361,23 @@ mod tests {
         let shadow = ReliefPoint { sun_visibility: 0.0, ..LEVEL };
         assert!(green(shadow) < green(ReliefPoint { elevation: 0.0, ..shadow }));
         assert!(green(ReliefPoint { sky_visibility: 0.5, ..LEVEL }) < 0.8);
+    }
+
+    #[test]
+    fn forms_show_in_the_shade_about_as_strongly_as_in_the_light() {
+        let large = |toward: f32| Vec3::new(-toward, toward, 1.0).normalize();
+        let contrast = |toward: f32, sun_visibility: f32| {
+            let form = large(toward);
+            let [toward_sun, away] = [0.1, -0.1].map(|more| {
+                let normal = large(toward + more);
+                shading().shade(Vec3::ONE, &ReliefPoint { normal, form, sun_visibility, ..LEVEL }).y
+            });
+            (toward_sun - away) / (0.5 * (toward_sun + away))
+        };
+        let light = contrast(0.2, 1.0);
+        for shade in [contrast(-0.8, 1.0), contrast(-0.8, 0.0), contrast(0.1, 0.0)] {
+            assert!((0.5..2.0).contains(&(shade / light)), "{shade} in the shade, {light} in the light");
+        }
     }
 
     #[test]

@@ -903,7 +903,10 @@ fn relief_lit(albedo: vec3f, post: Post, small: vec2f, at: vec2f, received: vec2
     let relief = contrast * (shade - level);
     let shadow = contrast * lost;
     let gain = select(RELIEF_GAIN, frame.sun.w, relief < 0.0);
-    let brightness = soft_brightness(1.0 + gain * relief - RELIEF_GAIN * shadow);
+    let shade_share = max(1.0 - post.visibility.x * received.x * facing_sun(normal) / max(upright, RELIEF_LEAST_SINE), 0.0);
+    let detail = RELIEF_DETAIL.x * shade_share * dot(normal - form, frame.to_sun.xyz);
+    let detailed = 1.0 + RELIEF_DETAIL.y * detail / (RELIEF_DETAIL.y + abs(detail));
+    let brightness = soft_brightness(1.0 + gain * relief - RELIEF_GAIN * shadow) * detailed;
     let hue = mix(RELIEF_COOL, RELIEF_WARM, clamp(0.5 + 1.2 * (relief - shadow), 0.0, 1.0));
     let tint = hue / mix(RELIEF_COOL, RELIEF_WARM, 0.5);
     let gray = vec3f(dot(albedo, vec3f(0.2126, 0.7152, 0.0722)));

@@ -438,7 +438,10 @@ vec3 relief_lit(vec3 albedo, float height, vec4 post, float sky_share, vec2 plac
   float contrast = mix(RELIEF_LOW_CONTRAST, 1.0, clamp(elevation / 0.75, 0.0, 1.0));
   float relief = contrast * (shade - level);
   float shadow = contrast * lost;
-  float brightness = soft_brightness(1.0 + (relief < 0.0 ? shade_gain : RELIEF_GAIN) * relief - RELIEF_GAIN * shadow);
+  float shade_share = max(1.0 - post.z * received * facing / max(upright, RELIEF_LEAST_SINE), 0.0);
+  float detail = RELIEF_DETAIL.x * shade_share * dot(normal - form, to_sun);
+  float detailed = 1.0 + RELIEF_DETAIL.y * detail / (RELIEF_DETAIL.y + abs(detail));
+  float brightness = detailed * soft_brightness(1.0 + (relief < 0.0 ? shade_gain : RELIEF_GAIN) * relief - RELIEF_GAIN * shadow);
   vec3 hue = mix(RELIEF_COOL, RELIEF_WARM, clamp(0.5 + 1.2 * (relief - shadow), 0.0, 1.0)) / mix(RELIEF_COOL, RELIEF_WARM, 0.5);
   vec3 gray = vec3(dot(albedo, vec3(0.2126, 0.7152, 0.0722)));
   vec3 deep = max(albedo + (albedo - gray) * RELIEF_FILL_CHROMA, vec3(0.0));
