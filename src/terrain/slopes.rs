@@ -20,15 +20,15 @@ const AROUND: [(i64, i64); 8] = [(1, 1), (1, 0), (1, -1), (0, 1), (-1, -1), (-1,
 enum SlopeWeights {
     /// Those of Horn (1981): what lies aside counts for half of what lies in line.
     Horn,
-    /// What lies in line alone.
-    InLine,
+    /// Those of the cubic B-spline over the posts: what lies aside counts for a quarter.
+    Spline,
 }
 
 impl SlopeWeights {
     fn aside(self) -> f32 {
         match self {
             Self::Horn => 1.0,
-            Self::InLine => 0.0,
+            Self::Spline => 0.5,
         }
     }
 }
@@ -109,13 +109,14 @@ impl Lattice {
 
     /// The slopes by which a post is shaded; see [`Lattice::shaded_slopes_of_row`].
     pub fn shaded_slopes(&self, post: Post) -> Vec2 {
-        self.weighted_slopes(post, SlopeWeights::InLine)
+        self.weighted_slopes(post, SlopeWeights::Spline)
     }
 
-    /// The slopes by which the posts of a row are shaded: those of [`Lattice::slopes`], but by differences of the neighbors in line
-    /// alone (Fleming and Hoffer 1979; `grdgradient` has them), which keep forms two posts wide that Horn's weights level.
+    /// The slopes by which the posts of a row are shaded: those of [`Lattice::slopes`], but for weights that are those of the cubic
+    /// B-spline over the posts. They keep forms two posts wide that Horn's weights level, and differences of the posts in line
+    /// alone would show as dashes along the rows.
     pub fn shaded_slopes_of_row(&self, row: u32) -> Vec<Vec2> {
-        self.weighted_slopes_of_row(row, SlopeWeights::InLine)
+        self.weighted_slopes_of_row(row, SlopeWeights::Spline)
     }
 
     fn weighted_slopes_of_row(&self, row: u32, weights: SlopeWeights) -> Vec<Vec2> {
@@ -238,9 +239,7 @@ mod tests {
         let lattice = Lattice::new(DVec2::ZERO, DVec2::splat(5.0), 9, heights).expect("sound");
         let post = Post { column: 4, row: 4 };
         let (shaded, leveled) = (lattice.shaded_slopes(post), lattice.slopes(post));
-        let height = |east: i64| lattice.height(lattice.beside(post, east, 0));
-        assert_eq!(shaded.x, (height(1) - height(-1)) / 10.0);
-        assert!(shaded.length() > 1.9 * leveled.length(), "{shaded} {leveled}");
+        assert!(shaded.length() > 1.3 * leveled.length(), "{shaded} {leveled}");
         let plane = plane();
         for post in plane.posts() {
             assert!((plane.shaded_slopes(post) - Vec2::new(0.2, -0.2)).length() < 1e-6, "{post:?}");
