@@ -1,4 +1,4 @@
-//! Pipelines that paint a whole target with one triangle, whose corners the vertex shader makes.
+//! Pipelines that paint a whole target with a few triangles, whose corners the vertex shader makes.
 
 /// A shader that paints whole targets, and what it reads.
 #[derive(Clone, Copy, Debug)]
@@ -7,7 +7,7 @@ pub struct Painting<'a> {
     pub label: &'a str,
     /// The shader, WGSL.
     pub shader: &'a str,
-    /// The vertex shader, which makes the triangle of three indices.
+    /// The vertex shader, which makes corners of their indices.
     pub vertex: &'a str,
     /// The fragment shader.
     pub fragment: &'a str,
@@ -20,7 +20,7 @@ pub struct Painting<'a> {
 pub struct PaintingPipeline {
     /// The layout of group 0.
     pub layout: wgpu::BindGroupLayout,
-    /// The pipeline; it draws three vertices.
+    /// The pipeline; it draws as many vertices as the vertex shader makes.
     pub pipeline: wgpu::RenderPipeline,
 }
 

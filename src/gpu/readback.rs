@@ -103,7 +103,7 @@ impl DrawnTile {
     }
 }
 
-/// The pixels of a texture of four bytes a pixel, red first, that can be copied from; waits for the commands before.
+/// The pixels of a texture of four bytes a pixel, red or blue first, that can be copied from; waits for the commands before.
 ///
 /// # Errors
 /// See [`GpuError`].
@@ -114,7 +114,11 @@ pub fn read_pixels(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Pixels, GpuErro
         gpu.queue.submit([encoder.finish()]);
         let read = || -> Result<Pixels, DriverError> {
             wait(gpu, &[&copy], None)?;
-            copy.pixels((texture.width(), texture.height()))
+            let mut pixels = copy.pixels((texture.width(), texture.height()))?;
+            if texture.format().remove_srgb_suffix() == wgpu::TextureFormat::Bgra8Unorm {
+                pixels.data_mut().iter_mut().for_each(|Srgba([blue, _, red, _])| std::mem::swap(blue, red));
+            }
+            Ok(pixels)
         };
         read().map_err(|error| gpu.driver_error("reading a frame back", error))
     })

@@ -2,7 +2,8 @@
 //!
 //! An adapter that is a processor shades some ten million pixels a second, so that a window of a million pixels moves in
 //! jerks. While the camera moves, the sides of the picture are therefore a share of those of the view, the largest that was
-//! drawn in time, and the view stretches it. Once the camera has rested for some frames, all pixels are drawn.
+//! drawn in time, and the view stretches it. Once the camera has rested for some frames, all pixels are drawn. The first share
+//! follows from what all pixels took before the camera moved.
 
 use sandtable_view::camera::Camera;
 
@@ -35,6 +36,8 @@ pub struct DrawnSize {
     camera: Option<Camera>,
     /// Frames for which the camera has rested.
     resting: u32,
+    /// What the last frame took before the camera first moved, milliseconds; `None` once it has moved.
+    before_moving_ms: Option<f32>,
     /// The index of the share of the frame before.
     drawn: usize,
     /// What the last frame took that was drawn while the camera moved, milliseconds; 0 where it was in time.
@@ -49,13 +52,26 @@ impl DrawnSize {
     /// All pixels, until frames are late.
     pub fn new() -> Self {
         let resting = RESTING_FRAMES;
-        Self { step: 0, camera: None, resting, drawn: 0, late_ms: 0.0, steady: 0, longest_ms: 0.0 }
+        let before_moving_ms = Some(0.0);
+        Self {
+            step: 0,
+            camera: None,
+            resting,
+            before_moving_ms,
+            drawn: 0,
+            late_ms: 0.0,
+            steady: 0,
+            longest_ms: 0.0,
+        }
     }
 
     /// The size in pixels of the picture of the next frame, which `camera` sees in a view of its own size.
     pub fn of_next(&mut self, camera: &Camera, purpose: FramePurpose) -> (u32, u32) {
         let has_moved = self.camera.replace(*camera).is_some_and(|before| before != *camera);
         self.resting = if has_moved { 0 } else { self.resting.saturating_add(1) };
+        if let Some(whole_ms) = self.before_moving_ms.take_if(|_| has_moved) {
+            self.lower_for(whole_ms);
+        }
         let is_whole = purpose == FramePurpose::Kept || self.resting >= RESTING_FRAMES;
         self.drawn = if is_whole { 0 } else { self.step };
         let (width, height) = camera.size();
@@ -70,7 +86,10 @@ impl DrawnSize {
 
     /// Notes what the frame before took in all, in milliseconds.
     pub fn note_time(&mut self, taken_ms: f32) {
-        // What a picture at rest takes says nothing of how those that move do.
+        if let Some(whole_ms) = &mut self.before_moving_ms {
+            *whole_ms = taken_ms;
+        }
+        // What a picture at rest takes says little of how those that move do.
         if self.resting >= RESTING_FRAMES || self.drawn != self.step {
             return;
         }
@@ -80,9 +99,7 @@ impl DrawnSize {
             self.late_ms = taken_ms;
             (self.steady, self.longest_ms) = (0, 0.0);
             if least_ms > 0.0 {
-                let wanted = SHARES[self.step] * libm::sqrtf(LATE_MS * HEADROOM / least_ms);
-                let fitting = SHARES.iter().position(|share| *share <= wanted).unwrap_or(SHARES.len() - 1);
-                self.step = fitting.max(self.step);
+                self.lower_for(least_ms);
                 self.late_ms = 0.0;
             }
             return;
@@ -96,6 +113,15 @@ impl DrawnSize {
                 self.step -= 1;
             }
             (self.steady, self.longest_ms) = (0, 0.0);
+        }
+    }
+
+    /// Lowers the share, of which a frame took so many milliseconds, if that is late.
+    fn lower_for(&mut self, taken_ms: f32) {
+        if taken_ms > LATE_MS {
+            let wanted = SHARES[self.step] * libm::sqrtf(LATE_MS * HEADROOM / taken_ms);
+            let fitting = SHARES.iter().position(|share| *share <= wanted).unwrap_or(SHARES.len() - 1);
+            self.step = fitting.max(self.step);
         }
     }
 }
@@ -145,6 +171,16 @@ mod tests {
             assert!(changes <= 2, "{whole_ms} ms: {changes} changes");
             assert!(size.is_lowered());
         }
+    }
+
+    #[test]
+    fn what_all_pixels_took_at_rest_tells_how_many_the_first_that_moves_has() {
+        let mut size = DrawnSize::new();
+        let first = flight(&mut size, 2, 200.0, 4.0);
+        assert_eq!(first, [(800, 600), (200, 150)]);
+        let mut size = DrawnSize::new();
+        let first = flight(&mut size, 2, 24.0, 4.0);
+        assert_eq!(first, [(800, 600); 2], "in time");
     }
 
     #[test]

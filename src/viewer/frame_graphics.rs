@@ -8,9 +8,11 @@ use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
 
 use crate::app::{ViewerApp, WindowRequest};
 use crate::drawn_size::{DrawnSize, FramePurpose};
+use crate::error::ViewerError;
+use crate::frame_sending::{AfterSending, FrameSending};
 use crate::frame_times::{FrameLoad, FrameTime};
 use crate::opened::SceneFrame;
-use crate::picture_paint::{PictureFit, PicturePaint};
+use crate::picture_paint::{PictureFit, PicturePaint, blended_format};
 use crate::scene_graphics::{SceneGraphics, milliseconds};
 use sandtable_base::message::chain::error_text;
 use sandtable_gpu::adapter::Gpu;
@@ -27,6 +29,8 @@ pub struct FrameGraphics {
     timer: Option<Arc<PassTimer>>,
     /// The sizes of the scene's pictures; `None` where all of them are whole.
     size: Option<DrawnSize>,
+    sending: FrameSending,
+    format: wgpu::TextureFormat,
 }
 
 /// The input for painting the panels of one frame.
@@ -69,7 +73,7 @@ impl FrameGraphics {
         let mut painter = Renderer::new(gpu.device(), format, options);
         painter.callback_resources.insert(PicturePaint::new(gpu.device(), format));
         let size = gpu.is_software().then(DrawnSize::new);
-        Self { gpu, painter, scene: None, timer: None, size }
+        Self { gpu, painter, scene: None, timer: None, size, sending: FrameSending::default(), format }
     }
 
     /// Times the passes of the frames that follow, where the device has a clock.
@@ -81,6 +85,11 @@ impl FrameGraphics {
     /// The device.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
+    }
+
+    /// The format of the textures that frames are painted on.
+    pub fn format(&self) -> wgpu::TextureFormat {
+        self.format
     }
 
     /// The adapter's name and interface.
@@ -111,7 +120,7 @@ impl FrameGraphics {
 
     /// Makes the renderer of scenes. What fails is said among the panels, which stay.
     pub fn open_scene(&mut self, app: &mut ViewerApp) {
-        match SceneGraphics::new(&self.gpu, self.timer.clone()) {
+        match SceneGraphics::new(&self.gpu, blended_format(&self.gpu), self.timer.clone()) {
             Ok(scene) => {
                 app.slot.fill(scene.loader());
                 self.scene = Some(scene);
@@ -120,8 +129,36 @@ impl FrameGraphics {
         }
     }
 
-    /// Lays out the panels of a frame and records its scene.
-    pub fn record(&mut self, context: &Context, app: &mut ViewerApp, input: RawInput) -> RecordedFrame {
+    /// Sends what was recorded of a frame; see [`FrameSending::send`].
+    ///
+    /// # Errors
+    /// What `after` returns.
+    pub fn send(
+        &mut self,
+        commands: Vec<wgpu::CommandBuffer>,
+        after: AfterSending,
+    ) -> Result<(), ViewerError> {
+        self.sending.send(&self.gpu, commands, after)
+    }
+
+    /// Waits until the frames before are sent.
+    ///
+    /// # Errors
+    /// What followed their sending returned.
+    pub fn finish_sending(&mut self) -> Result<(), ViewerError> {
+        self.sending.finish()
+    }
+
+    /// Lays out the panels of a frame and records its scene, once the frame before is sent.
+    ///
+    /// # Errors
+    /// What followed the sending of the frame before returned.
+    pub fn record(
+        &mut self,
+        context: &Context,
+        app: &mut ViewerApp,
+        input: RawInput,
+    ) -> Result<RecordedFrame, ViewerError> {
         let laying_out = Instant::now();
         let output = context.run_ui(input, |ui| app.show(ui));
         let primitives = context.tessellate(output.shapes, output.pixels_per_point);
@@ -132,14 +169,17 @@ impl FrameGraphics {
         let is_kept = requests.iter().any(|request| matches!(request, WindowRequest::Picture(_)));
         let purpose = if is_kept { FramePurpose::Kept } else { FramePurpose::Shown };
         let mut frame = app.scene_frame(|camera| self.picture_size(camera, purpose));
+        let waiting = Instant::now();
+        self.finish_sending()?;
+        let wait_ms = milliseconds(waiting);
         let drawn = frame.as_mut().and_then(|frame| self.draw_scene(&mut encoder, frame, app));
         if self.size.as_ref().is_some_and(DrawnSize::is_lowered) {
             context.request_repaint();
         }
-        let drawn = drawn.map(|(time, load)| (FrameTime { panels_ms, ..time }, load));
+        let drawn = drawn.map(|(time, load)| (FrameTime { panels_ms, wait_ms, ..time }, load));
         let (textures, pixels_per_point) = (output.textures_delta, output.pixels_per_point);
         let panels = PaintedPanels { primitives, textures, pixels_per_point };
-        RecordedFrame { encoder, drawn, requests, platform: output.platform_output, panels }
+        Ok(RecordedFrame { encoder, drawn, requests, platform: output.platform_output, panels })
     }
 
     /// Records the scene's picture. What fails is said among the panels, which stay.

@@ -12,11 +12,11 @@ pub struct FrameTime {
     pub update_ms: f32,
     /// Handing over what changed.
     pub upload_ms: f32,
-    /// Recording and presenting the picture: where the processor draws, all of it.
+    /// Recording and presenting the picture; without a window, waiting until the one before is drawn.
     pub draw_ms: f32,
     /// Laying out the panels and the labels.
     pub panels_ms: f32,
-    /// Waiting for the adapter, where frames are drawn without a window.
+    /// Waiting until the frame before is sent, where the adapter is a processor.
     pub wait_ms: f32,
 }
 

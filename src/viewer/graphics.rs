@@ -82,8 +82,8 @@ impl WindowGraphics {
         let longest = self.frames.longest_side();
         self.configuration.width = width.min(longest);
         self.configuration.height = height.min(longest);
-        // What fails now is done by the next frame.
-        let _ = self.configure();
+        // What fails now is done by the next frame; so is what was sent.
+        let _ = self.frames.finish_sending().and_then(|()| self.configure());
     }
 
     /// Whether a frame is of the size that the panels are laid out for.
@@ -125,12 +125,15 @@ impl WindowGraphics {
         let presented = self.paint(&mut before, &panels);
         self.frames.free_textures(&mut panels);
         let (presented, frame, commands) = presented?;
-        let queue = self.frames.gpu().queue();
-        queue.submit(commands.into_iter().chain([before.finish()]));
-        if let Some(frame) = frame {
+        let commands = commands.into_iter().chain([before.finish()]).collect();
+        if frame.is_some() {
             self.window.pre_present_notify();
-            queue.present(frame);
         }
+        let present = |gpu: &Gpu, _| {
+            frame.into_iter().for_each(|frame| gpu.queue().present(frame));
+            Ok(())
+        };
+        self.frames.send(commands, Box::new(present))?;
         Ok(presented)
     }
 

@@ -31,6 +31,7 @@ pub mod error;
 mod finer_ground;
 mod following;
 mod frame_graphics;
+mod frame_sending;
 mod frame_times;
 mod ghost;
 mod graphics;

@@ -4,7 +4,7 @@
 //! however long it takes, so that a script shows the same on every machine.
 
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -14,6 +14,7 @@ use crate::app::{ViewerApp, ViewerStage, WindowRequest};
 use crate::error::ViewerError;
 use crate::frame_graphics::{FrameGraphics, PaintedPanels, PanelTarget, RecordedFrame};
 use crate::frame_times::FrameTime;
+use crate::picture_paint::blended_format;
 use crate::scene_graphics::milliseconds;
 use crate::script_run::{FRAME_S, ScriptRun};
 use sandtable_base::message::chain::error_text;
@@ -24,8 +25,6 @@ use sandtable_gpu::error::GpuError;
 use sandtable_gpu::pass_timer::PassTimer;
 use sandtable_gpu::readback::read_pixels;
 
-/// The format of the texture: colors as they are shown, as panels are blended.
-const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// How long the loop rests where there is nothing to draw yet.
 const REST: Duration = Duration::from_millis(2);
 /// How long a frame may take before the device counts as hung.
@@ -42,7 +41,8 @@ pub fn run(options: &ViewerOptions, size: (u32, u32), script: &Path) -> Result<(
         GpuError::NoAdapter(_) => ViewerError::NoFrames(error_text(&error)),
         other => other.into(),
     })?;
-    let mut frames = FrameGraphics::new(gpu, FORMAT);
+    let format = blended_format(&gpu);
+    let mut frames = FrameGraphics::new(gpu, format);
     let context = Context::default();
     let mut app = ViewerApp::new(options, &context);
     app.adapter = frames.name();
@@ -50,8 +50,10 @@ pub fn run(options: &ViewerOptions, size: (u32, u32), script: &Path) -> Result<(
     let timer = frames.time_passes();
     frames.open_scene(&mut app);
     let target = FrameTarget::new(&frames, size)?;
-    let mut view = OffscreenView { app, script, context, frames, timer, target, before: None, shown: 0 };
+    let mut view =
+        OffscreenView { app, script, context, frames, timer, target, before: Arc::default(), shown: 0 };
     while !view.draw()? {}
+    view.frames.finish_sending()?;
     if view.app.stage() == ViewerStage::Failed {
         return Err(ViewerError::File(view.app.failure_text().to_owned()));
     }
@@ -70,7 +72,7 @@ struct OffscreenView {
     timer: Option<Arc<PassTimer>>,
     target: FrameTarget,
     /// The commands of the frame before, which the adapter may still draw.
-    before: Option<wgpu::SubmissionIndex>,
+    before: Arc<Mutex<Option<wgpu::SubmissionIndex>>>,
     /// Frames so far.
     shown: u64,
 }
@@ -94,7 +96,7 @@ impl FrameTarget {
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
-            format: FORMAT,
+            format: frames.format(),
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
@@ -111,18 +113,13 @@ impl OffscreenView {
         self.script.step(&mut self.app);
         let input = self.input();
         let RecordedFrame { encoder, drawn, requests, panels, .. } =
-            self.frames.record(&self.context, &mut self.app, input);
+            self.frames.record(&self.context, &mut self.app, input)?;
         let painting = Instant::now();
-        let submitted = self.submit(encoder, panels);
+        self.submit(encoder, panels)?;
         let draw_ms = milliseconds(painting);
-        let own_ms = milliseconds(begun);
-        let waiting = Instant::now();
-        if let Some(before) = self.before.replace(submitted) {
-            self.wait_for(before)?;
-        }
+        let own_ms = milliseconds(begun) - drawn.map_or(0.0, |(time, _)| time.wait_ms);
         if let Some((time, load)) = drawn {
-            let draw_ms = time.draw_ms + draw_ms;
-            let time = FrameTime { draw_ms, wait_ms: milliseconds(waiting), ..time };
+            let time = FrameTime { draw_ms: time.draw_ms + draw_ms, ..time };
             self.app.frames.add(time, load);
             self.frames.note_time(time.total_ms());
             self.script.note_frame(time, load);
@@ -138,12 +135,12 @@ impl OffscreenView {
         self.carry_out(requests)
     }
 
-    /// Paints the panels, and sends a frame to the adapter.
+    /// Paints the panels, and sends a frame to the adapter, which is then to have drawn the frame before.
     fn submit(
         &mut self,
         mut encoder: wgpu::CommandEncoder,
         mut panels: PaintedPanels,
-    ) -> wgpu::SubmissionIndex {
+    ) -> Result<(), ViewerError> {
         self.frames.take_textures(&panels);
         let target = PanelTarget { view: &self.target.view, size: self.target.size };
         let commands = self.frames.paint(&mut encoder, &panels, target);
@@ -151,21 +148,14 @@ impl OffscreenView {
         if let Some(timer) = &self.timer {
             timer.finish(&mut encoder);
         }
-        let submitted = self.frames.gpu().queue().submit(commands.into_iter().chain([encoder.finish()]));
-        if let Some(timer) = &self.timer {
-            timer.request();
-        }
-        submitted
-    }
-
-    /// Waits until the adapter has drawn a frame.
-    fn wait_for(&self, submission: wgpu::SubmissionIndex) -> Result<(), ViewerError> {
-        let wait = wgpu::PollType::Wait { submission_index: Some(submission), timeout: Some(PATIENCE) };
-        let failed = |error: wgpu::PollError| ViewerError::Adapter {
-            doing: "drawing a frame",
-            cause: error.to_string(),
+        let commands = commands.into_iter().chain([encoder.finish()]).collect();
+        let (timer, before) = (self.timer.clone(), Arc::clone(&self.before));
+        let after = move |gpu: &Gpu, sent| {
+            timer.iter().for_each(|timer| timer.request());
+            let before = before.lock().unwrap_or_else(PoisonError::into_inner).replace(sent);
+            before.map_or(Ok(()), |before| wait_for(gpu, before))
         };
-        self.frames.gpu().device().poll(wait).map(|_| ()).map_err(failed)
+        self.frames.send(commands, Box::new(after))
     }
 
     /// Carries out what the app and the script want of a window; returns whether it is to close.
@@ -177,7 +167,10 @@ impl OffscreenView {
                 WindowRequest::Resize(width, height) => {
                     self.target = FrameTarget::new(&self.frames, (width, height))?;
                 }
-                WindowRequest::Picture(path) => self.write(&path)?,
+                WindowRequest::Picture(path) => {
+                    self.frames.finish_sending()?;
+                    self.write(&path)?;
+                }
                 WindowRequest::Close => is_over = true,
             }
         }
@@ -204,4 +197,12 @@ impl OffscreenView {
             ..RawInput::default()
         }
     }
+}
+
+/// Waits until the adapter has drawn a frame.
+fn wait_for(gpu: &Gpu, submission: wgpu::SubmissionIndex) -> Result<(), ViewerError> {
+    let wait = wgpu::PollType::Wait { submission_index: Some(submission), timeout: Some(PATIENCE) };
+    let failed =
+        |error: wgpu::PollError| ViewerError::Adapter { doing: "drawing a frame", cause: error.to_string() };
+    gpu.device().poll(wait).map(|_| ()).map_err(failed)
 }

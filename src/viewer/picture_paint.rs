@@ -1,10 +1,17 @@
-//! The scene's picture among the panels: one triangle over its place, which a processor paints in a third of the time that
-//! the panels' own shader takes.
+//! The scene's picture among the panels, by a shader of its own.
+//!
+//! Mesa's Vulkan on the processor paints bytes instead of floats, several times as fast, where two triangles are a rectangle, the
+//! shader does nothing but read a texture at places between its corners, and that texture and the target have blue first. It
+//! knows such places where they are parts of a vector of four.
 
 use egui::{PaintCallbackInfo, Rect, Shape};
 use egui_wgpu::{Callback, CallbackResources, CallbackTrait};
 
+use sandtable_gpu::adapter::{Gpu, GpuApi};
 use sandtable_gpu::painting::{Painting, PaintingPipeline};
+
+/// The corners of two triangles.
+const CORNERS: u32 = 6;
 
 /// The name of what paints in the messages of drivers and debuggers.
 const LABEL: &str = "picture of the scene";
@@ -66,6 +73,14 @@ impl PicturePaint {
     }
 }
 
+/// The format of colors as they are shown in which a device paints the picture fastest.
+pub fn blended_format(gpu: &Gpu) -> wgpu::TextureFormat {
+    match (gpu.is_software(), gpu.api()) {
+        (true, GpuApi::Vulkan) => wgpu::TextureFormat::Bgra8Unorm,
+        _ => wgpu::TextureFormat::Rgba8Unorm,
+    }
+}
+
 /// How the pixels of a picture and those of its place go together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PictureFit {
@@ -88,6 +103,6 @@ impl CallbackTrait for PicturePlace {
         };
         pass.set_pipeline(&paint.painting.pipeline);
         pass.set_bind_group(0, shown, &[]);
-        pass.draw(0..3, 0..1);
+        pass.draw(0..CORNERS, 0..1);
     }
 }

@@ -5,25 +5,25 @@
 
 struct Corner {
     @builtin(position) clip: vec4f,
-    @location(0) uv: vec2f,
+    @location(0) uv: vec4f,
 }
 
 @vertex
 fn whole_view(@builtin(vertex_index) index: u32) -> Corner {
-    let corner = vec2f(f32((index << 1u) & 2u), f32(index & 2u));
-    return Corner(vec4f(corner * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0), 0.0, 1.0), corner);
+    let corner = vec2f(f32((50u >> index) & 1u), f32((44u >> index) & 1u));
+    return Corner(vec4f(corner * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0), 0.0, 1.0), vec4f(corner, 0.0, 1.0));
 }
 
 // On a texture that takes colors as they are shown.
 @fragment
 fn encoded_color(corner: Corner) -> @location(0) vec4f {
-    return vec4f(textureSampleLevel(picture, picture_sampler, corner.uv, 0.0).rgb, 1.0);
+    return textureSample(picture, picture_sampler, corner.uv.xy);
 }
 
 // On a texture that encodes colors itself.
 @fragment
 fn linear_color(corner: Corner) -> @location(0) vec4f {
-    let color = textureSampleLevel(picture, picture_sampler, corner.uv, 0.0).rgb;
+    let color = textureSampleLevel(picture, picture_sampler, corner.uv.xy, 0.0).rgb;
     let high = pow((color + 0.055) / 1.055, vec3f(2.4));
     return vec4f(select(high, color / 12.92, color <= vec3f(0.04045)), 1.0);
 }

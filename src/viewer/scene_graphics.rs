@@ -17,13 +17,12 @@ use sandtable_gpu::live::prepared::LiveLoader;
 use sandtable_gpu::live::{LiveDetail, LiveOptions, LiveRenderer};
 use sandtable_gpu::pass_timer::PassTimer;
 
-/// What the panels blend: colors as they are shown.
-const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
-
 /// The renderer of scenes and its picture.
 pub struct SceneGraphics {
     renderer: LiveRenderer,
-    /// What the renderer draws to: [`FORMAT`], or the same texture seen as one that encodes colors.
+    /// What the panels blend: colors as they are shown.
+    format: wgpu::TextureFormat,
+    /// What the renderer draws to: that format, or the same texture seen as one that encodes colors.
     drawn: wgpu::TextureFormat,
     picture: Option<ScenePicture>,
 }
@@ -35,18 +34,22 @@ struct ScenePicture {
 }
 
 impl SceneGraphics {
-    /// A renderer on a device, whose failures from before are forgotten; `timer` times its passes.
+    /// A renderer of pictures of `format` on a device, whose failures from before are forgotten; `timer` times its passes.
     ///
     /// # Errors
     /// See [`GpuError`].
-    pub fn new(gpu: &Gpu, timer: Option<Arc<PassTimer>>) -> Result<Self, GpuError> {
+    pub fn new(
+        gpu: &Gpu,
+        format: wgpu::TextureFormat,
+        timer: Option<Arc<PassTimer>>,
+    ) -> Result<Self, GpuError> {
         let gpu = Gpu::from_parts(gpu.adapter(), gpu.device().clone(), gpu.queue().clone());
         let flags = gpu.adapter().get_downlevel_capabilities().flags;
         let has_views = flags.contains(wgpu::DownlevelFlags::VIEW_FORMATS);
-        let drawn = if has_views { FORMAT.add_srgb_suffix() } else { FORMAT };
+        let drawn = if has_views { format.add_srgb_suffix() } else { format };
         let mut renderer = LiveRenderer::new(&gpu, drawn)?;
         renderer.set_timer(timer);
-        Ok(Self { renderer, drawn, picture: None })
+        Ok(Self { renderer, format, drawn, picture: None })
     }
 
     /// How many pipelines the renderer has made.
@@ -129,14 +132,14 @@ impl SceneGraphics {
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
-            format: FORMAT,
+            format: self.format,
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
             view_formats: &[self.drawn],
         });
         let seen_as = |format| {
             texture.create_view(&wgpu::TextureViewDescriptor { format: Some(format), ..Default::default() })
         };
-        graphics.show_picture(&seen_as(FORMAT), fit);
+        graphics.show_picture(&seen_as(self.format), fit);
         let view = seen_as(self.drawn);
         self.picture = Some(ScenePicture { view: view.clone(), size, fit });
         view

@@ -240,10 +240,10 @@ impl ViewerWindow {
         }
         let input = shown.input.take_egui_input(&shown.window);
         let RecordedFrame { encoder, drawn, requests, platform, panels } =
-            shown.graphics.frames.record(&self.context, &mut self.app, input);
+            shown.graphics.frames.record(&self.context, &mut self.app, input)?;
         shown.input.handle_platform_output(&shown.window, platform);
         let presenting = Instant::now();
-        let own_ms = milliseconds(begun);
+        let own_ms = milliseconds(begun) - drawn.map_or(0.0, |(time, _)| time.wait_ms);
         let presented = shown.graphics.present(encoder, panels)?;
         if let Some((mut time, load)) = drawn {
             time.draw_ms += milliseconds(presenting);

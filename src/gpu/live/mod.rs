@@ -380,11 +380,14 @@ impl LiveRenderer {
             return Ok(LiveStatistics::default());
         }
         let (gpu, format) = (&self.gpu, self.format);
-        let mut parts = scene.parts_of(gpu, options.detail);
-        if parts != scene.parts {
-            let keys = scene.keys(gpu, &self.colors, parts);
-            if !self.moving.are_made(gpu, &mut self.colors, keys)? {
-                parts = scene.parts;
+        let is_first = self.moving.is_first_frame();
+        let moving = scene.parts_of(gpu, LiveDetail::Moving);
+        let mut parts = scene.parts;
+        if moving != scene.parts && (options.detail == LiveDetail::Moving || !is_first) {
+            let keys = scene.keys(gpu, &self.colors, moving);
+            let are_made = self.moving.are_made(gpu, &mut self.colors, keys)?;
+            if are_made && options.detail == LiveDetail::Moving {
+                parts = moving;
             }
         }
         let known = self.targets.take().filter(|targets| targets.size == size);

@@ -1,7 +1,8 @@
 //! Pipelines of frames that move, where those have less of the shading.
 //!
-//! They are made on another thread when the first such frame is drawn: a scene that is only looked at has none, its first picture
-//! does not wait for them, and no frame does. Until they are there, frames that move are shaded as those at rest.
+//! They are made on another thread once a scene was drawn twice, or when the first frame that moves is: neither its first picture
+//! waits for them nor any frame, and a picture that is drawn once has none. Until they are there, frames that move are shaded as
+//! those at rest.
 
 use std::thread::{self, JoinHandle};
 
@@ -16,10 +17,17 @@ const DOING: &str = "building its shaders";
 /// Makes the pipelines of frames that move.
 #[derive(Debug, Default)]
 pub struct MovingPipelines {
+    /// Whether a frame was drawn.
+    has_drawn: bool,
     making: Option<JoinHandle<Result<Pipelines, GpuError>>>,
 }
 
 impl MovingPipelines {
+    /// Notes that a frame is drawn; returns whether it is the first.
+    pub fn is_first_frame(&mut self) -> bool {
+        !std::mem::replace(&mut self.has_drawn, true)
+    }
+
     /// Whether `colors` has the pipelines of `keys`; where it lacks some, they are made for a later call.
     ///
     /// # Errors
