@@ -82,8 +82,12 @@ pub fn densify(lattice: &Lattice, times: u32) -> Result<Lattice, LatticeError> {
     let mut dense = Lattice::new(lattice.origin(), cell, columns, heights)?;
     dense.set_doublings(lattice.doublings() + times);
     if lattice.has_pins() {
-        let posts = (0..rows).flat_map(|row| (0..columns).map(move |column| Post { column, row }));
-        for post in posts.filter(|&post| is_pinned(lattice, post, times)) {
+        let in_row = |row: u32| {
+            let posts = (0..columns).map(|column| Post { column, row });
+            posts.filter(|&post| is_pinned(lattice, post, times)).collect()
+        };
+        let pinned: Vec<Vec<Post>> = (0..rows).into_par_iter().map(in_row).collect();
+        for post in pinned.into_iter().flatten() {
             dense.pin(post, dense.height(post));
         }
     }

@@ -329,7 +329,8 @@ fn change(gradient: Vec2, hit: &FacePoint) -> f32 {
 }
 
 fn split(coordinate: f32, count: usize) -> (usize, f32) {
-    let cell = (coordinate as usize).min(count.saturating_sub(2));
+    // By way of 32 bits, to which processors round in one step.
+    let cell = (coordinate as u32 as usize).min(count.saturating_sub(2));
     (cell, coordinate - cell as f32)
 }
 
