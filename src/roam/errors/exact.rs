@@ -43,14 +43,23 @@ const STRIP_ROWS: i32 = 64;
 impl ErrorMap {
     /// The exact errors of `lattice`; in parallel, the same for any number of threads.
     pub fn exact(lattice: &Lattice, layout: &PatchLayout) -> Self {
-        if layout.patch() > 2 * NEAR_STEP {
-            return Self::raised(own_errors(lattice, layout), layout);
-        }
-        let measured = MeasuredLattice { lattice, layout, survey: TileSurvey::new(lattice) };
-        let mut errors = vec![0f32; layout.vertex_count()];
-        SweepSource::sweep_made(layout, |south, own| measured.rows(south, own), &mut errors);
-        Self { errors }
+        Self { errors: raised_errors(lattice, layout, 1) }
     }
+}
+
+/// The errors of [`ErrorMap::exact`] in every `every`-th column and row, 1 or 2.
+pub(super) fn raised_errors(lattice: &Lattice, layout: &PatchLayout, every: usize) -> Vec<f32> {
+    let counted = |count: usize| (count - 1) / every + 1;
+    let (columns, rows) = (counted(layout.columns()), counted(layout.rows()));
+    if layout.patch() > 2 * NEAR_STEP {
+        let errors = ErrorMap::raised(own_errors(lattice, layout), layout).errors;
+        let rows = errors.chunks_exact(layout.columns()).step_by(every);
+        return rows.flat_map(|row| row.iter().step_by(every).copied()).collect();
+    }
+    let measured = MeasuredLattice { lattice, layout, survey: TileSurvey::new(lattice) };
+    let mut errors = vec![0f32; columns * rows];
+    SweepSource::sweep_made(layout, |south, own| measured.rows(south, own), every, &mut errors);
+    errors
 }
 
 /// Every vertex's [`own_error`], in the order of [`PatchLayout::index`]; 0 at patch corners, which split nothing.
@@ -453,7 +462,9 @@ mod tests {
 
     #[test]
     fn errors_raised_while_they_are_measured_are_those_raised_after() {
-        for (columns, rows, patch) in [(70, 700, 64), (131, 521, 32), (40, 300, 4), (300, 37, 2), (90, 600, 128)] {
+        for (columns, rows, patch) in
+            [(70, 700, 64), (131, 521, 32), (40, 300, 4), (300, 37, 2), (90, 600, 128)]
+        {
             for spots in [&[][..], &[(7, 260), (33, 255), (12, 9), (60, 511)]] {
                 let lattice = spoilt(columns, rows, spots);
                 let layout = PatchLayout::new(columns, rows, patch).expect("sound");

@@ -87,7 +87,7 @@ impl<'a> SweepSource<'a> {
         let side = 1usize << levels;
         let (columns, rows) = self.coarse_cells(side);
         let mut cells = vec![0f32; columns * rows];
-        let mut bands = self.bands(side, usize::MAX, out, &mut cells);
+        let mut bands = self.bands(side, usize::MAX, (1, &mut *out), &mut cells);
         let sound = match bands.as_mut_slice() {
             [only] => only.sweep::<M>(levels),
             many => many.par_iter_mut().map(|band| band.sweep::<M>(levels)).reduce(|| true, |a, b| a && b),
@@ -100,22 +100,34 @@ impl<'a> SweepSource<'a> {
         for (coarse, fine) in values.chunks_exact_mut(columns + 1).zip(from_rows) {
             copy_every(side, fine, coarse);
         }
-        self.sweep_coarse::<M>(&values, &cells, side, out)
+        self.sweep_coarse::<M>((&values, &cells), side, (1, out))
     }
 
-    /// Writes the errors of all vertices of a layout from their own: `own` writes these, row by row from a row on that is a multiple
+    /// Writes the errors of the vertices of a layout in every `every`-th column and row, 1 or 2, from the own ones of all: `own` writes
+    /// these, row by row from a row on that is a multiple
     /// of 8, or of the patch, into zeros. No more of them are held than those of a few rows for each thread; those of some rows are
     /// made twice. In parallel, the same for any number of threads.
-    pub fn sweep_made(layout: &PatchLayout, own: impl Fn(usize, &mut [f32]) + Sync, out: &mut [f32]) {
+    pub fn sweep_made(
+        layout: &PatchLayout,
+        own: impl Fn(usize, &mut [f32]) + Sync,
+        every: usize,
+        out: &mut [f32],
+    ) {
         let (columns, rows) = (layout.columns(), layout.rows());
-        let source =
-            SweepSource { values: &[], first_row: 0, cells: None, columns, rows, patch: layout.patch() as usize };
+        let source = SweepSource {
+            values: &[],
+            first_row: 0,
+            cells: None,
+            columns,
+            rows,
+            patch: layout.patch() as usize,
+        };
         let levels = source.band_levels();
         let side = 1usize << levels;
         let (coarse_columns, coarse_rows) = source.coarse_cells(side);
         let mut cells = vec![0f32; coarse_columns * coarse_rows];
         let mut values = vec![0f32; (coarse_columns + 1) * (coarse_rows + 1)];
-        let bands = source.bands(side, MADE_ROWS, out, &mut cells);
+        let bands = source.bands(side, MADE_ROWS, (every, &mut *out), &mut cells);
         let mut rest = values.as_mut_slice();
         let mut coarse = Vec::with_capacity(bands.len());
         for band in &bands {
@@ -124,7 +136,7 @@ impl<'a> SweepSource<'a> {
             coarse.push(own);
             rest = others;
         }
-        bands.into_par_iter().zip(coarse).for_each(|(band, coarse)| {
+        bands.into_par_iter().zip(coarse).with_max_len(1).for_each(|(band, coarse)| {
             let SweepReach { south, north } = band.reach(levels);
             let mut values = vec![0f32; (north + 1 - south) * columns];
             own(south, &mut values);
@@ -133,11 +145,18 @@ impl<'a> SweepSource<'a> {
                 copy_every(side, fine, coarse);
             }
             let source = SweepSource { values: &values, first_row: south, ..band.source };
-            let sound = SweepBand { source, ..band }.sweep::<KnownErrors>(levels);
+            let mut all = vec![0f32; if every == 1 { 0 } else { band.rows * columns }];
+            let SweepBand { first, rows, out, cells, .. } = band;
+            let written = if every == 1 { &mut *out } else { &mut all };
+            let sound = SweepBand { source, first, rows, out: written, cells }.sweep::<KnownErrors>(levels);
             debug_assert!(sound, "own errors are taken as they are");
+            let kept = all.chunks_exact(columns).step_by(every);
+            for (out, all) in out.chunks_exact_mut((columns - 1) / every + 1).zip(kept) {
+                copy_every(every, all, out);
+            }
         });
         if side < source.patch {
-            let sound = source.sweep_coarse::<KnownErrors>(&values, &cells, side, out);
+            let sound = source.sweep_coarse::<KnownErrors>((&values, &cells), side, (every, out));
             debug_assert!(sound, "own errors are taken as they are");
         }
     }
@@ -153,27 +172,34 @@ impl<'a> SweepSource<'a> {
     }
 
     /// Sweeps the levels coarser than those of bands: `values` are those of every vertex on a multiple of `side`, `cells` the errors
-    /// below each cell between them.
-    fn sweep_coarse<M: OwnError>(&self, values: &[f32], cells: &[f32], side: usize, out: &mut [f32]) -> bool {
+    /// below each cell between them; `out` holds every `every`-th column and row.
+    fn sweep_coarse<M: OwnError>(
+        &self,
+        (values, cells): (&[f32], &[f32]),
+        side: usize,
+        (every, out): (usize, &mut [f32]),
+    ) -> bool {
         let (columns, rows) = self.coarse_cells(side);
         let patch = self.patch / side;
         let (columns, rows) = (columns + 1, rows + 1);
         let source = SweepSource { values, first_row: 0, cells: Some(cells), columns, rows, patch };
         let mut errors = vec![0f32; values.len()];
         let sound = source.sweep::<M>(&mut errors);
-        let to_rows = out.chunks_exact_mut(self.columns).step_by(side);
+        let step = side / every;
+        let to_rows = out.chunks_exact_mut((self.columns - 1) / every + 1).step_by(step);
         for (coarse, fine) in errors.chunks_exact(columns).zip(to_rows) {
-            coarse.iter().zip(fine.iter_mut().step_by(side)).for_each(|(coarse, fine)| *fine = *coarse);
+            coarse.iter().zip(fine.iter_mut().step_by(step)).for_each(|(coarse, fine)| *fine = *coarse);
         }
         sound
     }
 
-    /// Bands of rows, each a multiple of `side` and at most about `most`, the last with one row more.
+    /// Bands of rows, each a multiple of `side` and at most about `most`, the last with one row more; `out` holds every `every`-th
+    /// column and row.
     fn bands<'b>(
         &self,
         side: usize,
         most: usize,
-        mut out: &'b mut [f32],
+        (every, mut out): (usize, &'b mut [f32]),
         mut cells: &'b mut [f32],
     ) -> Vec<SweepBand<'b>>
     where
@@ -191,7 +217,7 @@ impl<'a> SweepSource<'a> {
             let rest = self.rows - first;
             // The last row alone is no band.
             let rows = if rest <= height + 1 { rest } else { height };
-            let (own, others) = out.split_at_mut(rows * self.columns);
+            let (own, others) = out.split_at_mut(rows.div_ceil(every) * ((self.columns - 1) / every + 1));
             let (own_cells, other_cells) = cells.split_at_mut(rows / side * ((self.columns - 1) / side));
             bands.push(SweepBand { source: *self, first, rows, out: own, cells: own_cells });
             (out, cells, first) = (others, other_cells, first + rows);
@@ -308,7 +334,9 @@ impl SweepBand<'_> {
         let SweepLevel { rows, cells, odds, mid_evens, low_east, high_east, north, center, around, zeros } =
             here;
         let row = |index: usize| match level {
-            0 => &source.values[(reach.south - source.first_row + index) * source.columns..][..source.columns],
+            0 => {
+                &source.values[(reach.south - source.first_row + index) * source.columns..][..source.columns]
+            }
             _ => rows[index % 4].as_slice(),
         };
         let raised = level > 0 || source.cells.is_some();
