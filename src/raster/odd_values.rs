@@ -143,7 +143,8 @@ impl OddValues {
             samples: 0,
             ..self.clone()
         };
-        let counted: Vec<Self> = values.par_chunks(TOGETHER).map(|few| none.clone().counted(few)).collect();
+        let counted: Vec<Self> =
+            values.par_chunks(TOGETHER).with_max_len(4).map(|few| none.clone().counted(few)).collect();
         counted.into_iter().for_each(|few| self.join(few));
     }
 

@@ -73,11 +73,13 @@ pub fn densify(lattice: &Lattice, times: u32) -> Result<Lattice, LatticeError> {
     let (columns, rows) = (side(lattice.columns()), side(lattice.rows()));
     Lattice::check_memory(columns, rows)?;
     let mut heights = returned_zeros(columns as usize * rows as usize);
-    heights.par_chunks_exact_mut(columns as usize).zip(0..rows).for_each(|(heights, row)| {
-        for (height_m, column) in heights.iter_mut().zip(0..columns) {
-            *height_m = height(lattice, Post { column, row }, times);
-        }
-    });
+    heights.par_chunks_exact_mut(columns as usize).zip(0..rows).with_max_len(16).for_each(
+        |(heights, row)| {
+            for (height_m, column) in heights.iter_mut().zip(0..columns) {
+                *height_m = height(lattice, Post { column, row }, times);
+            }
+        },
+    );
     let cell = lattice.cell() / f64::from(1u32 << times);
     let mut dense = Lattice::new(lattice.origin(), cell, columns, heights)?;
     dense.set_doublings(lattice.doublings() + times);
