@@ -93,7 +93,7 @@ impl LowGround {
             let (posts, region) = (run.posts(), &mut regions[run.region as usize]);
             region.posts += posts.len();
             let is_at_end = posts.start < columns || posts.end + columns > heights.len();
-            let is_at_side = posts.start % columns == 0 || posts.end % columns == 0;
+            let is_at_side = posts.start.is_multiple_of(columns) || posts.end.is_multiple_of(columns);
             region.is_at_border |= is_at_end || is_at_side;
         }
         for run in &runs {
@@ -119,8 +119,8 @@ impl LowGround {
 
     /// Counts what lies beside the posts of a run.
     fn count_sides(self, heights: &[f32], columns: usize, posts: Range<usize>, region: &mut LowRegion) {
-        let west = (posts.start % columns > 0).then(|| posts.start - 1);
-        let east = Some(posts.end).filter(|&end| end % columns > 0);
+        let west = (!posts.start.is_multiple_of(columns)).then(|| posts.start - 1);
+        let east = Some(posts.end).filter(|end| !end.is_multiple_of(columns));
         let south = posts.clone().filter_map(|post| post.checked_sub(columns));
         let north = posts.map(|post| post + columns).filter(|&post| post < heights.len());
         for beside in west.into_iter().chain(east).chain(south).chain(north) {
