@@ -73,23 +73,17 @@ pub fn densify(lattice: &Lattice, times: u32) -> Result<Lattice, LatticeError> {
     let (columns, rows) = (side(lattice.columns()), side(lattice.rows()));
     Lattice::check_memory(columns, rows)?;
     let mut heights = returned_zeros(columns as usize * rows as usize);
-    heights.par_chunks_exact_mut(columns as usize).zip(0..rows).with_max_len(16).for_each(
-        |(heights, row)| {
-            for (height_m, column) in heights.iter_mut().zip(0..columns) {
-                *height_m = height(lattice, Post { column, row }, times);
-            }
-        },
-    );
+    heights.par_chunks_exact_mut(columns as usize).zip(0..rows).for_each(|(heights, row)| {
+        for (height_m, column) in heights.iter_mut().zip(0..columns) {
+            *height_m = height(lattice, Post { column, row }, times);
+        }
+    });
     let cell = lattice.cell() / f64::from(1u32 << times);
     let mut dense = Lattice::new(lattice.origin(), cell, columns, heights)?;
     dense.set_doublings(lattice.doublings() + times);
     if lattice.has_pins() {
-        let in_row = |row: u32| {
-            let posts = (0..columns).map(|column| Post { column, row });
-            posts.filter(|&post| is_pinned(lattice, post, times)).collect()
-        };
-        let pinned: Vec<Vec<Post>> = (0..rows).into_par_iter().map(in_row).collect();
-        for post in pinned.into_iter().flatten() {
+        let posts = (0..rows).flat_map(|row| (0..columns).map(move |column| Post { column, row }));
+        for post in posts.filter(|&post| is_pinned(lattice, post, times)) {
             dense.pin(post, dense.height(post));
         }
     }
