@@ -28,8 +28,6 @@ mod pbf;
 mod protobuf;
 mod xml;
 
-use rayon::prelude::*;
-
 use crate::builder::{FeatureParts, LayerBuilder, position};
 use crate::error::{VectorError, shorten};
 use crate::feature::{Properties, VectorLayer};
@@ -198,12 +196,10 @@ impl OsmLayer {
 
     fn add_lines(self, data: &OsmData, layer: &mut LayerBuilder) {
         let (mut cut, mut outside) = (RecordTally::new(), RecordTally::new());
-        let ways = data.ways.par_iter().filter(|way| self.holds(data, &way.tags) && !is_area(data, way));
-        let found =
-            ways.map(|way| (way, data.runs(&way.refs), properties(data, &way.tags, "osm_id", way.id)));
-        for (way, OsmRuns { runs, is_whole }, properties) in found.collect::<Vec<_>>() {
+        for way in data.ways.iter().filter(|way| self.holds(data, &way.tags) && !is_area(data, way)) {
             let place = || named_place(data, "way", way.id, &way.tags);
             let mut parts = FeatureParts::default();
+            let OsmRuns { runs, is_whole } = data.runs(&way.refs);
             let lines = runs.into_iter().filter(|run| is_whole || run.len() > 1);
             lines.for_each(|run| parts.add_line(run));
             if !is_whole && parts.is_empty() {
@@ -213,7 +209,7 @@ impl OsmLayer {
             if !is_whole {
                 cut.add(place);
             }
-            layer.add_at(parts, properties, place);
+            layer.add_at(parts, properties(data, &way.tags, "osm_id", way.id), place);
         }
         if let Some(text) = cut.text("way that leaves the extract", "ways that leave the extract") {
             layer.note(format!("{text}: only the parts within it are there, and each is a line of its own"));
@@ -247,21 +243,19 @@ impl OsmLayer {
                 None => open.add(place),
             }
         }
-        let ways = data.ways.par_iter().filter(|way| self.holds(data, &way.tags) && is_area(data, way));
-        let ways: Vec<&OsmWay> = ways.filter(|way| !assembler.replaces(way)).collect();
-        let found = ways
-            .into_par_iter()
-            .map(|way| (way, data.positions(&way.refs), properties(data, &way.tags, "osm_way_id", way.id)));
-        for (way, ring, properties) in found.collect::<Vec<_>>() {
+        for way in data.ways.iter().filter(|way| self.holds(data, &way.tags) && is_area(data, way)) {
+            if assembler.replaces(way) {
+                continue;
+            }
             let place = || named_place(data, "way", way.id, &way.tags);
             // An outline with a gap encloses something else.
-            let Some(ring) = ring else {
+            let Some(ring) = data.positions(&way.refs) else {
                 cut.add(place);
                 continue;
             };
             let mut parts = FeatureParts::default();
             parts.add_polygon([ring]);
-            layer.add_at(parts, properties, place);
+            layer.add_at(parts, properties(data, &way.tags, "osm_way_id", way.id), place);
         }
         layer.note_omitted(
             &open,
