@@ -78,7 +78,8 @@ pub fn level_of_portions<R: Fn(usize) -> Vec<GroundPost>>(
     let size = sizes[sizes.len() - 1];
     let (columns, rows) = (size.columns as usize, size.rows as usize);
     let mut posts: Vec<GroundPost> = bytemuck::zeroed_vec(columns * rows);
-    posts.par_chunks_mut(PORTION * columns).enumerate().for_each(|(at, posts)| {
+    // A thread that is done takes the next portion, one at a time.
+    posts.par_chunks_mut(PORTION * columns).with_max_len(1).enumerate().for_each(|(at, posts)| {
         let wanted = at * PORTION..((at + 1) * PORTION).min(rows);
         let finer = sizes.iter().rev().skip(1);
         let row = portion(finer.fold(wanted.clone(), |rows, finer| finer_rows(&rows, *finer)));
@@ -149,9 +150,15 @@ fn rows_of<'a>(
 /// Every second post of a row, smoothed along it.
 fn halved_row(row: &[GroundPost], count: usize) -> Vec<GroundPost> {
     let at = |index: usize| &row[index.min(row.len() - 1)];
-    (0..count)
-        .map(|index| smoothed([at((2 * index).saturating_sub(1)), at(2 * index), at(2 * index + 1)]))
-        .collect()
+    let post = |index: usize| smoothed([at((2 * index).saturating_sub(1)), at(2 * index), at(2 * index + 1)]);
+    // Between the borders each post has its two neighbors.
+    let inner = row.len().saturating_sub(2) / 2;
+    let mut halved = Vec::with_capacity(count);
+    halved.extend((0..count.min(1)).map(post));
+    let neighbors = row.get(1..).unwrap_or_default().windows(3).step_by(2);
+    halved.extend(neighbors.take(inner).map(|posts| smoothed([&posts[0], &posts[1], &posts[2]])));
+    halved.extend((halved.len()..count).map(post));
+    halved
 }
 
 /// A post smoothed with its neighbors.

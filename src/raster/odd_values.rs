@@ -143,19 +143,21 @@ impl OddValues {
             samples: 0,
             ..self.clone()
         };
-        let counted: Vec<Self> = values.par_chunks(TOGETHER).map(|few| none.clone().counted(few)).collect();
+        let counted: Vec<Self> =
+            values.par_chunks(TOGETHER).with_max_len(4).map(|few| none.clone().counted(few)).collect();
         counted.into_iter().for_each(|few| self.join(few));
     }
 
     fn counted<T: SampleFloat>(mut self, values: &[T]) -> Self {
         self.samples = values.len() as u64;
         for few in values.chunks(PLAIN_TOGETHER) {
-            let plain = vectorized(
+            let range = vectorized(
                 #[inline(always)]
-                || plain_range(few),
+                || range(few),
             );
-            if let Some((low, high)) = plain {
-                (self.low, self.high) = (self.low.min(low.into()), self.high.max(high.into()));
+            let range = range.map(|(low, high)| (low.into(), high.into()));
+            if let Some((low, high)) = range.filter(|range| self.are_plain(*range)) {
+                (self.low, self.high) = (self.low.min(low), self.high.max(high));
                 continue;
             }
             for &value in few {
@@ -168,6 +170,16 @@ impl OddValues {
             }
         }
         self
+    }
+
+    /// Whether all values from `low` to `high` are plain: of ground, and near no usual one.
+    fn are_plain(&self, (low, high): (f64, f64)) -> bool {
+        if low > PLAIN.0 && high < PLAIN.1 {
+            return true;
+        }
+        let after = self.near_usual.partition_point(|near| near.high < low);
+        let is_far = self.near_usual.get(after).is_none_or(|near| near.low > high);
+        is_far && low > self.ground.0 && high < self.ground.1
     }
 
     fn add_odd(&mut self, value: f64) {
@@ -256,13 +268,13 @@ fn tenths(value: f64) -> f64 {
     (value * 10.0).round() / 10.0 + 0.0
 }
 
-/// The least and the greatest of some values; `None` where one is not [`PLAIN`], or there is none.
+/// The least and the greatest of some values; `None` where one is NaN, or there is none.
 #[inline(always)]
-fn plain_range<T: SampleFloat>(values: &[T]) -> Option<(T, T)> {
+fn range<T: SampleFloat>(values: &[T]) -> Option<(T, T)> {
     /// Values that a processor compares at once.
     const LANES: usize = 8;
-    let (least, most) = (T::from_f64(PLAIN.0), T::from_f64(PLAIN.1));
-    if !values.iter().fold(true, |all, &value| all & (value > least) & (value < most)) {
+    #[expect(clippy::eq_op, reason = "a NaN is the value that is not itself")]
+    if !values.iter().fold(true, |all, &value| all & (value == value)) {
         return None;
     }
     let (mut low, mut high) = ([*values.first()?; LANES], [*values.first()?; LANES]);

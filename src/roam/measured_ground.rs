@@ -9,6 +9,7 @@ use crate::culling::{PatchHeights, patches_in_view};
 use crate::displayed::DisplayedTerrain;
 use crate::emit::world::drawn_posts;
 use crate::errors::ErrorMap;
+use crate::errors::coarse::CoarseErrors;
 use crate::graph::Vertex;
 use crate::layout::PatchLayout;
 use crate::patched_ground::PatchedGround;
@@ -18,8 +19,8 @@ use sandtable_terrain::lattice::Lattice;
 use sandtable_view::camera::Camera;
 use sandtable_view::frustum::Frustum;
 
-/// The most posts whose errors are kept from picture to picture: 32 MiB. Those of the largest ground take as much memory as
-/// its heights, and a few tenths of a second to measure.
+/// The most posts whose errors are kept from picture to picture: 32 MiB. Those of the largest ground would take as much memory as
+/// its heights; a picture takes a quarter of that, and a tenth of a second to measure them.
 const MOST_KEPT: usize = 1 << 23;
 
 /// A displayed lattice, the patches over it, and measures of both.
@@ -131,7 +132,7 @@ impl MeasuredGround {
     /// eight million posts are not kept, unless [`Self::exact`] has them already.
     pub fn displayed_to(&self, camera: &Camera, tolerance_px: f32) -> DisplayedTerrain {
         if self.exact.get().is_none() && self.lattice.heights().len() > MOST_KEPT {
-            let errors = ErrorMap::exact(&self.lattice, &self.layout);
+            let errors = CoarseErrors::new(&self.lattice, &self.layout);
             let criterion = ScreenError::new(self.patched(), &errors, self.heights(), camera, tolerance_px);
             return self.displayed(&criterion, self.in_view(camera));
         }

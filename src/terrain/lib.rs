@@ -9,6 +9,7 @@ pub mod lattice;
 mod lattice_cut;
 mod level_regions;
 pub mod light;
+mod low_regions;
 pub mod neighbors;
 pub mod post_rect;
 pub mod profile;

@@ -43,7 +43,7 @@ pub fn without_terraces(
     let (columns, rows) = (lattice.columns() as usize, lattice.rows() as usize);
     let lowest = lattice.height_range().0;
     let mut heights: Vec<f32> = vec![0.0; lattice.heights().len()];
-    heights.par_chunks_mut(TILE_ROWS * columns).enumerate().for_each(|(band, smooth)| {
+    heights.par_chunks_mut(TILE_ROWS * columns).with_max_len(1).enumerate().for_each(|(band, smooth)| {
         let first = band * TILE_ROWS;
         smooth_band(lattice, lowest, first..(first + TILE_ROWS).min(rows), step_m, is_fixed, smooth);
     });

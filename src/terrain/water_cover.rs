@@ -18,6 +18,7 @@ use rayon::prelude::*;
 
 use crate::lattice::Lattice;
 use crate::level_regions::large_region_posts;
+use crate::low_regions::{LowGround, LowRegion};
 use crate::returned_memory::returned_capacity;
 use crate::terraces::are_whole;
 
@@ -133,8 +134,6 @@ pub fn water_cover(lattice: &Lattice, rules: &WaterRules) -> WaterCover {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum PostState {
     New,
-    /// Of ground below 0 m.
-    Low,
     /// Of a few posts below 0 m among zeros.
     Pit,
     /// A pit in a region of zeros that was found.
@@ -151,7 +150,7 @@ impl PostState {
 
     /// Whether a search for water has not found the post yet.
     fn is_open(self) -> bool {
-        matches!(self, Self::New | Self::Low | Self::Pit)
+        matches!(self, Self::New | Self::Pit)
     }
 
     /// The state of an open post that a search for water has found.
@@ -167,10 +166,9 @@ struct WaterSearch<'a> {
     posts: Vec<u32>,
 }
 
-/// How many posts beside a region lie at its level, higher and lower.
+/// How many posts beside a region lie higher and lower.
 #[derive(Clone, Copy, Debug, Default)]
 struct RegionSides {
-    even: usize,
     higher: usize,
     lower: usize,
     /// Of those that are higher, those far above.
@@ -188,11 +186,6 @@ impl RegionSides {
     /// Whether `posts` level posts with these sides are a lake.
     fn is_lake(&self, posts: usize) -> bool {
         posts >= LEAST_POSTS && self.lower as f64 <= MOST_LOWER * (self.lower + self.higher) as f64
-    }
-
-    /// Whether `posts` posts below 0 m with these sides are noise among zeros.
-    fn is_pit(&self, posts: usize) -> bool {
-        posts < LEAST_POSTS && self.even >= self.higher
     }
 }
 
@@ -219,27 +212,19 @@ impl WaterSearch<'_> {
         count
     }
 
-    /// Parts the ground below 0 m into pits and low ground, which is counted; that at the border first.
+    /// Parts the ground below 0 m into pits and low ground, which is counted.
     fn sort_low_ground(&mut self, cover: &mut WaterCover) {
-        let is_low = |height: f32| height <= -LEVEL_M;
-        let columns = self.lattice.columns() as usize;
-        let rows =
-            rows_where(self.lattice, |row| row.iter().fold(false, |any, &height| any | is_low(height)));
-        let inner = rows.into_iter().flat_map(|row| row * columns..(row + 1) * columns);
-        let at_border = self.border().map(|index| (index, true));
-        for (index, is_open) in at_border.chain(inner.map(|index| (index, false))) {
-            if !is_low(self.lattice.heights()[index]) || self.state[index] != PostState::New {
-                continue;
-            }
-            let sides = self.find(index, 0.0, |height, _| is_low(height), |_| PostState::Low);
-            let posts = self.posts.len();
-            if sides.is_pit(posts) {
-                self.posts.iter().for_each(|&index| self.state[index as usize] = PostState::Pit);
-            } else if posts >= LEAST_POSTS {
-                cover.low_posts += posts;
-                cover.open_low_posts += if is_open { posts } else { 0 };
-            }
+        let low = LowGround { level_m: LEVEL_M, least: LEAST_POSTS };
+        let regions = low.regions(self.lattice.heights(), self.lattice.columns() as usize);
+        for LowRegion { posts, is_at_border, .. } in
+            regions.iter().filter(|region| region.posts >= LEAST_POSTS)
+        {
+            cover.low_posts += posts;
+            cover.open_low_posts += if *is_at_border { *posts } else { 0 };
         }
+        // A few posts that lie beside zeros at least as often as beside land are noise among these.
+        let is_pit = |region: &LowRegion| region.posts < LEAST_POSTS && region.even >= region.higher;
+        regions.posts_of(is_pit).for_each(|posts| self.state[posts].fill(PostState::Pit));
     }
 
     /// Marks the sea without a stated level as water; the number of its posts.
@@ -308,13 +293,10 @@ impl WaterSearch<'_> {
                         state[next] = found(before);
                         posts.push(next as u32);
                     }
-                } else if (height - level).abs() < LEVEL_M {
-                    sides.even += 1;
-                } else if height > level {
-                    sides.higher += 1;
+                } else if (height - level).abs() >= LEVEL_M {
+                    sides.higher += usize::from(height > level);
                     sides.walls += usize::from(height > wall);
-                } else if height < level {
-                    sides.lower += 1;
+                    sides.lower += usize::from(height < level);
                 }
             };
             if column + 1 < columns {

@@ -138,7 +138,10 @@ macro_rules! words {
                     before = before.wrapping_add(sum(plane, bands, band));
                 }
                 if bands == 1 {
-                    for (at, word) in words.iter_mut().enumerate().take(plane) {
+                    // Of one length, so that none is tested at every sample.
+                    let count = plane.min(words.len());
+                    let (words, planes) = (&mut words[..count], planes.map(|plane| &plane[..count]));
+                    for (at, word) in words.iter_mut().enumerate() {
                         for (sum, plane) in sums.iter_mut().zip(planes) {
                             *sum = sum.wrapping_add(plane[at]);
                         }

@@ -27,6 +27,8 @@ pub struct GroundShader<'a> {
     /// The place of the map's world space in that of the noise, which goes on from map to map.
     noise_origin: Vec2,
     posts_per_meter: Vec2,
+    /// The last column and row.
+    last: Vec2,
     coarser: Vec<GroundLevel>,
     /// Made when the first ray asks for them: most pictures mirror no relief.
     tops: OnceLock<GroundTops>,
@@ -62,6 +64,7 @@ impl<'a> GroundShader<'a> {
             map,
             noise_origin: Vec2::ZERO,
             posts_per_meter: map.cell.recip(),
+            last: Vec2::new((map.columns - 1) as f32, (map.rows - 1) as f32),
             coarser,
             tops: OnceLock::new(),
             draped,
@@ -181,7 +184,8 @@ impl<'a> GroundShader<'a> {
         let [right, down] = [hit.right.truncate(), hit.down.truncate()];
         let footprint = TexelFootprint::new(right, down, self.posts_per_meter, most_taps);
         let level = footprint.level.min(self.coarser.len() as f32);
-        let (finer, part) = (level as usize, level - (level as usize) as f32);
+        let finer = level as u32;
+        let (finer, part) = (finer as usize, level - finer as f32);
         let share = 1.0 / footprint.taps as f32;
         let mut point = GroundPoint::default();
         for offset in footprint.offsets() {
@@ -259,9 +263,8 @@ impl<'a> GroundShader<'a> {
             None => (PostCount::from_map(self.map), self.map.posts.as_slice()),
         };
         let (columns, rows) = (size.columns as usize, size.rows as usize);
-        let scale = 1.0 / (1u64 << level) as f32;
-        let last = Vec2::new((self.map.columns - 1) as f32, (self.map.rows - 1) as f32);
-        let grid = ((at - self.map.origin) * self.posts_per_meter).clamp(Vec2::ZERO, last) * scale;
+        let scale = halved(level as u32);
+        let grid = ((at - self.map.origin) * self.posts_per_meter).clamp(Vec2::ZERO, self.last) * scale;
         let (column, x) = split(grid.x, columns);
         let (row, y) = split(grid.y, rows);
         let east = usize::from(columns > 1);
@@ -328,9 +331,16 @@ fn change(gradient: Vec2, hit: &FacePoint) -> f32 {
     Vec2::new(gradient.dot(hit.right.truncate()), gradient.dot(hit.down.truncate())).length()
 }
 
+/// The cell of a coordinate among `count` posts, and the place in it. By way of 32 bits, to which processors round in one step.
 fn split(coordinate: f32, count: usize) -> (usize, f32) {
-    let cell = (coordinate as usize).min(count.saturating_sub(2));
-    (cell, coordinate - cell as f32)
+    let cell = (coordinate as u32).min((count as u32).saturating_sub(2));
+    (cell as usize, coordinate - cell as f32)
+}
+
+/// 1, halved `times` times, at most 32: there are no more levels.
+fn halved(times: u32) -> f32 {
+    const ONE: u32 = 127;
+    f32::from_bits((ONE - times) << 23)
 }
 
 #[cfg(test)]
@@ -367,6 +377,11 @@ mod tests {
 
     fn hit(world: Vec3, pixel_m: f32) -> FacePoint {
         FacePoint { world, distance_m: 1.0, right: Vec3::X * pixel_m, down: Vec3::Y * pixel_m }
+    }
+
+    #[test]
+    fn halves_of_one_are_powers_of_two() {
+        assert!((0..=32).all(|times| halved(times) == 1.0 / (1u64 << times) as f32));
     }
 
     #[test]

@@ -4,6 +4,7 @@ use crate::criterion::Criterion;
 use crate::criterion::lens::Lens;
 use crate::culling::PatchHeights;
 use crate::errors::ErrorMap;
+use crate::errors::coarse::CoarseErrors;
 use crate::graph::Vertex;
 use crate::patched_ground::PatchedGround;
 use crate::spheres::reach;
@@ -19,24 +20,45 @@ use sandtable_view::frustum::Frustum;
 #[derive(Clone, Copy, Debug)]
 pub struct ScreenError<'a> {
     ground: PatchedGround<'a>,
-    errors: &'a ErrorMap,
+    errors: ScreenedErrors<'a>,
     heights: &'a PatchHeights,
     /// `None` for an eye that turns around: nothing is out of view.
     frustum: Option<Frustum>,
     lens: Lens,
 }
 
+/// The errors that a criterion reads.
+#[derive(Clone, Copy, Debug)]
+pub enum ScreenedErrors<'a> {
+    /// All of them, kept from picture to picture.
+    Kept(&'a ErrorMap),
+    /// Those measured for one picture.
+    Coarse(&'a CoarseErrors<'a>),
+}
+
+impl<'a> From<&'a ErrorMap> for ScreenedErrors<'a> {
+    fn from(errors: &'a ErrorMap) -> Self {
+        Self::Kept(errors)
+    }
+}
+
+impl<'a> From<&'a CoarseErrors<'a>> for ScreenedErrors<'a> {
+    fn from(errors: &'a CoarseErrors<'a>) -> Self {
+        Self::Coarse(errors)
+    }
+}
+
 impl<'a> ScreenError<'a> {
     /// The criterion for one camera.
     pub fn new(
         ground: PatchedGround<'a>,
-        errors: &'a ErrorMap,
+        errors: impl Into<ScreenedErrors<'a>>,
         heights: &'a PatchHeights,
         camera: &Camera,
         tolerance_px: f32,
     ) -> Self {
         let lens = Lens::with_scale(camera, reach(camera, tolerance_px));
-        Self { ground, errors, heights, frustum: Some(Frustum::new(camera)), lens }
+        Self { ground, errors: errors.into(), heights, frustum: Some(Frustum::new(camera)), lens }
     }
 
     /// This criterion for an eye that turns around where the camera is.
@@ -47,7 +69,10 @@ impl<'a> ScreenError<'a> {
 
 impl Criterion for ScreenError<'_> {
     fn excess(&self, vertex: Vertex) -> f32 {
-        let error = self.errors.at(self.ground.layout, vertex);
+        let error = match self.errors {
+            ScreenedErrors::Kept(errors) => errors.at(self.ground.layout, vertex),
+            ScreenedErrors::Coarse(errors) => errors.at(vertex),
+        };
         if error == 0.0 {
             return 0.0;
         }

@@ -24,6 +24,7 @@ use crate::errors::plane::PostPlane;
 use crate::errors::rows::{RowSpan, RowSpans};
 use crate::errors::scan::{Hypotenuse, PostTriangle, Worst, larger, largest};
 use crate::errors::survey::TileSurvey;
+use crate::errors::sweep::SweepSource;
 use crate::graph::Vertex;
 use crate::layout::PatchLayout;
 use sandtable_terrain::lattice::{Lattice, Post};
@@ -42,8 +43,23 @@ const STRIP_ROWS: i32 = 64;
 impl ErrorMap {
     /// The exact errors of `lattice`; in parallel, the same for any number of threads.
     pub fn exact(lattice: &Lattice, layout: &PatchLayout) -> Self {
-        Self::raised(own_errors(lattice, layout), layout)
+        Self { errors: raised_errors(lattice, layout, 1) }
     }
+}
+
+/// The errors of [`ErrorMap::exact`] in every `every`-th column and row, 1 or 2.
+pub(super) fn raised_errors(lattice: &Lattice, layout: &PatchLayout, every: usize) -> Vec<f32> {
+    let counted = |count: usize| (count - 1) / every + 1;
+    let (columns, rows) = (counted(layout.columns()), counted(layout.rows()));
+    if layout.patch() > 2 * NEAR_STEP {
+        let errors = ErrorMap::raised(own_errors(lattice, layout), layout).errors;
+        let rows = errors.chunks_exact(layout.columns()).step_by(every);
+        return rows.flat_map(|row| row.iter().step_by(every).copied()).collect();
+    }
+    let measured = MeasuredLattice { lattice, layout, survey: TileSurvey::new(lattice) };
+    let mut errors = vec![0f32; columns * rows];
+    SweepSource::sweep_made(layout, |south, own| measured.rows(south, own), every, &mut errors);
+    errors
 }
 
 /// Every vertex's [`own_error`], in the order of [`PatchLayout::index`]; 0 at patch corners, which split nothing.
@@ -139,6 +155,14 @@ struct MeasuredLattice<'a> {
 }
 
 impl<'a> MeasuredLattice<'a> {
+    /// Measures the vertices up to [`NEAR_STEP`] of the rows of `errors`, which start at row `south`, a multiple of the steps that
+    /// blocks are measured by.
+    fn rows(&self, south: usize, errors: &mut [f32]) {
+        for (band, errors) in errors.chunks_mut(BLOCK_ROWS * self.layout.columns()).enumerate() {
+            self.band((south + band * BLOCK_ROWS) as i32, errors);
+        }
+    }
+
     /// Measures the vertices up to [`NEAR_STEP`] of the rows of `errors`, which start at row `south`.
     fn band(&self, south: i32, errors: &mut [f32]) {
         let columns = self.layout.columns();
@@ -431,6 +455,24 @@ mod tests {
                     let general = general_error(&lattice, &layout, vertex);
                     let same = error == general || (error - general).abs() < 28.0 * 1e-6;
                     prop_assert!(same, "{:?}: {} and {}", vertex, error, general);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn errors_raised_while_they_are_measured_are_those_raised_after() {
+        for (columns, rows, patch) in
+            [(70, 700, 64), (131, 521, 32), (40, 300, 4), (300, 37, 2), (90, 600, 128)]
+        {
+            for spots in [&[][..], &[(7, 260), (33, 255), (12, 9), (60, 511)]] {
+                let lattice = spoilt(columns, rows, spots);
+                let layout = PatchLayout::new(columns, rows, patch).expect("sound");
+                let after = ErrorMap::raised(own_errors(&lattice, &layout), &layout);
+                for threads in [1, 3] {
+                    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+                    let found = pool.install(|| ErrorMap::exact(&lattice, &layout));
+                    assert!(found == after, "{columns} × {rows} in patches of {patch}, {threads} threads");
                 }
             }
         }

@@ -9,6 +9,7 @@
 //!
 //! `sweep` raises errors to those of the children.
 
+pub mod coarse;
 pub mod exact;
 pub mod midpoint;
 pub mod near;

@@ -86,8 +86,8 @@ pub struct BlockPosts {
 }
 
 impl BlockPosts {
-    /// The posts of the block of `rows` rows and [`BLOCK_COLUMNS`] columns from vertex `first` on, which lies on a
-    /// multiple of [`PERIOD`] both ways, and those around it. Posts beyond the lattice's borders repeat those on
+    /// The posts of the block of `rows` rows and [`BLOCK_COLUMNS`] columns from vertex `first` on, whose column is a
+    /// multiple of [`PERIOD`], and those around it. Posts beyond the lattice's borders repeat those on
     /// them.
     pub fn new(heights: &[f32], columns: usize, first: Vertex, rows: usize) -> Self {
         let last_row = heights.len() / columns - 1;

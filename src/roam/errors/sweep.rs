@@ -48,11 +48,17 @@ const BAND_LEVELS: u32 = 3;
 /// Rows of a band at least, so that the rows it starts early are few beside its own.
 const BAND_ROWS: usize = 64;
 
+/// Rows of a band at most whose values are made when it is swept: few enough that they are still in the cache then, and many
+/// beside those that it starts early.
+const MADE_ROWS: usize = 256;
+
 /// A lattice of values, one error a cell of it, and where errors go.
 #[derive(Clone, Copy)]
 pub struct SweepSource<'a> {
     /// Heights or own errors, row by row.
     values: &'a [f32],
+    /// The row of the first of them.
+    first_row: usize,
     /// The largest error below each cell; none on the finest level.
     cells: Option<&'a [f32]>,
     columns: usize,
@@ -69,7 +75,7 @@ impl<'a> SweepSource<'a> {
     pub fn new(values: &'a [f32], layout: &PatchLayout) -> Self {
         assert_eq!(values.len(), layout.vertex_count(), "one value a vertex");
         let (columns, rows) = (layout.columns(), layout.rows());
-        Self { values, cells: None, columns, rows, patch: layout.patch() as usize }
+        Self { values, first_row: 0, cells: None, columns, rows, patch: layout.patch() as usize }
     }
 
     /// Writes every vertex's error, 0 at the patch corners. In parallel, the same for any number of threads.
@@ -77,12 +83,11 @@ impl<'a> SweepSource<'a> {
     /// Returns `false`, and leaves `out` meaningless, where a value is NaN and the measure allows none.
     #[must_use]
     pub fn sweep<M: OwnError>(&self, out: &mut [f32]) -> bool {
-        let levels = self.patch.ilog2().min(BAND_LEVELS);
+        let levels = self.band_levels();
         let side = 1usize << levels;
-        let (columns, rows) = ((self.columns - 1) / side, (self.rows - 1) / side);
-        let mut values = vec![0f32; (columns + 1) * (rows + 1)];
+        let (columns, rows) = self.coarse_cells(side);
         let mut cells = vec![0f32; columns * rows];
-        let mut bands = self.bands(side, out, &mut cells);
+        let mut bands = self.bands(side, usize::MAX, (1, &mut *out), &mut cells);
         let sound = match bands.as_mut_slice() {
             [only] => only.sweep::<M>(levels),
             many => many.par_iter_mut().map(|band| band.sweep::<M>(levels)).reduce(|| true, |a, b| a && b),
@@ -90,40 +95,129 @@ impl<'a> SweepSource<'a> {
         if side == self.patch || !sound {
             return sound;
         }
+        let mut values = vec![0f32; (columns + 1) * (rows + 1)];
         let from_rows = self.values.chunks_exact(self.columns).step_by(side);
         for (coarse, fine) in values.chunks_exact_mut(columns + 1).zip(from_rows) {
-            coarse.iter_mut().zip(fine.iter().step_by(side)).for_each(|(coarse, fine)| *coarse = *fine);
+            copy_every(side, fine, coarse);
         }
+        self.sweep_coarse::<M>((&values, &cells), side, (1, out))
+    }
+
+    /// Writes the errors of the vertices of a layout in every `every`-th column and row, 1 or 2, from the own ones of all: `own` writes
+    /// these, row by row from a row on that is a multiple
+    /// of 8, or of the patch, into zeros. No more of them are held than those of a few rows for each thread; those of some rows are
+    /// made twice. In parallel, the same for any number of threads.
+    pub fn sweep_made(
+        layout: &PatchLayout,
+        own: impl Fn(usize, &mut [f32]) + Sync,
+        every: usize,
+        out: &mut [f32],
+    ) {
+        let (columns, rows) = (layout.columns(), layout.rows());
+        let source = SweepSource {
+            values: &[],
+            first_row: 0,
+            cells: None,
+            columns,
+            rows,
+            patch: layout.patch() as usize,
+        };
+        let levels = source.band_levels();
+        let side = 1usize << levels;
+        let (coarse_columns, coarse_rows) = source.coarse_cells(side);
+        let mut cells = vec![0f32; coarse_columns * coarse_rows];
+        let mut values = vec![0f32; (coarse_columns + 1) * (coarse_rows + 1)];
+        let bands = source.bands(side, MADE_ROWS, (every, &mut *out), &mut cells);
+        let mut rest = values.as_mut_slice();
+        let mut coarse = Vec::with_capacity(bands.len());
+        for band in &bands {
+            let (own, others) =
+                std::mem::take(&mut rest).split_at_mut(band.rows.div_ceil(side) * (coarse_columns + 1));
+            coarse.push(own);
+            rest = others;
+        }
+        bands.into_par_iter().zip(coarse).with_max_len(1).for_each(|(band, coarse)| {
+            let SweepReach { south, north } = band.reach(levels);
+            let mut values = vec![0f32; (north + 1 - south) * columns];
+            own(south, &mut values);
+            let kept = values[(band.first - south) * columns..].chunks_exact(columns).step_by(side);
+            for (coarse, fine) in coarse.chunks_exact_mut(coarse_columns + 1).zip(kept) {
+                copy_every(side, fine, coarse);
+            }
+            let source = SweepSource { values: &values, first_row: south, ..band.source };
+            let mut all = vec![0f32; if every == 1 { 0 } else { band.rows * columns }];
+            let SweepBand { first, rows, out, cells, .. } = band;
+            let written = if every == 1 { &mut *out } else { &mut all };
+            let sound = SweepBand { source, first, rows, out: written, cells }.sweep::<KnownErrors>(levels);
+            debug_assert!(sound, "own errors are taken as they are");
+            let kept = all.chunks_exact(columns).step_by(every);
+            for (out, all) in out.chunks_exact_mut((columns - 1) / every + 1).zip(kept) {
+                copy_every(every, all, out);
+            }
+        });
+        if side < source.patch {
+            let sound = source.sweep_coarse::<KnownErrors>((&values, &cells), side, (every, out));
+            debug_assert!(sound, "own errors are taken as they are");
+        }
+    }
+
+    /// Levels that bands sweep.
+    fn band_levels(&self) -> u32 {
+        self.patch.ilog2().min(BAND_LEVELS)
+    }
+
+    /// Columns and rows of cells of `side`.
+    fn coarse_cells(&self, side: usize) -> (usize, usize) {
+        ((self.columns - 1) / side, (self.rows - 1) / side)
+    }
+
+    /// Sweeps the levels coarser than those of bands: `values` are those of every vertex on a multiple of `side`, `cells` the errors
+    /// below each cell between them; `out` holds every `every`-th column and row.
+    fn sweep_coarse<M: OwnError>(
+        &self,
+        (values, cells): (&[f32], &[f32]),
+        side: usize,
+        (every, out): (usize, &mut [f32]),
+    ) -> bool {
+        let (columns, rows) = self.coarse_cells(side);
         let patch = self.patch / side;
-        let source =
-            SweepSource { values: &values, cells: Some(&cells), columns: columns + 1, rows: rows + 1, patch };
+        let (columns, rows) = (columns + 1, rows + 1);
+        let source = SweepSource { values, first_row: 0, cells: Some(cells), columns, rows, patch };
         let mut errors = vec![0f32; values.len()];
         let sound = source.sweep::<M>(&mut errors);
-        let to_rows = out.chunks_exact_mut(self.columns).step_by(side);
-        for (coarse, fine) in errors.chunks_exact(columns + 1).zip(to_rows) {
-            coarse.iter().zip(fine.iter_mut().step_by(side)).for_each(|(coarse, fine)| *fine = *coarse);
+        let step = side / every;
+        let to_rows = out.chunks_exact_mut((self.columns - 1) / every + 1).step_by(step);
+        for (coarse, fine) in errors.chunks_exact(columns).zip(to_rows) {
+            coarse.iter().zip(fine.iter_mut().step_by(step)).for_each(|(coarse, fine)| *fine = *coarse);
         }
         sound
     }
 
-    /// Bands of rows, each a multiple of `side`, the last with one row more.
-    fn bands<'b>(&self, side: usize, mut out: &'b mut [f32], mut cells: &'b mut [f32]) -> Vec<SweepBand<'b>>
+    /// Bands of rows, each a multiple of `side` and at most about `most`, the last with one row more; `out` holds every `every`-th
+    /// column and row.
+    fn bands<'b>(
+        &self,
+        side: usize,
+        most: usize,
+        (every, mut out): (usize, &'b mut [f32]),
+        mut cells: &'b mut [f32],
+    ) -> Vec<SweepBand<'b>>
     where
         'a: 'b,
     {
         let threads = rayon::current_num_threads();
-        let height = if threads == 1 {
-            self.rows
-        } else {
-            ((self.rows - 1).div_ceil(threads * 4)).max(BAND_ROWS).next_multiple_of(side)
+        let height = match threads {
+            1 => self.rows,
+            _ => ((self.rows - 1).div_ceil(threads * 4)).max(BAND_ROWS),
         };
+        let height = height.min(most).next_multiple_of(side);
         let mut bands = Vec::new();
         let mut first = 0;
         while first + 1 < self.rows {
             let rest = self.rows - first;
             // The last row alone is no band.
             let rows = if rest <= height + 1 { rest } else { height };
-            let (own, others) = out.split_at_mut(rows * self.columns);
+            let (own, others) = out.split_at_mut(rows.div_ceil(every) * ((self.columns - 1) / every + 1));
             let (own_cells, other_cells) = cells.split_at_mut(rows / side * ((self.columns - 1) / side));
             bands.push(SweepBand { source: *self, first, rows, out: own, cells: own_cells });
             (out, cells, first) = (others, other_cells, first + rows);
@@ -187,12 +281,17 @@ struct SweepReach {
 }
 
 impl SweepBand<'_> {
-    fn sweep<M: OwnError>(&mut self, levels: u32) -> bool {
+    /// The rows that a sweep of `levels` reads.
+    fn reach(&self, levels: u32) -> SweepReach {
         // The ends of the reach give wrong values within the coarsest square beside them.
         let early = 1usize << levels;
         let south = self.first.saturating_sub(early);
         let north = (self.first + self.rows - 1).next_multiple_of(early) + early;
-        let reach = SweepReach { south, north: north.min(self.source.rows - 1) };
+        SweepReach { south, north: north.min(self.source.rows - 1) }
+    }
+
+    fn sweep<M: OwnError>(&mut self, levels: u32) -> bool {
+        let reach = self.reach(levels);
         let mut stages: Vec<SweepLevel> =
             (0..=levels).map(|level| SweepLevel::new(((self.source.columns - 1) >> level) + 1)).collect();
         for pair in 0..(reach.north - reach.south) / 2 {
@@ -209,7 +308,7 @@ impl SweepBand<'_> {
     fn has_hole(&self, reach: SweepReach, pair: usize) -> bool {
         let columns = self.source.columns;
         let rows = if pair == 0 { 0..3 } else { 2 * pair + 1..2 * pair + 3 };
-        let values = &self.source.values[(reach.south + rows.start) * columns..];
+        let values = &self.source.values[(reach.south - self.source.first_row + rows.start) * columns..];
         values[..rows.len() * columns].iter().fold(false, |hole, value| hole | value.is_nan())
     }
 
@@ -235,7 +334,9 @@ impl SweepBand<'_> {
         let SweepLevel { rows, cells, odds, mid_evens, low_east, high_east, north, center, around, zeros } =
             here;
         let row = |index: usize| match level {
-            0 => &source.values[(reach.south + index) * source.columns..][..source.columns],
+            0 => {
+                &source.values[(reach.south - source.first_row + index) * source.columns..][..source.columns]
+            }
             _ => rows[index % 4].as_slice(),
         };
         let raised = level > 0 || source.cells.is_some();
@@ -327,6 +428,11 @@ impl SweepBand<'_> {
             cells[..width].copy_from_slice(center);
         }
     }
+}
+
+/// Copies every `side`-th value of a row.
+fn copy_every(side: usize, fine: &[f32], coarse: &mut [f32]) {
+    coarse.iter_mut().zip(fine.iter().step_by(side)).for_each(|(coarse, fine)| *coarse = *fine);
 }
 
 /// A row's values at even places, of which there is one more, and at odd ones.

@@ -83,30 +83,34 @@ impl<'a> CoarseField<'a> {
 
     /// The field at every `by`-th of its values, each reduced from those around it.
     pub fn reduced<R: Reduction>(&self, by: usize, reduction: &R) -> CoarseField<'static> {
+        /// Rows that a thread takes at a time.
+        const ROWS_AT_ONCE: usize = 32;
         let [columns, rows] = [self.columns, self.rows].map(|count| (count - 1).div_ceil(by) + 1);
         let mut values = returned_zeros(columns * rows);
-        values.par_chunks_exact_mut(columns).enumerate().for_each(|(row, values)| {
-            let mut sums = vec![R::NONE; self.columns];
-            for (from, north) in around::<R>(row, by, self.rows) {
-                vectorized(
-                    #[inline(always)]
-                    || add_line(reduction, &mut sums, self.line(from), north),
-                );
-            }
-            let joined = |column: usize| {
-                around::<R>(column, by, self.columns)
-                    .fold(R::NONE, |sum, (from, east)| reduction.join(sum, sums[from], east))
-            };
-            // Between the borders as many columns count to each value.
-            let before = R::before(by);
-            let inner = 1..self.columns.saturating_sub(by / 2).div_ceil(by).clamp(1, columns);
-            for column in (0..inner.start).chain(inner.end..columns) {
-                values[column] = reduction.value(joined(column));
-            }
-            if !inner.is_empty() {
-                join_columns(reduction, &mut values[inner], &sums[by - before..], (by, before));
-            }
-        });
+        values.par_chunks_exact_mut(columns).with_max_len(ROWS_AT_ONCE).enumerate().for_each(
+            |(row, values)| {
+                let mut sums = vec![R::NONE; self.columns];
+                for (from, north) in around::<R>(row, by, self.rows) {
+                    vectorized(
+                        #[inline(always)]
+                        || add_line(reduction, &mut sums, self.line(from), north),
+                    );
+                }
+                let joined = |column: usize| {
+                    around::<R>(column, by, self.columns)
+                        .fold(R::NONE, |sum, (from, east)| reduction.join(sum, sums[from], east))
+                };
+                // Between the borders as many columns count to each value.
+                let before = R::before(by);
+                let inner = 1..self.columns.saturating_sub(by / 2).div_ceil(by).clamp(1, columns);
+                for column in (0..inner.start).chain(inner.end..columns) {
+                    values[column] = reduction.value(joined(column));
+                }
+                if !inner.is_empty() {
+                    join_columns(reduction, &mut values[inner], &sums[by - before..], (by, before));
+                }
+            },
+        );
         let cell = self.cell * by as f32;
         CoarseField { columns, rows, every: self.every * by, cell, values: Cow::Owned(values) }
     }

@@ -67,12 +67,13 @@ pub fn visibility(heights: &CoarseField, level: u32) -> CoarseField<'static> {
     }
     let hulls: Vec<CoarseField> = {
         let field = coarser.last().unwrap_or(&finest);
-        DIRECTIONS.par_iter().map(|&direction| hull_sky(field, direction)).collect()
+        DIRECTIONS.par_iter().with_max_len(1).map(|&direction| hull_sky(field, direction)).collect()
     };
     let fields: Vec<&CoarseField> = std::iter::once(&finest).chain(&coarser).collect();
     let columns = finest.columns;
     let mut sky: Vec<f32> = returned_zeros(finest.values.len());
-    sky.par_chunks_mut(PORTION * columns).enumerate().for_each(|(portion, sky)| {
+    // A thread that is done takes the next portion, one at a time.
+    sky.par_chunks_mut(PORTION * columns).with_max_len(1).enumerate().for_each(|(portion, sky)| {
         let first = portion * PORTION;
         let rows = first..first + sky.len() / columns;
         for (&direction, hull) in DIRECTIONS.iter().zip(&hulls) {
@@ -167,7 +168,8 @@ fn hull_sky(heights: &CoarseField, direction: (isize, isize)) -> CoarseField<'st
     let (columns, rows) = (heights.columns as isize, heights.rows as isize);
     let (east, north) = direction;
     let step_m = step_m(heights, direction);
-    let mut open = vec![1.0; heights.values.len()];
+    let values: &[f32] = &heights.values;
+    let mut open = vec![1.0; values.len()];
     let mut hull: Vec<(f32, f32)> = Vec::new();
     for row in 0..rows {
         let begins_here = !(0..rows).contains(&(row - north));
@@ -183,7 +185,7 @@ fn hull_sky(heights: &CoarseField, direction: (isize, isize)) -> CoarseField<'st
             let posts = steps_within(column, east, columns).min(steps_within(row, north, rows));
             for post in 0..posts {
                 let index = ((row + post * north) * columns + column + post * east) as usize;
-                let height = heights.values[index];
+                let height = values[index];
                 if !height.is_nan() {
                     open[index] = open_above(extend_hull(&mut hull, (post as f32 * step_m, height)));
                 }
