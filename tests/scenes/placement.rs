@@ -98,7 +98,7 @@ fn a_picture_of_wide_ground_has_a_ground_map_of_its_pixels() {
         let camera = camera(&scene, &scene.cameras[0], size).expect("sound");
         build_draw_list(&scene, &camera, &|_| ()).list.ground.expect("there is ground").cell.x
     };
-    assert_eq!([1600, 64, 30].map(cell), [10.0, 20.0, 40.0]);
+    assert_eq!([1600, 300, 64, 30].map(cell), [2.5, 10.0, 20.0, 40.0]);
 }
 
 #[test]
