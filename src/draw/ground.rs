@@ -32,6 +32,8 @@ pub struct GroundMap {
     pub posts: Vec<GroundPost>,
     /// How often the cells of the model were halved: its own forms are `2^halvings` of the map's cells wide and wider.
     pub halvings: u32,
+    /// Whether the ground may be shaded as curved between its posts: not where posts lie on planes between others.
+    pub is_curved: bool,
     /// Color by height.
     pub ramp: ColorRamp,
     /// Contour lines; `None` draws none.
@@ -264,6 +266,7 @@ impl GroundMap {
             imagery: None,
             cover: None,
             halvings: 0,
+            is_curved: false,
             form_level: 0,
             z_factor: 1.0,
             shade_gain: ReliefShading::GAIN,
@@ -484,6 +487,7 @@ mod tests {
             imagery: None,
             cover: None,
             halvings: 0,
+            is_curved: false,
             form_level: 0,
             z_factor: 1.0,
             shade_gain: ReliefShading::GAIN,

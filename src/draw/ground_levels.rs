@@ -243,6 +243,7 @@ mod tests {
                 imagery: None,
                 cover: None,
                 halvings: 0,
+                is_curved: false,
                 form_level: 0,
                 z_factor: 1.0,
                 shade_gain: ReliefShading::GAIN,

@@ -11,9 +11,8 @@ use rayon::prelude::*;
 use crate::ground::{GroundMap, GroundPost};
 
 impl GroundMap {
-    /// The map with cells halved `times` times; `is_curved` states whether the ground between its posts may be curved. It is
-    /// not where the posts themselves were laid between others on planes.
-    pub fn with_halved_cells(mut self, times: u32, is_curved: bool) -> Self {
+    /// The map with cells halved `times` times; slopes between its posts are straight where [`Self::is_curved`] is false.
+    pub fn with_halved_cells(mut self, times: u32) -> Self {
         let count = |posts: u32| ((posts - 1) << times) + 1;
         let (columns, rows) = (count(self.columns), count(self.rows));
         let scale = (1u32 << times) as f32;
@@ -28,7 +27,7 @@ impl GroundMap {
                 let (column, x) = place(fine, self.columns);
                 let cell = MapCell::new(&self, column, row);
                 *post = cell.straight(Vec2::new(x, y));
-                if is_curved {
+                if self.is_curved {
                     [post.slope_east, post.slope_north] = cell.curved_slopes(Vec2::new(x, y)).to_array();
                 }
             }
@@ -114,6 +113,7 @@ mod tests {
             cell: Vec2::new(2.0, 4.0),
             z_per_m: 3.0,
             form_level: 2,
+            is_curved: true,
             ..GroundMap::level()
         }
     }
@@ -123,7 +123,7 @@ mod tests {
         let wave = |at: Vec2| libm::sinf(at.x * 1.3) * libm::cosf(at.y * 0.7);
         let coarse = map(wave, |at| Vec2::new(wave(at), -0.5 * wave(at)));
         for (times, is_curved) in [(1, true), (2, true), (3, false)] {
-            let fine = coarse.clone().with_halved_cells(times, is_curved);
+            let fine = GroundMap { is_curved, ..coarse.clone() }.with_halved_cells(times);
             fine.check().expect("sound");
             assert_eq!((fine.halvings, fine.form_level), (times, 2 + times));
             assert_eq!(fine.model_cell_m(), coarse.model_cell_m());
@@ -151,7 +151,7 @@ mod tests {
         let height_m = |at: Vec2| 0.05 * at.x * at.x * at.x - 0.4 * at.x * at.x + 0.3 * at.y * at.y;
         let slopes =
             |at: Vec2| Vec2::new(3.0 * (0.15 * at.x * at.x - 0.8 * at.x) / 2.0, 3.0 * 0.6 * at.y / 4.0);
-        let fine = map(height_m, slopes).with_halved_cells(2, true);
+        let fine = map(height_m, slopes).with_halved_cells(2);
         for (index, post) in (0..).zip(&fine.posts) {
             let at = Vec2::new((index % fine.columns) as f32, (index / fine.columns) as f32) / 4.0;
             let found = Vec2::new(post.slope_east, post.slope_north);
@@ -163,7 +163,7 @@ mod tests {
     fn maps_of_one_post_or_row_stay_sound() {
         for (columns, rows) in [(1, 1), (3, 1), (1, 3), (2, 2)] {
             let posts = vec![GroundPost::default(); (columns * rows) as usize];
-            let fine = GroundMap { columns, rows, posts, ..GroundMap::level() }.with_halved_cells(2, true);
+            let fine = GroundMap { columns, rows, posts, ..GroundMap::level() }.with_halved_cells(2);
             fine.check().expect("sound");
         }
     }

@@ -101,9 +101,10 @@ pub fn ground_map(scene: &SceneModel, GroundMapKey { level, to_sun }: GroundMapK
         shade_gain,
         has_grain: true,
         halvings: 0,
+        // Posts of a densified lattice lie on planes between those of the land.
+        is_curved: lattice.doublings() == 0,
     };
-    // Posts of a densified lattice lie on planes between those of the land.
-    if halvings > 0 { map.with_halved_cells(halvings, lattice.doublings() == 0) } else { map }
+    if halvings > 0 { map.with_halved_cells(halvings) } else { map }
 }
 
 /// The generalized ground keeps forms wider than this share of the extent: about as many as a map of the whole names.

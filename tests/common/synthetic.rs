@@ -171,6 +171,7 @@ fn ground_map() -> GroundMap {
         imagery: None,
         cover: None,
         halvings: 0,
+        is_curved: false,
         form_level: 0,
         z_factor: 1.0,
         shade_gain: ReliefShading::GAIN,

@@ -114,6 +114,7 @@ pub fn map(sections: &mut PageSections, map: &GroundMap) -> Value {
         "shadeGain": map.shade_gain,
         "skyMost": sky_most,
         "hasGrain": map.has_grain,
+        "curvedRise": if map.is_curved && number == 0 { map.z_per_m } else { 0.0 },
     })
 }
 

@@ -109,6 +109,7 @@ pub fn ground_map(side: u32, half_m: f32, contours: bool, height: impl Fn(f32, f
         imagery: None,
         cover: None,
         halvings: 0,
+        is_curved: false,
         form_level: 3,
         z_factor: 1.0,
         shade_gain: ReliefShading::GAIN,

@@ -204,6 +204,7 @@ uniform vec4 ramp_range;    // lowest height, 1 / range, 1 where contours are dr
 uniform vec4 bathymetry[9]; // height, rgb
 uniform vec4 undergrowth, shallow, open_water;
 uniform vec4 cover;         // tree line, snow line, true rise over drawn (0: no cover), 1 where the north is shady
+uniform float curved_rise;  // drawn rise per meter of elevation; 0 where the ground between posts is straight
 uniform vec3 cover_more;    // moisture, cell of the ground in meters, 1 where it has forms too small for that
 uniform vec4 cover_colors[7]; // rgb of luminance 1, factor on the tint's luminance: woods, meadow, scree, rock, snow, crops, soil
 uniform vec4 contour;       // rgb, strength
@@ -232,6 +233,21 @@ Reading height_on(vec2 place, int level) {
   float ne = texelFetch(heights, next, level).r;
   vec2 rise = vec2(mix(se - sw, ne - nw, part.y), mix(nw - sw, ne - se, part.x));
   return Reading(mix(mix(sw, se, part.x), mix(nw, ne, part.x), part.y), rise * grid.zw * vec2(size) / grid_size.xy);
+}
+
+// The slopes of the ground that is curved between posts, as GroundMap::with_halved_cells has them; its bilinear gradient is that
+// of the sides of the cell between opposite ones.
+vec2 curved_slopes(vec2 place, vec2 gradient) {
+  vec2 size = vec2(textureSize(slopes, 0));
+  vec2 at = clamp(place * size - 0.5, vec2(0.0), size - 1.0);
+  vec2 first = min(floor(at), max(size - 2.0, vec2(0.0)));
+  vec2 part = at - first;
+  vec2 low = (first + 0.5) / size;
+  vec2 high = (first + 1.5) / size;
+  vec2 from = vec2(textureLod(slopes, vec2(low.x, place.y), 0.0).x, textureLod(slopes, vec2(place.x, low.y), 0.0).y);
+  vec2 to = vec2(textureLod(slopes, vec2(high.x, place.y), 0.0).x, textureLod(slopes, vec2(place.x, high.y), 0.0).y);
+  vec2 rest = 1.0 - part;
+  return from * rest * (1.0 - 3.0 * part) + to * part * (3.0 * part - 2.0) + 6.0 * part * rest * gradient * curved_rise;
 }
 
 vec3 water_at(float height) {
@@ -468,6 +484,8 @@ void main() {
     reading.gradient = mix(reading.gradient, coarse.gradient, part);
   }
   vec4 post = texture(slopes, place);
+  float wide = clamp(-log2(max(sqrt(across * down), 1e-6)), 0.0, 1.0);
+  if (curved_rise > 0.0 && wide > 0.0) post.xy = mix(post.xy, curved_slopes(place, reading.gradient), wide);
   float sky_share = texture(skies, place).r * sky_most;
   vec2 wet_change = vec2(dFdx(post.w), dFdy(post.w));
   float covered = symbol_cover();
