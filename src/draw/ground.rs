@@ -50,6 +50,8 @@ pub struct GroundMap {
     pub z_factor: f32,
     /// The change of brightness with shade; see [`ReliefShading::shade_gain`].
     pub shade_gain: f32,
+    /// How strongly forms show in the shade; see [`ReliefShading::detail`].
+    pub detail: f32,
     /// Whether it is natural ground, with the grain of [`ground_grain`](crate::ground_grain::ground_grain).
     pub has_grain: bool,
 }
@@ -270,6 +272,7 @@ impl GroundMap {
             form_level: 0,
             z_factor: 1.0,
             shade_gain: ReliefShading::GAIN,
+            detail: ReliefShading::DETAIL,
             has_grain: false,
         }
     }
@@ -491,6 +494,7 @@ mod tests {
             form_level: 0,
             z_factor: 1.0,
             shade_gain: ReliefShading::GAIN,
+            detail: ReliefShading::DETAIL,
             has_grain: false,
         };
         let fault = |map: GroundMap| map.check().expect_err("unsound").to_string();

@@ -247,6 +247,7 @@ mod tests {
                 form_level: 0,
                 z_factor: 1.0,
                 shade_gain: ReliefShading::GAIN,
+                detail: ReliefShading::DETAIL,
                 has_grain: false,
             };
             for (number, step_by_step) in (1..).zip(coarser_levels(&map)) {

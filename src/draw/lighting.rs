@@ -112,7 +112,7 @@ impl Lighting {
 /// ```text
 /// lit = albedo · b · mix(COOL, WARM, clamp(0.5 + 1.2 · (r − s), 0, 1)) · mix(CLOSED, 1, sky visibility)
 /// b = soft(1 + gain · r − GAIN · s) · (1 + MOST · d / (MOST + |d|)),  MOST = MOST_DETAIL
-/// d = DETAIL · max(1 − sun visibility · max(n · to_sun, 0) / to_sun.z, 0) · (n − form) · to_sun
+/// d = detail · max(1 − sun visibility · max(n · to_sun, 0) / to_sun.z, 0) · (n − form) · to_sun
 /// ```
 ///
 /// `d` draws in the shade what the sun draws in the light: how much the normal `n` leans to the sun more than that of the generalized
@@ -140,6 +140,8 @@ pub struct ReliefShading {
     pub shade_gain: f32,
     /// The share of [`Self::FILL`] that shade receives, 0..=1.
     pub fill: f32,
+    /// How strongly forms show in the shade, 0 to [`Self::DETAIL`].
+    pub detail: f32,
 }
 
 /// A place on the ground as relief shading sees it.
@@ -206,6 +208,7 @@ impl ReliefShading {
             sides: [side(Vec2::Y), side(half), side(Vec2::X), side(half * Vec2::new(1.0, -1.0))],
             shade_gain: Self::GAIN,
             fill: 0.0,
+            detail: Self::DETAIL,
         }
     }
 
@@ -239,7 +242,7 @@ impl ReliefShading {
     fn shade_detail(&self, point: &ReliefPoint) -> f32 {
         let lit = point.sun_visibility * point.normal.dot(self.to_sun).max(0.0);
         let shade = (1.0 - lit / self.to_sun.z.max(LEAST_SINE)).max(0.0);
-        let detail = Self::DETAIL * shade * (point.normal - point.form).dot(self.to_sun);
+        let detail = self.detail * shade * (point.normal - point.form).dot(self.to_sun);
         Self::MOST_DETAIL * detail / (Self::MOST_DETAIL + detail.abs())
     }
 

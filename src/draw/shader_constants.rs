@@ -51,7 +51,7 @@ pub fn shader_constants() -> Vec<(&'static str, Vec<f32>)> {
         ("RELIEF_TOE", vec![ReliefShading::TOE]),
         ("RELIEF_SHOULDER", vec![ReliefShading::SHOULDER]),
         ("RELIEF_BRIGHTEST", vec![ReliefShading::BRIGHTEST]),
-        ("RELIEF_DETAIL", vec![ReliefShading::DETAIL, ReliefShading::MOST_DETAIL]),
+        ("RELIEF_MOST_DETAIL", vec![ReliefShading::MOST_DETAIL]),
         ("RELIEF_LEAST_SINE", vec![lighting::LEAST_SINE]),
         ("RELIEF_WARM", vector(ReliefShading::WARM)),
         ("RELIEF_COOL", vector(ReliefShading::COOL)),

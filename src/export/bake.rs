@@ -92,6 +92,7 @@ mod tests {
             form_level: 0,
             z_factor: 1.0,
             shade_gain: ReliefShading::GAIN,
+            detail: ReliefShading::DETAIL,
             has_grain: false,
         }
     }

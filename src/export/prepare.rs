@@ -142,6 +142,7 @@ mod tests {
             form_level: 0,
             z_factor: 1.0,
             shade_gain: ReliefShading::GAIN,
+            detail: ReliefShading::DETAIL,
             has_grain: false,
         };
         let mut list = DrawList { ground: Some(Arc::new(map)), ..DrawList::default() };

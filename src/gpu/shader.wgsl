@@ -45,7 +45,7 @@ struct Frame {
     ground_windows: array<vec4u, 8>, // column and row of the first post, columns, rows
     window_size: vec4u,   // number of windows; rows of the texture for each
     ground_tops: array<vec4u, 24>, // columns and rows of blocks, first texel of all; number of levels (0: no ground)
-    relief: vec4f,        // world Z per meter of elevation
+    relief: vec4f,        // world Z per meter of elevation; how strongly forms show in the shade
     shadows: array<ShadowView, 2>, // of the sun, of the sky
 }
 
@@ -904,8 +904,8 @@ fn relief_lit(albedo: vec3f, post: Post, small: vec2f, at: vec2f, received: vec2
     let shadow = contrast * lost;
     let gain = select(RELIEF_GAIN, frame.sun.w, relief < 0.0);
     let shade_share = max(1.0 - post.visibility.x * received.x * facing_sun(normal) / max(upright, RELIEF_LEAST_SINE), 0.0);
-    let detail = RELIEF_DETAIL.x * shade_share * dot(normal - form, frame.to_sun.xyz);
-    let detailed = 1.0 + RELIEF_DETAIL.y * detail / (RELIEF_DETAIL.y + abs(detail));
+    let detail = frame.relief.y * shade_share * dot(normal - form, frame.to_sun.xyz);
+    let detailed = 1.0 + RELIEF_MOST_DETAIL * detail / (RELIEF_MOST_DETAIL + abs(detail));
     let brightness = soft_brightness(1.0 + gain * relief - RELIEF_GAIN * shadow) * detailed;
     let hue = mix(RELIEF_COOL, RELIEF_WARM, clamp(0.5 + 1.2 * (relief - shadow), 0.0, 1.0));
     let tint = hue / mix(RELIEF_COOL, RELIEF_WARM, 0.5);

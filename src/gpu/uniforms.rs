@@ -195,7 +195,7 @@ impl FrameUniforms {
         for (slot, level) in frame.ground_tops.iter_mut().zip(&tops) {
             *slot = [level.size.columns, level.size.rows, level.first, tops.len() as u32];
         }
-        frame.relief = [map.z_per_m, 0.0, 0.0, 0.0];
+        frame.relief = [map.z_per_m, map.detail, 0.0, 0.0];
         frame.ground = [map.origin.x, map.origin.y, map.cell.x, map.cell.y];
         let coarsest = levels.len() as u32 - 1;
         frame.ground_size =

@@ -158,6 +158,7 @@ fn inset(part: &ShownPart<'_>, scene: &SceneModel, around: &GroundInset, to_sun:
     map.cover = scene.cover();
     map.z_factor = around.map.z_factor;
     map.shade_gain = around.map.shade_gain;
+    map.detail = around.map.detail;
     map.form_level = form_level(&scene.lattice);
     GroundInset { map: Arc::new(map), origin }
 }

@@ -99,6 +99,7 @@ pub fn ground_map(scene: &SceneModel, GroundMapKey { level, to_sun }: GroundMapK
         form_level: form_level(lattice).saturating_sub(number),
         z_factor: TextureShading::eased(scene.texture, z_factor),
         shade_gain,
+        detail: TextureShading::eased_detail(scene.texture),
         has_grain: true,
         halvings: 0,
         // Posts of a densified lattice lie on planes between those of the land.

@@ -20,7 +20,7 @@ const LIGHTER: f32 = 0.15;
 const DARKER: f32 = 0.5;
 
 /// The part of the slopes' shading by light that full strength takes.
-const EASED: f32 = 0.6;
+const EASED: f32 = 0.66;
 
 /// By what texture is multiplied before it is bent: at 1.5, most drainage of hills is nearly as dark as it gets, and a plain has
 /// a middle gray.
@@ -53,6 +53,11 @@ impl TextureShading {
             post.sky_visibility = (post.sky_visibility + change * (UNSEEN + post.sky_visibility))
                 .clamp(0.0, GroundPost::MOST_SKY);
         });
+    }
+
+    /// How strongly forms show in the shade beside texture of a strength, which draws them there itself.
+    pub fn eased_detail(strength: f32) -> f32 {
+        ReliefShading::DETAIL * (1.0 - strength)
     }
 
     /// The z-factor of the shading by light beside texture of a strength, where it would be `z_factor` alone.

@@ -69,7 +69,11 @@ fn ground_light(list: &DrawList, world: Vec3, albedo: Option<Vec3>) -> Vec3 {
     let map = list.ground.as_ref().expect("the scene has a ground map");
     let post = map.sample(world.truncate());
     let albedo = albedo.unwrap_or_else(|| map.ramp.linear_at(post.height_m));
-    let relief = ReliefShading { shade_gain: map.shade_gain, ..ReliefShading::new(list.lighting.to_sun) };
+    let relief = ReliefShading {
+        shade_gain: map.shade_gain,
+        detail: map.detail,
+        ..ReliefShading::new(list.lighting.to_sun)
+    };
     let point = ReliefPoint {
         normal: map.shaded_normal(&post),
         form: map.shaded_normal(&post),

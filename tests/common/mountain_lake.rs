@@ -77,6 +77,7 @@ pub fn mountain_lake(uneven: f32) -> DrawList {
         posts,
         ramp: ColorRamp::new(stops).expect("rising stops"),
         shade_gain: ReliefShading::GAIN,
+        detail: ReliefShading::DETAIL,
         ..GroundMap::level()
     };
     let haze = Haze { near_m: 300.0, distance_m: 6000.0, ..Lighting::default().haze };

@@ -175,6 +175,7 @@ fn ground_map() -> GroundMap {
         form_level: 0,
         z_factor: 1.0,
         shade_gain: ReliefShading::GAIN,
+        detail: ReliefShading::DETAIL,
         has_grain: false,
     }
 }

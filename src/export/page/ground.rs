@@ -112,6 +112,7 @@ pub fn map(sections: &mut PageSections, map: &GroundMap) -> Value {
         "formLevel": map.form_level.saturating_sub(number),
         "zFactor": map.z_factor,
         "shadeGain": map.shade_gain,
+        "detail": map.detail,
         "skyMost": sky_most,
         "hasGrain": map.has_grain,
         "curvedRise": if map.is_curved && number == 0 { map.z_per_m } else { 0.0 },

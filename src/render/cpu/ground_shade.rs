@@ -59,7 +59,12 @@ impl<'a> GroundShader<'a> {
         let coarser = coarser_levels(map).collect();
         let draped = map.imagery.as_deref().map(|imagery| (imagery, Texture::new(&imagery.pixels)));
         let fill = f32::from(u8::from(map.cover.is_some()));
-        let relief = ReliefShading { shade_gain: map.shade_gain, fill, ..ReliefShading::new(to_sun) };
+        let relief = ReliefShading {
+            shade_gain: map.shade_gain,
+            fill,
+            detail: map.detail,
+            ..ReliefShading::new(to_sun)
+        };
         Self {
             map,
             noise_origin: Vec2::ZERO,
@@ -372,6 +377,7 @@ mod tests {
             form_level: 0,
             z_factor: 1.0,
             shade_gain: ReliefShading::GAIN,
+            detail: ReliefShading::DETAIL,
             has_grain: false,
         }
     }

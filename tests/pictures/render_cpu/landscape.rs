@@ -113,6 +113,7 @@ pub fn ground_map(side: u32, half_m: f32, contours: bool, height: impl Fn(f32, f
         form_level: 3,
         z_factor: 1.0,
         shade_gain: ReliefShading::GAIN,
+        detail: ReliefShading::DETAIL,
         has_grain: false,
     }
 }

@@ -171,6 +171,7 @@ class Renderer {
       ? [contours.interval, contours.width * frame.pixelRatio, contours.every]
       : [1, 1, 1]), map.zFactor);
     set("shade_gain", "uniform1f", map.shadeGain);
+    set("shade_detail", "uniform1f", map.detail);
     set("curved_rise", "uniform1f", map.curvedRise);
     set("sky_most", "uniform1f", map.skyMost);
     set("sides", "uniform3fv", light.sides.flat());

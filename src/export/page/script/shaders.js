@@ -214,7 +214,7 @@ uniform vec4 contour_shape; // interval, width, every how many is heavy, z facto
 uniform vec4 imagery;       // corner, 1 / size
 uniform vec4 imagery_size;  // texel, 1 where there is one, 1 where it is shaded
 uniform sampler2D imagery_texture;
-uniform float shade_gain, sky_most;
+uniform float shade_gain, shade_detail, sky_most;
 uniform vec3 sides[4];
 uniform vec4 side_shares;
 out vec4 shown;
@@ -455,8 +455,8 @@ vec3 relief_lit(vec3 albedo, float height, vec4 post, float sky_share, vec2 plac
   float relief = contrast * (shade - level);
   float shadow = contrast * lost;
   float shade_share = max(1.0 - post.z * received * facing / max(upright, RELIEF_LEAST_SINE), 0.0);
-  float detail = RELIEF_DETAIL.x * shade_share * dot(normal - form, to_sun);
-  float detailed = 1.0 + RELIEF_DETAIL.y * detail / (RELIEF_DETAIL.y + abs(detail));
+  float detail = shade_detail * shade_share * dot(normal - form, to_sun);
+  float detailed = 1.0 + RELIEF_MOST_DETAIL * detail / (RELIEF_MOST_DETAIL + abs(detail));
   float brightness = detailed * soft_brightness(1.0 + (relief < 0.0 ? shade_gain : RELIEF_GAIN) * relief - RELIEF_GAIN * shadow);
   vec3 hue = mix(RELIEF_COOL, RELIEF_WARM, clamp(0.5 + 1.2 * (relief - shadow), 0.0, 1.0)) / mix(RELIEF_COOL, RELIEF_WARM, 0.5);
   vec3 gray = vec3(dot(albedo, vec3(0.2126, 0.7152, 0.0722)));
