@@ -395,7 +395,7 @@ impl GroundMap {
     }
 
     /// The posts south-west, south-east, north-west and north-east of a place, and where between them it lies.
-    fn around(&self, grid: Vec2) -> ([&GroundPost; 4], Vec2) {
+    pub(crate) fn around(&self, grid: Vec2) -> ([&GroundPost; 4], Vec2) {
         let cell = grid.as_uvec2().min(UVec2::new(self.columns, self.rows).max(UVec2::splat(2)) - 2);
         let stride = self.columns as usize;
         let east = usize::from(self.columns > 1);
@@ -462,7 +462,7 @@ impl GroundPost {
     }
 
     #[inline]
-    pub(crate) fn lerp(&self, other: &Self, share: f32) -> Self {
+    fn lerp(&self, other: &Self, share: f32) -> Self {
         self.zip_with(other, |a, b| a + (b - a) * share)
     }
 

@@ -9,6 +9,7 @@ use glam::Vec2;
 use rayon::prelude::*;
 
 use crate::ground::{GroundMap, GroundPost};
+use crate::lanes::mix;
 
 impl GroundMap {
     /// The map with cells halved `times` times; slopes between its posts are straight where [`Self::is_curved`] is false.
@@ -16,19 +17,13 @@ impl GroundMap {
         let count = |posts: u32| ((posts - 1) << times) + 1;
         let (columns, rows) = (count(self.columns), count(self.rows));
         let scale = (1u32 << times) as f32;
-        let place = |fine: usize, posts: u32| {
-            let first = (fine >> times).min((posts as usize).saturating_sub(2));
-            (first, (fine - (first << times)) as f32 / scale)
-        };
         let mut posts: Vec<GroundPost> = bytemuck::zeroed_vec(columns as usize * rows as usize);
-        posts.par_chunks_exact_mut(columns as usize).enumerate().for_each(|(fine, posts)| {
-            let (row, y) = place(fine, self.rows);
-            for (fine, post) in posts.iter_mut().enumerate() {
-                let (column, x) = place(fine, self.columns);
-                let cell = MapCell::new(&self, column, row);
-                *post = cell.straight(Vec2::new(x, y));
+        posts.par_chunks_exact_mut(columns as usize).enumerate().for_each(|(row, posts)| {
+            for (column, post) in posts.iter_mut().enumerate() {
+                let grid = Vec2::new(column as f32, row as f32) / scale;
+                *post = self.post_at(grid);
                 if self.is_curved {
-                    [post.slope_east, post.slope_north] = cell.curved_slopes(Vec2::new(x, y)).to_array();
+                    [post.slope_east, post.slope_north] = self.curved_slopes(grid).to_array();
                 }
             }
         });
@@ -39,44 +34,18 @@ impl GroundMap {
         self.halvings += times;
         self
     }
-}
 
-/// A cell of a map.
-struct MapCell<'a> {
-    /// South-west, south-east, north-west, north-east.
-    corners: [&'a GroundPost; 4],
-    /// The drawn rise per meter of elevation eastward and northward over the cell.
-    rise_per_m: Vec2,
-}
-
-impl<'a> MapCell<'a> {
-    fn new(map: &'a GroundMap, column: usize, row: usize) -> Self {
-        let east = usize::from(map.columns > 1);
-        let north = if map.rows > 1 { map.columns as usize } else { 0 };
-        let first = row * map.columns as usize + column;
-        Self {
-            corners: [first, first + east, first + north, first + north + east].map(|at| &map.posts[at]),
-            rise_per_m: map.z_per_m / map.cell,
-        }
-    }
-
-    /// The bilinear mean at a place in the cell, 0..=1 eastward and northward.
-    fn straight(&self, part: Vec2) -> GroundPost {
-        let [sw, se, nw, ne] = self.corners;
-        sw.lerp(se, part.x).lerp(&nw.lerp(ne, part.x), part.y)
-    }
-
-    /// The slopes eastward and northward of the curved ground there.
-    fn curved_slopes(&self, part: Vec2) -> Vec2 {
-        let [sw, se, nw, ne] = self.corners;
+    /// The slopes eastward and northward of the curved ground at a place on the map in columns and rows.
+    fn curved_slopes(&self, grid: Vec2) -> Vec2 {
+        let ([sw, se, nw, ne], part) = self.around(grid);
+        let rise_per_m = self.z_per_m / self.cell;
         let rise = |from: &GroundPost, to: &GroundPost| to.height_m - from.height_m;
         let east = |from: &GroundPost, to: &GroundPost| {
-            slope_of_cubic([from.slope_east, to.slope_east], rise(from, to) * self.rise_per_m.x, part.x)
+            slope_of_cubic([from.slope_east, to.slope_east], rise(from, to) * rise_per_m.x, part.x)
         };
         let north = |from: &GroundPost, to: &GroundPost| {
-            slope_of_cubic([from.slope_north, to.slope_north], rise(from, to) * self.rise_per_m.y, part.y)
+            slope_of_cubic([from.slope_north, to.slope_north], rise(from, to) * rise_per_m.y, part.y)
         };
-        let mix = |from: f32, to: f32, share: f32| from + (to - from) * share;
         Vec2::new(mix(east(sw, se), east(nw, ne), part.y), mix(north(sw, nw), north(se, ne), part.x))
     }
 }
