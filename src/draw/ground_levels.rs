@@ -150,15 +150,9 @@ fn rows_of<'a>(
 /// Every second post of a row, smoothed along it.
 fn halved_row(row: &[GroundPost], count: usize) -> Vec<GroundPost> {
     let at = |index: usize| &row[index.min(row.len() - 1)];
-    let post = |index: usize| smoothed([at((2 * index).saturating_sub(1)), at(2 * index), at(2 * index + 1)]);
-    // Between the borders each post has its two neighbors.
-    let inner = row.len().saturating_sub(2) / 2;
-    let mut halved = Vec::with_capacity(count);
-    halved.extend((0..count.min(1)).map(post));
-    let neighbors = row.get(1..).unwrap_or_default().windows(3).step_by(2);
-    halved.extend(neighbors.take(inner).map(|posts| smoothed([&posts[0], &posts[1], &posts[2]])));
-    halved.extend((halved.len()..count).map(post));
-    halved
+    (0..count)
+        .map(|index| smoothed([at((2 * index).saturating_sub(1)), at(2 * index), at(2 * index + 1)]))
+        .collect()
 }
 
 /// A post smoothed with its neighbors.
