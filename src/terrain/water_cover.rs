@@ -205,7 +205,7 @@ impl WaterSearch<'_> {
         let mut count = 0;
         for index in self.border() {
             if self.lattice.heights()[index] <= level_m && self.state[index].is_open() {
-                self.find(index, level_m, |height, _| height <= level_m, PostState::found);
+                self.find(index, level_m, |height, _| height <= level_m);
                 count += self.flood();
             }
         }
@@ -233,7 +233,7 @@ impl WaterSearch<'_> {
         let mut count = 0;
         for index in self.border() {
             if is_zero(self.lattice.heights()[index], self.state[index]) && self.state[index].is_open() {
-                let sides = self.find(index, 0.0, is_zero, PostState::found);
+                let sides = self.find(index, 0.0, is_zero);
                 count += if sides.is_sea(self.posts.len()) { self.flood() } else { 0 };
             }
         }
@@ -250,7 +250,7 @@ impl WaterSearch<'_> {
                 continue;
             }
             let belongs = |height: f32, _| (height - level).abs() < LEVEL_M;
-            let sides = self.find(index, level, belongs, PostState::found);
+            let sides = self.find(index, level, belongs);
             let is_shaped = || self.posts.iter().any(|&index| self.lattice.pinned()[index as usize]);
             if sides.is_lake(self.posts.len()) && !is_shaped() {
                 lakes.push(self.flood());
@@ -265,20 +265,14 @@ impl WaterSearch<'_> {
         self.posts.len()
     }
 
-    /// Finds the posts connected to the one at index `first`, which `belongs`, that belong, too, by their height and state
-    /// and that [`found`](PostState::found), or what takes its place, changes. Heights beside them are compared with `level`.
-    fn find(
-        &mut self,
-        first: usize,
-        level: f32,
-        belongs: impl Fn(f32, PostState) -> bool,
-        found: impl Fn(PostState) -> PostState,
-    ) -> RegionSides {
+    /// Finds the posts connected to the one at index `first`, which `belongs`, that belong, too, by their height and state.
+    /// Heights beside them are compared with `level`.
+    fn find(&mut self, first: usize, level: f32, belongs: impl Fn(f32, PostState) -> bool) -> RegionSides {
         let Self { lattice, state, posts } = self;
         let (heights, columns) = (lattice.heights(), lattice.columns() as usize);
         let wall = level + WALL_M + lattice.cell().max_element() as f32 / 2.0;
         let mut sides = RegionSides::default();
-        state[first] = found(state[first]);
+        state[first] = state[first].found();
         posts.clear();
         posts.push(first as u32);
         let mut visited = 0;
@@ -289,8 +283,8 @@ impl WaterSearch<'_> {
             let mut visit = |next: usize| {
                 let (height, before) = (heights[next], state[next]);
                 if belongs(height, before) {
-                    if before.is_open() && found(before) != before {
-                        state[next] = found(before);
+                    if before.is_open() {
+                        state[next] = before.found();
                         posts.push(next as u32);
                     }
                 } else if (height - level).abs() >= LEVEL_M {
