@@ -56,8 +56,8 @@ pub(crate) const FARMED_PATCHES: f32 = 0.8;
 /// The greatest share of a cover over the tint.
 pub(crate) const MOST: f32 = 0.85;
 /// The share of a cover's own hue: the rest is the tint's, which tells heights through all covers, as in the cross-blended
-/// hypsometric tints of Patterson and Jenny (2011). Outside deserts what grows has the
-/// second share at the tree line: mountain woods and meadows are thinner.
+/// hypsometric tints of Patterson and Jenny (2011). Outside deserts what grows has the second share at the tree
+/// line: mountain woods and meadows are thinner.
 pub(crate) const HUE: [f32; 2] = [0.58, 0.26];
 /// The part of that change which meadows take: above the trees nothing else is green.
 pub(crate) const MEADOW_CLIMB: f32 = 0.5;

@@ -104,9 +104,8 @@ impl<'a> SweepSource<'a> {
     }
 
     /// Writes the errors of the vertices of a layout in every `every`-th column and row, 1 or 2, from the own ones of all: `own` writes
-    /// these, row by row from a row on that is a multiple
-    /// of 8, or of the patch, into zeros. No more of them are held than those of a few rows for each thread; those of some rows are
-    /// made twice. In parallel, the same for any number of threads.
+    /// these into zeros, row by row from a row on that is a multiple of 8, or of the patch. No more of them are held than those of a
+    /// few rows for each thread; those of some rows are made twice. In parallel, the same for any number of threads.
     pub fn sweep_made(
         layout: &PatchLayout,
         own: impl Fn(usize, &mut [f32]) + Sync,
