@@ -40,10 +40,13 @@ impl Srgba {
     }
 }
 
+/// The shares of red, green and blue in luminance (IEC 61966-2-1).
+pub(crate) const LUMINANCE: [f32; 3] = [0.2126, 0.7152, 0.0722];
+
 /// The luminance of a color in linear light, 0..=1 (IEC 61966-2-1).
 #[inline]
 pub fn luminance(linear: Vec3) -> f32 {
-    linear.dot(Vec3::new(0.2126, 0.7152, 0.0722))
+    linear.dot(Vec3::from(LUMINANCE))
 }
 
 /// The lightness L* of a color in linear light, 0..=100 (CIE 1976, for a white of luminance 1).

@@ -182,15 +182,15 @@ impl GroundCover {
         std::array::from_fn(|lane| Vec3::new(red[lane], green[lane], blue[lane]))
     }
 
-    /// The rise eastward and northward of the drawn forms that are too small for the cells of the map, where it reads `post`;
-    /// `noise` is that of the place. None under water.
-    pub fn form(&self, post: &GroundPost, noise: &CoverNoise) -> Vec2 {
+    /// The rise eastward and northward of the drawn forms that are too small for the cells of the map, where it reads `post` and
+    /// theirs is `small` in the [noise](CoverNoise::form) of the place. None under water.
+    pub fn form(&self, post: &GroundPost, small: Vec2) -> Vec2 {
         if !self.has_forms {
             return Vec2::ZERO;
         }
         let rise = Vec2::new(post.slope_east, post.slope_north).length().min(1.0);
         let dry = (1.0 - 4.0 * post.water.max(0.0)).max(0.0);
-        noise.form * ((FORM_LEVEL / self.true_rise + FORM_RISE * rise) * dry)
+        small * ((FORM_LEVEL / self.true_rise + FORM_RISE * rise) * dry)
     }
 }
 
@@ -470,11 +470,10 @@ mod tests {
 
     #[test]
     fn forms_grow_with_slope_and_there_are_none_under_water_or_a_picture() {
-        let noise = CoverNoise { form: Vec2::X, ..CoverNoise::default() };
-        let rise = |post: &GroundPost| alps().form(post, &noise).x;
+        let rise = |post: &GroundPost| alps().form(post, Vec2::X).x;
         assert!(rise(&post(0.0, 0.5)) > 3.0 * rise(&post(0.0, 0.0)));
         assert_eq!(rise(&GroundPost { water: 0.6, ..post(0.0, 0.5) }), 0.0);
-        assert_eq!(GroundCover { has_forms: false, ..alps() }.form(&post(0.0, 0.5), &noise), Vec2::ZERO);
+        assert_eq!(GroundCover { has_forms: false, ..alps() }.form(&post(0.0, 0.5), Vec2::X), Vec2::ZERO);
     }
 
     #[test]

@@ -30,6 +30,7 @@ pub mod material;
 pub mod patches;
 pub mod pixels;
 pub mod print_pattern;
+pub mod relief_lanes;
 pub mod shader_constants;
 mod shown;
 pub mod undergrowth;

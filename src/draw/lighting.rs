@@ -11,7 +11,6 @@ use std::f32::consts::FRAC_1_SQRT_2;
 use glam::{Vec2, Vec3};
 
 use crate::backdrop::Backdrop;
-use crate::color::luminance;
 
 /// The light of a scene; colors are linear.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -213,66 +212,21 @@ impl ReliefShading {
     }
 
     /// The light that level ground in the open receives, on the scale of the shade.
+    #[inline(always)]
     pub fn flat(&self) -> f32 {
         let [main, sides, form] = Self::SHARES;
         (main + form) * self.to_sun.z.max(0.0) + sides * SIDE_RISE
     }
 
-    /// How much more light a place receives than level ground, no shadow being cast on it, and how much cast shadows take,
-    /// both weighted by its contrast: `r` and `s` of the formula.
-    #[inline]
-    pub fn relief(&self, point: &ReliefPoint) -> (f32, f32) {
-        let facing = |normal: Vec3, light: Vec3| normal.dot(light).max(0.0);
-        let [main, sides, form] = Self::SHARES;
-        let side_light: f32 = self
-            .sides
-            .iter()
-            .zip(Self::SIDE_SHARES)
-            .map(|(&side, share)| facing(point.normal, side) * share)
-            .sum();
-        let sun = main * facing(point.normal, self.to_sun);
-        let shade = sun + sides * side_light + form * facing(point.form, self.to_sun);
-        let contrast =
-            Self::LOW_CONTRAST + (1.0 - Self::LOW_CONTRAST) * (point.elevation / 0.75).clamp(0.0, 1.0);
-        (contrast * (shade - self.flat()), contrast * sun * (1.0 - point.sun_visibility))
-    }
-
-    /// The share by which small forms in the shade are brighter, less than [`Self::MOST_DETAIL`] either way.
-    #[inline]
-    fn shade_detail(&self, point: &ReliefPoint) -> f32 {
-        let lit = point.sun_visibility * point.normal.dot(self.to_sun).max(0.0);
-        let shade = (1.0 - lit / self.to_sun.z.max(LEAST_SINE)).max(0.0);
-        let detail = self.detail * shade * (point.normal - point.form).dot(self.to_sun);
-        Self::MOST_DETAIL * detail / (Self::MOST_DETAIL + detail.abs())
-    }
-
-    /// The light that a place returns, linear, before haze.
-    pub fn shade(&self, albedo: Vec3, point: &ReliefPoint) -> Vec3 {
-        let (relief, shadow) = self.relief(point);
-        let gain = if relief < 0.0 { self.shade_gain } else { Self::GAIN };
-        let brightness =
-            Self::soft(1.0 + gain * relief - Self::GAIN * shadow) * (1.0 + self.shade_detail(point));
-        let tint = Self::COOL.lerp(Self::WARM, (0.5 + 1.2 * (relief - shadow)).clamp(0.0, 1.0));
-        let level = Self::COOL.lerp(Self::WARM, 0.5);
-        let sky = Self::CLOSED + (1.0 - Self::CLOSED) * point.sky_visibility;
-        let gray = Vec3::splat(luminance(albedo));
-        let deep = (albedo + (albedo - gray) * Self::FILL_CHROMA).max(Vec3::ZERO);
-        let fill = deep * Self::FILL * (self.fill * (1.0 - brightness).clamp(0.0, 1.0));
-        let glare = self.fill * Self::GLARE * ((brightness - 1.0) / (Self::BRIGHTEST - 1.0)).max(0.0);
-        (albedo.lerp(gray * Self::GLARE_COLOR, glare) * tint / level * brightness + fill) * sky
-    }
-
     /// A brightness bent toward the darkest and the brightest.
-    #[inline]
+    #[inline(always)]
     pub fn soft(brightness: f32) -> f32 {
         let [toe, shoulder] = [Self::TOE - Self::DARKEST, Self::BRIGHTEST - Self::SHOULDER];
-        if brightness < Self::TOE {
-            Self::DARKEST + toe * toe / (toe + Self::TOE - brightness)
-        } else if brightness > Self::SHOULDER {
-            Self::BRIGHTEST - shoulder * shoulder / (shoulder + brightness - Self::SHOULDER)
-        } else {
-            brightness
-        }
+        // Both bends are computed, so that several pixels are lit by one vector.
+        let dark = Self::DARKEST + toe * toe / (toe + Self::TOE - brightness);
+        let bright = Self::BRIGHTEST - shoulder * shoulder / (shoulder + brightness - Self::SHOULDER);
+        let not_bright = if brightness > Self::SHOULDER { bright } else { brightness };
+        if brightness < Self::TOE { dark } else { not_bright }
     }
 
     /// The brightness that [`Self::soft`] bends to `shown`, which is at most [`Self::SHOULDER`]; minus infinity where it reaches
@@ -299,6 +253,7 @@ pub(crate) const SIDE_RISE: f32 = 0.5;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::color::luminance;
 
     const LEVEL: ReliefPoint = ReliefPoint {
         normal: Vec3::Z,

@@ -9,6 +9,7 @@ use glam::Vec3;
 use crate::cpu::geometry::{FaceId, FacePiece, ScreenFace};
 use crate::cpu::pattern::SampleMask;
 use crate::cpu::raster::{PixelWindow, cover};
+use crate::cpu::shade::{FaceAt, Shaded};
 use crate::cpu::tile::TileContext;
 use crate::cpu::visibility::{SampleDepths, TILE, Visibility};
 use crate::picture::LEAST_VISIBLE_ALPHA;
@@ -79,18 +80,28 @@ impl Blend {
         });
     }
 
-    /// Blends a pixel's fragments over the `colors` of its samples. Returns the transparent face that the depth and
-    /// feature buffers show, if any.
+    /// What a pixel shows of transparent faces, the farthest first.
+    pub fn points<'a, const N: usize>(
+        &self,
+        frame: &'a TileContext<N>,
+        (x, y): (u32, u32),
+    ) -> impl Iterator<Item = FaceAt<'a>> {
+        self.pixels[self.index(x, y)].iter().rev().map(move |fragment| FaceAt {
+            face: frame.geometry.face(fragment.face),
+            at: frame.pattern.centroid_in(x, y, fragment.mask),
+        })
+    }
+
+    /// Blends a pixel's fragments over the `colors` of its samples; `shaded` gives the color of each of its
+    /// [points](Self::points). Returns the transparent face that the depth and feature buffers show, if any.
     pub fn composite<const N: usize>(
         &self,
-        frame: &TileContext<N>,
         (x, y): (u32, u32),
+        shaded: impl Iterator<Item = Shaded>,
         colors: &mut [Vec3; N],
     ) -> Option<FaceId> {
         let mut seen = None;
-        for fragment in self.pixels[self.index(x, y)].iter().rev() {
-            let at = frame.pattern.centroid_in(x, y, fragment.mask);
-            let shaded = frame.shader.shade(frame.geometry.face(fragment.face), at);
+        for (fragment, shaded) in self.pixels[self.index(x, y)].iter().rev().zip(shaded) {
             for (sample, color) in colors.iter_mut().enumerate() {
                 if fragment.mask & (1 << sample) != 0 {
                     *color = color.lerp(shaded.color, shaded.alpha);

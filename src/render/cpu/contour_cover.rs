@@ -51,7 +51,7 @@ impl LinedGround<'_> {
 
     fn cover(&self, hit: FacePoint) -> f32 {
         let hit = FacePoint { world: hit.world - self.origin.extend(0.0), ..hit };
-        let point = self.shader.at(&hit, RenderQuality::default().anisotropy);
+        let point = self.shader.read(&hit, RenderQuality::default().anisotropy);
         self.shader.contour_cover(&point, &hit)
     }
 }

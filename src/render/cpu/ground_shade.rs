@@ -18,6 +18,7 @@ use sandtable_draw::ground_levels::{GroundLevel, PostCount, add_weighted, coarse
 use sandtable_draw::ground_tops::GroundTops;
 use sandtable_draw::lighting::{ReceivedLight, ReliefPoint, ReliefShading};
 use sandtable_draw::material::TextureWrap;
+use sandtable_draw::relief_lanes::ReliefPixel;
 use sandtable_draw::water::ShorePixel;
 use sandtable_draw::water_relief::{MirroredRay, RayEnd};
 
@@ -48,10 +49,18 @@ pub struct GroundPoint {
     water_gradient: Vec2,
     /// The picture over the map.
     pub draped: DrapedColor,
-    /// The noise of the place, where the map has a cover that shows.
-    noise: CoverNoise,
-    /// The color of its land in linear light, where it is known.
+    /// The slopes of forms too small for the map, where it has a cover that shows.
+    small: Vec2,
+    /// The color of its land in linear light, where it shows the map and land.
     land: Option<Vec3>,
+}
+
+/// A point whose cover is wanted.
+pub struct CoveredPoint<'b> {
+    pub point: &'b mut GroundPoint,
+    pub hit: &'b FacePoint,
+    /// Whether its color is the map's, and not that of what lies on the ground.
+    pub shows_map: bool,
 }
 
 impl<'a> GroundShader<'a> {
@@ -83,10 +92,15 @@ impl<'a> GroundShader<'a> {
         Self { noise_origin: origin, ..self }
     }
 
-    /// The light that the ground returns at a point that receives `received` past solids, before haze; see [`ReliefShading`].
-    /// `form` is the [generalized ground](Self::form) there.
-    pub fn lit(&self, albedo: Vec3, point: &GroundPoint, form: &GroundPost, received: ReceivedLight) -> Vec3 {
-        let small = self.map.cover.map_or(Vec2::ZERO, |cover| cover.form(&point.post, &point.noise));
+    /// A point that receives `received` past solids, as its shading sees it; `form` is the [generalized ground](Self::form) there.
+    pub fn relief_pixel(
+        &self,
+        albedo: Vec3,
+        point: &GroundPoint,
+        form: &GroundPost,
+        received: ReceivedLight,
+    ) -> ReliefPixel {
+        let small = self.map.cover.map_or(Vec2::ZERO, |cover| cover.form(&point.post, point.small));
         let shaded = GroundPost {
             slope_east: point.post.slope_east + small.x,
             slope_north: point.post.slope_north + small.y,
@@ -99,7 +113,12 @@ impl<'a> GroundShader<'a> {
             sky_visibility: point.post.sky_visibility * received.sky,
             elevation: self.map.ramp.elevation(point.post.height_m),
         };
-        self.relief.shade(albedo, &point)
+        ReliefPixel { albedo, point }
+    }
+
+    /// The light that the ground returns at each of `pixels`, before haze; see [`ReliefShading`].
+    pub fn lit_each(&self, pixels: &[ReliefPixel]) -> Vec<Vec3> {
+        self.relief.shade_each(pixels)
     }
 
     /// The slopes of the generalized ground at a world position: all else that it has is 0, and shades nothing.
@@ -129,36 +148,26 @@ impl<'a> GroundShader<'a> {
     pub fn mirrored(&self, hit: &FacePoint, form: &GroundPost, most_taps: u32) -> Vec3 {
         let point = self.read(hit, most_taps);
         let albedo = self.map.mirrored_land(&point.post, &point.draped);
-        self.lit(albedo, &point, form, ReceivedLight::ALL).lerp(albedo, self.unlit_share(&point))
+        let ReliefPixel { albedo, point: relief } =
+            self.relief_pixel(albedo, &point, form, ReceivedLight::ALL);
+        self.relief.shade(albedo, &relief).lerp(albedo, self.unlit_share(&point))
     }
 
-    pub fn at(&self, hit: &FacePoint, most_taps: u32) -> GroundPoint {
-        let mut point = self.read(hit, most_taps);
-        if self.map.cover.is_some() && self.shows_land(&point, hit) {
-            point.noise = CoverNoise::new(&self.noise_pixel(&point, hit), self.cell_m());
+    /// Gives points that were [read](Self::read) their small forms, and those that show the map the color of their land.
+    pub fn cover_each<'b>(&self, points: impl Iterator<Item = CoveredPoint<'b>>) {
+        let mut points: Vec<_> = points.filter(|at| self.shows_land(at.point, at.hit)).collect();
+        let mut noises = vec![CoverNoise::default(); points.len()];
+        if self.map.cover.is_some() {
+            let pixels: Vec<_> = points.iter().map(|at| self.noise_pixel(at.point, at.hit)).collect();
+            noises = CoverNoise::of_each(&pixels, self.cell_m());
+            points.iter_mut().zip(&noises).for_each(|(at, noise)| at.point.small = noise.form);
         }
-        point
-    }
-
-    /// Gives points that were [read](Self::read) their noise, as [`Self::at`] does, and their land, in less time.
-    pub fn cover_each<'b>(&self, points: impl Iterator<Item = (&'b mut GroundPoint, &'b FacePoint)>) {
-        if self.map.cover.is_none() {
-            return;
+        let shown = points.iter().zip(noises).filter(|(at, _)| at.shows_map);
+        let pixels: Vec<_> = shown.map(|(at, noise)| self.land_pixel(at.point, at.hit, noise)).collect();
+        points.retain(|at| at.shows_map);
+        for (at, land) in points.iter_mut().zip(self.map.land_each(&pixels)) {
+            at.point.land = Some(land);
         }
-        let mut points: Vec<_> = points.filter(|(point, hit)| self.shows_land(point, hit)).collect();
-        let pixels: Vec<_> = points.iter().map(|(point, hit)| self.noise_pixel(point, hit)).collect();
-        for ((point, _), noise) in points.iter_mut().zip(CoverNoise::of_each(&pixels, self.cell_m())) {
-            point.noise = noise;
-        }
-        let pixels: Vec<_> = points.iter().map(|(point, hit)| self.land_pixel(point, hit)).collect();
-        for ((point, _), land) in points.iter_mut().zip(self.map.land_each(&pixels)) {
-            point.land = Some(land);
-        }
-    }
-
-    /// Whether the map has a cover: only then are pixels drawn faster together.
-    pub fn has_cover(&self) -> bool {
-        self.map.cover.is_some()
     }
 
     /// Whether a pixel shows land: open water hides it, and so does a picture, with all that the noise is for.
@@ -175,35 +184,36 @@ impl<'a> GroundShader<'a> {
         self.map.noise_pixel(&point.post, at, hit.mean_pixel_m(), hit.pixel_m())
     }
 
-    fn land_pixel(&self, point: &GroundPoint, hit: &FacePoint) -> LandPixel {
-        LandPixel {
-            tint: self.map.tint(&point.post),
-            post: point.post,
-            change_m: change(point.gradient, hit),
-            noise: point.noise,
-        }
+    fn land_pixel(&self, point: &GroundPoint, hit: &FacePoint, noise: CoverNoise) -> LandPixel {
+        let (tint, change_m) = (self.map.tint(&point.post), change(point.gradient, hit));
+        LandPixel { tint, post: point.post, change_m, noise }
     }
 
-    /// A point without its noise.
+    /// A point without its small forms and its land.
     pub fn read(&self, hit: &FacePoint, most_taps: u32) -> GroundPoint {
+        let mut point = GroundPoint::default();
+        self.read_to(&mut point, hit, most_taps);
+        point
+    }
+
+    /// [`Self::read`] to a default point where it stays: sums of many small numbers that are moved are waited for.
+    pub fn read_to(&self, point: &mut GroundPoint, hit: &FacePoint, most_taps: u32) {
         let [right, down] = [hit.right.truncate(), hit.down.truncate()];
         let footprint = TexelFootprint::new(right, down, self.posts_per_meter, most_taps);
         let level = footprint.level.min(self.coarser.len() as f32);
         let finer = level as u32;
         let (finer, part) = (finer as usize, level - finer as f32);
         let share = 1.0 / footprint.taps as f32;
-        let mut point = GroundPoint::default();
         for offset in footprint.offsets() {
             let at = hit.world.truncate() + offset;
-            self.add_bilinear(&mut point, at, finer, share * (1.0 - part));
+            self.add_bilinear(point, at, finer, share * (1.0 - part));
             if part > 0.0 {
-                self.add_bilinear(&mut point, at, finer + 1, share * part);
+                self.add_bilinear(point, at, finer + 1, share * part);
             }
         }
         if let Some((imagery, texture)) = &self.draped {
             point.draped = draped(imagery, texture, hit, most_taps);
         }
-        point
     }
 
     /// The share of a point whose color is shown as it is, without light.
@@ -220,13 +230,7 @@ impl<'a> GroundShader<'a> {
         let change =
             PixelChange { height_m: change(point.gradient, hit), water: change(point.water_gradient, hit) };
         let down = (-point.gradient).try_normalize().unwrap_or_default();
-        let land = point.land.unwrap_or_else(|| {
-            if self.shows_land(point, hit) {
-                self.map.land(&self.land_pixel(point, hit))
-            } else {
-                self.map.tint(&point.post)
-            }
-        });
+        let land = point.land.unwrap_or_else(|| self.map.tint(&point.post));
         let detail = GroundDetail {
             grain: self.grain(point, hit),
             land,
@@ -397,7 +401,7 @@ mod tests {
         let ground = GroundShader::new(&map, Vec3::Z);
         for at in [(-30.0, 70.0), (-27.3, 81.2), (-20.0, 90.0), (-99.0, 77.0), (99.0, 999.0)] {
             let at = Vec2::from(at);
-            let point = ground.at(&hit(at.extend(0.0), 0.01), 8);
+            let point = ground.read(&hit(at.extend(0.0), 0.01), 8);
             assert!((point.post.height_m - map.sample(at).height_m).abs() < 1e-4, "{at}");
         }
     }
@@ -408,7 +412,7 @@ mod tests {
         let ground = GroundShader::new(&map, Vec3::Z);
         let middle = Vec2::new(-30.0 + 2.0 * 64.0, 70.0 + 5.0 * 64.0);
         for pixel_m in [0.1, 4.0, 9.0, 20.0] {
-            let point = ground.at(&hit(middle.extend(0.0), pixel_m), 1);
+            let point = ground.read(&hit(middle.extend(0.0), pixel_m), 1);
             assert!((point.post.height_m - 64.0).abs() < 1e-3, "{pixel_m}: {}", point.post.height_m);
             assert!((point.post.sun_visibility - 0.5).abs() < 1e-5);
             let rise = point.gradient - Vec2::new(1.5, -0.4);
@@ -419,7 +423,7 @@ mod tests {
     #[test]
     fn far_away_sharp_ground_reads_as_its_mean() {
         let map = map(64, 64, |x, y| if (x + y) % 2.0 == 0.0 { 0.0 } else { 10.0 });
-        let point = GroundShader::new(&map, Vec3::Z).at(&hit(Vec3::new(31.0, 230.0, 0.0), 100.0), 8);
+        let point = GroundShader::new(&map, Vec3::Z).read(&hit(Vec3::new(31.0, 230.0, 0.0), 100.0), 8);
         assert!((point.post.height_m - 5.0).abs() < 0.2, "{}", point.post.height_m);
     }
 }

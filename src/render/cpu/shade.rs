@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::cpu::cutout::Cutout;
 use crate::cpu::geometry::ScreenFace;
-use crate::cpu::ground_shade::{GroundPoint, GroundShader};
+use crate::cpu::ground_shade::{CoveredPoint, GroundPoint, GroundShader};
 use crate::cpu::hit::{Barycentric, FacePoint};
 use crate::cpu::screen::Screen;
 use crate::cpu::texture::{Reading, Texel, TexelFootprint, Texture, Weighting};
@@ -48,24 +48,27 @@ struct FaceVertices<'a> {
     weights: Barycentric,
 }
 
-/// The finest ground map at a pixel.
-#[derive(Debug)]
-struct MappedGround<'a> {
-    ground: &'a GroundShader<'a>,
-    /// The pixel in the map's world space.
-    hit: FacePoint,
-    point: GroundPoint,
+/// A point of a face, which is to be shaded.
+#[derive(Clone, Copy, Debug)]
+pub struct FaceAt<'a> {
+    pub face: &'a ScreenFace,
+    /// On the picture, in pixels.
+    pub at: [f32; 2],
 }
 
-/// A pixel of a face that is colored and lit by the ground map alone, in a row of others.
-#[derive(Debug)]
-pub struct MappedPixel<'a> {
-    /// Its column in the picture.
-    pub column: u32,
-    face: &'a ScreenFace,
-    at: [f32; 2],
+/// A point that shows the ground map, or what lies on it.
+struct GroundedPoint<'a> {
+    /// Its place among the points that are shaded together.
+    index: usize,
+    on: FaceAt<'a>,
+    material: &'a Material,
     hit: FacePoint,
-    mapped: MappedGround<'a>,
+    /// The finest map there is of it, and where that lies in the world.
+    ground: &'a GroundShader<'a>,
+    origin: Vec2,
+    point: GroundPoint,
+    /// Its own color, where it has one.
+    surface: Option<(Vec3, f32)>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -74,6 +77,11 @@ pub struct Shaded {
     pub color: Vec3,
     /// The share of the light from behind that it stops, 0..=1.
     pub alpha: f32,
+}
+
+impl Shaded {
+    /// Where nothing shows of a face.
+    const NOTHING: Self = Self { color: Vec3::ZERO, alpha: 0.0 };
 }
 
 impl<'a> Shader<'a> {
@@ -107,40 +115,30 @@ impl<'a> Shader<'a> {
         self.list.lighting.backdrop_color(self.screen.ray_at(at), down)
     }
 
-    /// Whether the ground has a cover.
-    pub fn has_cover(&self) -> bool {
-        let mut grounds = self.insets.iter().map(|inset| &inset.ground).chain(&self.ground);
-        grounds.any(GroundShader::has_cover)
-    }
-
-    /// The pixel at `at` in a column, of a face that [is mapped](Self::is_mapped); `None` where there is no map.
-    pub fn mapped<'b>(&'b self, face: &'b ScreenFace, at: [f32; 2], column: u32) -> Option<MappedPixel<'b>> {
-        let hit = FacePoint::new(face, self.screen, at);
-        let (ground, map_hit) = self.finest_ground(&hit)?;
-        let point = ground.read(&map_hit, self.most_taps);
-        Some(MappedPixel { column, face, at, hit, mapped: MappedGround { ground, hit: map_hit, point } })
-    }
-
-    /// Covers the ground of pixels that are to be [shaded](Self::shade_mapped): those of one map together.
-    pub fn cover_mapped(pixels: &mut [MappedPixel<'_>]) {
-        for pixels in pixels.chunk_by_mut(|a, b| std::ptr::eq(a.mapped.ground, b.mapped.ground)) {
-            let ground = pixels[0].mapped.ground;
-            ground.cover_each(
-                pixels.iter_mut().map(|MappedPixel { mapped, .. }| (&mut mapped.point, &mapped.hit)),
-            );
+    /// The colors of faces at points, each as it is alone. Those of ground, and of what lies on it, are computed together: that
+    /// takes less time.
+    pub fn shade_each<'b>(&'b self, points: &[FaceAt<'b>]) -> Vec<Shaded> {
+        let mut shaded = vec![Shaded::NOTHING; points.len()];
+        let mut grounded = Vec::with_capacity(points.len());
+        for ((index, on), shaded) in points.iter().enumerate().zip(&mut shaded) {
+            if let Some(known) = self.read(index, *on, &mut grounded) {
+                *shaded = known;
+            }
         }
+        for points in grounded.chunk_by_mut(|a, b| std::ptr::eq(a.ground, b.ground)) {
+            self.shade_grounded(points, &mut shaded);
+        }
+        shaded
     }
 
-    /// [`Self::shade`] of a pixel whose ground is known; it is opaque.
-    pub fn shade_mapped(&self, pixel: &MappedPixel<'_>) -> Vec3 {
-        self.shade_known(pixel.face, pixel.at, Some(pixel)).color
-    }
-
-    pub fn shade(&self, face: &ScreenFace, at: [f32; 2]) -> Shaded {
-        self.shade_known(face, at, None)
-    }
-
-    fn shade_known(&self, face: &ScreenFace, at: [f32; 2], known: Option<&MappedPixel<'_>>) -> Shaded {
+    /// Adds a point to those that show the ground map, where it does; else its color.
+    fn read<'b>(
+        &'b self,
+        index: usize,
+        on: FaceAt<'b>,
+        grounded: &mut Vec<GroundedPoint<'b>>,
+    ) -> Option<Shaded> {
+        let FaceAt { face, at } = on;
         let item = self.item(face);
         let material = self.material(item);
         let vertices = LazyCell::new(|| FaceVertices {
@@ -148,69 +146,128 @@ impl<'a> Shader<'a> {
             weights: Barycentric::new(face, at),
         });
         let has_surface = !matches!(material.albedo, Albedo::GroundMap | Albedo::Hatching);
-        let hit = LazyCell::new(|| FacePoint::new(face, self.screen, at));
+        let hit = FacePoint::new(face, self.screen, at);
         let surface = has_surface.then(|| self.surface_color(material, &vertices, &hit));
         if let Some((_, 0.0)) = surface {
             // Nothing shows of it: most of a tint of the ground that has none there.
-            return Shaded { color: Vec3::ZERO, alpha: 0.0 };
+            return Some(Shaded::NOTHING);
         }
-        let hit = known.map_or_else(|| *hit, |pixel| pixel.hit);
-        let read =
-            LazyCell::new(|| if material.reads_ground_map() { self.mapped_ground(&hit) } else { None });
-        let ground = known.map_or_else(|| read.as_ref(), |pixel| Some(&pixel.mapped));
-        let (mut albedo, alpha) = match (material.albedo, ground) {
-            (Albedo::GroundMap, Some(MappedGround { ground, hit, point })) => {
-                (ground.albedo(point, hit), 1.0)
+        let finest = if material.reads_ground_map() { self.finest_ground(&hit) } else { None };
+        if let Some((ground, origin)) = finest {
+            let point = GroundPoint::default();
+            grounded.push(GroundedPoint { index, on, material, hit, ground, origin, point, surface });
+            if let Some(GroundedPoint { point, hit, .. }) = grounded.last_mut() {
+                ground.read_to(point, &within(*hit, origin), self.most_taps);
             }
-            (Albedo::Hatching, _) => {
-                let Material { base_color, .. } = material;
-                (base_color.linear(), base_color.alpha() * hatching_cover(at))
-            }
+            return None;
+        }
+        let (albedo, alpha) = match material.albedo {
+            Albedo::Hatching => hatched(material, at),
             _ => surface.unwrap_or_else(|| self.surface_color(material, &vertices, &hit)),
         };
-        if let (true, Some(MappedGround { ground, hit, point })) = (material.is_natural, ground) {
-            albedo *= ground.grain(point, hit);
-        }
-        let lighting = &self.list.lighting;
-        let mut color = match (material.normals, ground) {
-            (NormalSource::Ground, Some(MappedGround { ground, point, .. })) => {
-                let unlit =
-                    if material.albedo == Albedo::GroundMap { ground.unlit_share(point) } else { 0.0 };
-                if unlit < 1.0 {
-                    let received = self.received(&hit, ShadowReceiver::Ground, true);
-                    let form = self.ground.as_ref().unwrap_or(ground).form(hit.world.truncate());
-                    ground.lit(albedo, point, &form, received).lerp(albedo, unlit)
-                } else {
+        let color = match material.albedo {
+            Albedo::Hatching => albedo,
+            _ => self.lit_solid(albedo, face, &vertices, &hit),
+        };
+        let water = f32::from(u8::from(material.is_water));
+        Some(Shaded { color: self.finished(color, &on, &hit, water), alpha })
+    }
+
+    /// Shades points of one map.
+    fn shade_grounded(&self, points: &mut [GroundedPoint<'_>], shaded: &mut [Shaded]) {
+        let Some((ground, origin)) = points.first().map(|point| (point.ground, point.origin)) else { return };
+        let shows_map = |material: &Material| material.albedo == Albedo::GroundMap;
+        let on_map: Vec<FacePoint> = points.iter().map(|point| within(point.hit, origin)).collect();
+        let with_places = points.iter_mut().zip(&on_map);
+        ground.cover_each(with_places.map(|(GroundedPoint { point, material, .. }, hit)| CoveredPoint {
+            point,
+            hit,
+            shows_map: shows_map(material),
+        }));
+        // What is lit by the ground's slopes, with the share of it that is shown without light.
+        let (mut to_light, mut relief) = (Vec::with_capacity(points.len()), Vec::with_capacity(points.len()));
+        for (GroundedPoint { index, on, material, hit, point, surface, .. }, map_hit) in
+            points.iter().zip(&on_map)
+        {
+            let (mut albedo, alpha) = match (material.albedo, surface) {
+                (Albedo::GroundMap, _) => (ground.albedo(point, map_hit), 1.0),
+                (Albedo::Hatching, _) => hatched(material, on.at),
+                (_, Some(surface)) => *surface,
+                (_, None) => (Vec3::ZERO, 0.0),
+            };
+            if material.is_natural {
+                albedo *= ground.grain(point, map_hit);
+            }
+            let color = match (material.normals, material.albedo) {
+                (NormalSource::Ground, albedo_source) => {
+                    let is_map = albedo_source == Albedo::GroundMap;
+                    let unlit = if is_map { ground.unlit_share(point) } else { 0.0 };
+                    if unlit < 1.0 {
+                        let received = self.received(hit, ShadowReceiver::Ground, true);
+                        let form = self.ground.as_ref().unwrap_or(ground).form(hit.world.truncate());
+                        to_light.push((*index, unlit));
+                        relief.push(ground.relief_pixel(albedo, point, &form, received));
+                    }
                     albedo
                 }
-            }
-            _ if material.albedo == Albedo::Hatching => albedo,
-            _ => {
-                let normal = vertices.normal(item, face);
-                let is_sunlit = normal.dot(lighting.to_sun) > 0.0;
-                let received = if material.receives_shadows {
-                    self.received(&hit, ShadowReceiver::Solid, is_sunlit)
-                } else {
-                    ReceivedLight::ALL
-                };
-                lighting.shade_received(albedo, normal, received)
-            }
+                (_, Albedo::Hatching) => albedo,
+                _ => {
+                    let item = self.item(on.face);
+                    let weights = Barycentric::new(on.face, on.at);
+                    let vertices = FaceVertices { corners: self.corners(item, on.face), weights };
+                    self.lit_solid(albedo, on.face, &vertices, hit)
+                }
+            };
+            shaded[*index] = Shaded { color, alpha };
+        }
+        for ((index, unlit), lit) in to_light.into_iter().zip(ground.lit_each(&relief)) {
+            let color = &mut shaded[index].color;
+            *color = lit.lerp(*color, unlit);
+        }
+        for (GroundedPoint { index, on, material, hit, point, .. }, map_hit) in points.iter().zip(&on_map) {
+            let water = if shows_map(material) {
+                ground.water_cover(point, map_hit) * (1.0 - point.draped.share)
+            } else {
+                f32::from(u8::from(material.is_water))
+            };
+            let color = &mut shaded[*index].color;
+            *color = self.finished(*color, on, hit, water);
+        }
+    }
+
+    /// The light that a point of a solid returns.
+    fn lit_solid(
+        &self,
+        albedo: Vec3,
+        face: &ScreenFace,
+        vertices: &FaceVertices<'_>,
+        hit: &FacePoint,
+    ) -> Vec3 {
+        let lighting = &self.list.lighting;
+        let item = self.item(face);
+        let normal = vertices.normal(item, face);
+        let is_sunlit = normal.dot(lighting.to_sun) > 0.0;
+        let received = if self.material(item).receives_shadows {
+            self.received(hit, ShadowReceiver::Solid, is_sunlit)
+        } else {
+            ReceivedLight::ALL
         };
-        let water = match (material.albedo, ground) {
-            (Albedo::GroundMap, Some(MappedGround { ground, hit, point })) => {
-                ground.water_cover(point, hit) * (1.0 - point.draped.share)
-            }
-            _ => f32::from(u8::from(material.is_water)),
-        };
+        lighting.shade_received(albedo, normal, received)
+    }
+
+    /// What is seen of a point that returns the light `color`: mirrored in the `water` on it, between its edges, through the haze.
+    fn finished(&self, mut color: Vec3, on: &FaceAt<'_>, hit: &FacePoint, water: f32) -> Vec3 {
+        let FaceAt { face, at } = *on;
+        let lighting = &self.list.lighting;
         if water > 0.0 {
             let screen = self.screen;
             let ray = if screen.is_parallel { screen.forward.as_vec3() } else { screen.ray_at(at) };
             let ray = ray.normalize_or_zero();
             let slope = ripples(hit.world.truncate(), hit.pixel_m(), ray);
             let mirror = WaterMirror { share: water, slope };
-            color = lighting.mirror(color, ray, mirror, |ray| self.mirrored_relief(&hit, ray));
+            color = lighting.mirror(color, ray, mirror, |ray| self.mirrored_relief(hit, ray));
         }
-        if material.shows_edges {
+        if self.material(self.item(face)).shows_edges {
             // At the center, wherever the samples of the face are: both faces of an edge draw the same line.
             let center = at.map(|place| place.floor() + 0.5);
             let [from_px, heights_px] = Barycentric::extended(face, center).edges_px();
@@ -222,24 +279,16 @@ impl<'a> Shader<'a> {
         }
         // Clamped before samples are averaged, as in a picture with 8-bit samples: an overexposed surface would
         // otherwise spoil the smooth border of its neighbor.
-        Shaded { color: color.max(Vec3::ZERO).min(Vec3::ONE), alpha }
+        color.max(Vec3::ZERO).min(Vec3::ONE)
     }
 
-    /// The finest map at a place, and the place in its world space.
-    fn finest_ground(&self, hit: &FacePoint) -> Option<(&GroundShader<'a>, FacePoint)> {
+    /// The finest map at a place, and where it lies in the world.
+    fn finest_ground(&self, hit: &FacePoint) -> Option<(&GroundShader<'a>, Vec2)> {
         let at = hit.world.truncate();
         match self.insets.iter().find(|inset| inset.holds(at)) {
-            Some(inset) => {
-                let world = hit.world - inset.origin.extend(0.0);
-                Some((&inset.ground, FacePoint { world, ..*hit }))
-            }
-            None => Some((self.ground.as_ref()?, *hit)),
+            Some(inset) => Some((&inset.ground, inset.origin)),
+            None => Some((self.ground.as_ref()?, Vec2::ZERO)),
         }
-    }
-
-    fn mapped_ground(&self, hit: &FacePoint) -> Option<MappedGround<'_>> {
-        let (ground, hit) = self.finest_ground(hit)?;
-        Some(MappedGround { ground, hit, point: ground.at(&hit, self.most_taps) })
     }
 
     /// The light of the ground that a ray meets which water at a point mirrors, as it reaches the water through the haze;
@@ -345,6 +394,16 @@ impl<'a> Shader<'a> {
             if material.alpha == AlphaMode::Opaque { Weighting::Even } else { Weighting::ByAlpha };
         texture.sample(uv, &footprint, Reading { weighting, wrap: material.texture_wrap })
     }
+}
+
+/// A place in the world space of a map that lies at `origin` in the world.
+fn within(hit: FacePoint, origin: Vec2) -> FacePoint {
+    FacePoint { world: hit.world - origin.extend(0.0), ..hit }
+}
+
+/// The color and the alpha of hatching.
+fn hatched(material: &Material, at: [f32; 2]) -> (Vec3, f32) {
+    (material.base_color.linear(), material.base_color.alpha() * hatching_cover(at))
 }
 
 /// The cover of an area at a point of a face.

@@ -1,7 +1,5 @@
 //! Draws the pieces of one tile to finished pixels.
 
-use std::ops::Range;
-
 use glam::Vec3;
 
 use crate::cpu::blend::Blend;
@@ -9,11 +7,17 @@ use crate::cpu::geometry::{FaceId, FacePiece, ScreenFace, ScreenGeometry};
 use crate::cpu::pattern::{SampleMask, SamplePattern};
 use crate::cpu::raster::PixelWindow;
 use crate::cpu::screen::Screen;
-use crate::cpu::shade::{MappedPixel, Shader};
-use crate::cpu::visibility::{Visibility, samples_of};
+use crate::cpu::shade::{FaceAt, Shader};
+use crate::cpu::visibility::{TILE, Visibility, samples_of};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DepthLayer, FeatureId};
 use sandtable_draw::material::AlphaMode;
+
+/// Rows of a tile whose pixels are shaded together: what is known of their points stays in the second level cache.
+const ROWS_TOGETHER: usize = 4;
+
+/// About the most points that pixels of these rows show, where few of them show two.
+const MOST_TOGETHER: usize = 5 * TILE as usize;
 
 #[derive(Debug)]
 pub struct TileContext<'a, const N: usize> {
@@ -72,38 +76,81 @@ pub fn draw_tile<const N: usize>(
     }
     let columns = window.from[0]..window.to[0];
     let mut pixels = Vec::with_capacity(columns.len() * (window.to[1] - window.from[1]) as usize);
-    for y in window.from[1]..window.to[1] {
-        let mapped = mapped_pixels(frame, &scratch.visibility, columns.clone(), y);
-        let mut mapped = mapped.iter().peekable();
-        pixels.extend(columns.clone().map(|x| {
-            let mapped = mapped.next_if(|pixel| pixel.column == x);
-            resolve(frame, scratch, (x, y), mapped)
-        }));
+    for top in (window.from[1]..window.to[1]).step_by(ROWS_TOGETHER) {
+        let rows = top..window.to[1].min(top + ROWS_TOGETHER as u32);
+        let places = rows.flat_map(|y| columns.clone().map(move |x| (x, y)));
+        draw_pixels(frame, scratch, places, &mut pixels);
     }
     pixels
 }
 
-/// The pixels of a row that show nothing but ground colored and lit by the map, on one slope: most of a picture's. What covers it
-/// is computed for all of them together.
-fn mapped_pixels<'a, const N: usize>(
-    frame: &'a TileContext<N>,
+/// Adds the pixels at some places: each face that one of them shows is shaded once and averaged over its samples. What is shaded
+/// of all of them is shaded together.
+fn draw_pixels<const N: usize>(
+    frame: &TileContext<N>,
+    scratch: &TileScratch<N>,
+    places: impl Iterator<Item = (u32, u32)> + Clone,
+    pixels: &mut Vec<ResolvedPixel>,
+) {
+    let TileScratch { visibility, blend } = scratch;
+    let mut parts = Vec::with_capacity(MOST_TOGETHER);
+    if frame.is_colored {
+        places.clone().for_each(|place| add_parts(frame, visibility, place, &mut parts));
+    }
+    let mut points = Vec::with_capacity(MOST_TOGETHER);
+    for &PixelPart { place: (x, y), face, mask } in parts.iter().filter(|part| part.face != FaceId::NONE) {
+        points.push(FaceAt { face: frame.geometry.face(face), at: frame.pattern.centroid_in(x, y, mask) });
+    }
+    let opaque = points.len();
+    places.clone().for_each(|place| points.extend(blend.points(frame, place)));
+    let shaded = frame.shader.shade_each(&points);
+    let (opaque, transparent) = shaded.split_at(opaque);
+    let (mut opaque, mut transparent) = (opaque.iter(), transparent.iter().copied());
+    let mut parts = parts.iter().peekable();
+    pixels.extend(places.map(|(x, y)| {
+        let center = [x as f32 + 0.5, y as f32 + 0.5];
+        let mut colors = [Vec3::ZERO; N];
+        while let Some(part) = parts.next_if(|part| part.place == (x, y)) {
+            let color = match part.face {
+                FaceId::NONE => frame.shader.backdrop(center),
+                _ => opaque.next().map_or(Vec3::ZERO, |shaded| shaded.color),
+            };
+            for (sample, slot) in colors.iter_mut().enumerate() {
+                *slot = if part.mask & (1 << sample) != 0 { color } else { *slot };
+            }
+        }
+        let seen = blend.composite((x, y), &mut transparent, &mut colors);
+        let face = seen.unwrap_or(visibility.faces(x, y)[0]);
+        let (depth_m, feature) = depth_and_feature(frame, face, center);
+        let mean = colors.iter().sum::<Vec3>() / N as f32;
+        ResolvedPixel { color: Srgba::from_linear(mean), depth_m, feature }
+    }));
+}
+
+/// Samples of a pixel that are shaded together.
+struct PixelPart {
+    /// The column and the row of the pixel.
+    place: (u32, u32),
+    /// The face of the first of them.
+    face: FaceId,
+    mask: SampleMask,
+}
+
+/// Adds the parts of a pixel, which are all of its samples.
+fn add_parts<const N: usize>(
+    frame: &TileContext<N>,
     visibility: &Visibility<N>,
-    columns: Range<u32>,
-    y: u32,
-) -> Vec<MappedPixel<'a>> {
-    let mapped = |x: u32| {
-        let face = match visibility.faces(x, y)[0] {
-            FaceId::NONE => return None,
-            id => frame.geometry.face(id),
-        };
-        let is_whole = || samples_alike(frame, visibility, (x, y), 0) == SamplePattern::<N>::FULL;
-        let at = || frame.pattern.centroid_in(x, y, SamplePattern::<N>::FULL);
-        if frame.shader.is_mapped(face) && is_whole() { frame.shader.mapped(face, at(), x) } else { None }
-    };
-    let is_covered = frame.is_colored && frame.shader.has_cover();
-    let mut pixels: Vec<_> = if is_covered { columns.filter_map(mapped).collect() } else { Vec::new() };
-    Shader::cover_mapped(&mut pixels);
-    pixels
+    place: (u32, u32),
+    parts: &mut Vec<PixelPart>,
+) {
+    let faces = visibility.faces(place.0, place.1);
+    let mut left = SamplePattern::<N>::FULL;
+    while left != 0 {
+        let first = left.trailing_zeros() as usize;
+        let mask = left & samples_alike(frame, visibility, place, first);
+        parts.push(PixelPart { place, face: faces[first], mask });
+        left &= !mask;
+    }
 }
 
 /// Draws solids, the nearest first: hidden ones are skipped, and masks are read only where nothing is in front. The
@@ -133,41 +180,6 @@ fn draw_piece<const N: usize>(
     } else {
         visibility.draw(piece, face, frame.pattern, |_, samples| samples);
     }
-}
-
-/// One pixel: each face it shows is shaded once and averaged over the samples; `mapped` is what is known of it.
-fn resolve<const N: usize>(
-    frame: &TileContext<N>,
-    scratch: &TileScratch<N>,
-    (x, y): (u32, u32),
-    mapped: Option<&MappedPixel<'_>>,
-) -> ResolvedPixel {
-    let faces = scratch.visibility.faces(x, y);
-    let center = [x as f32 + 0.5, y as f32 + 0.5];
-    let color_of = |sample: usize, mask: SampleMask| match faces[sample] {
-        FaceId::NONE => frame.shader.backdrop(center),
-        id => frame.shader.shade(frame.geometry.face(id), frame.pattern.centroid_in(x, y, mask)).color,
-    };
-    let mut colors = mapped.map_or([Vec3::ZERO; N], |pixel| [frame.shader.shade_mapped(pixel); N]);
-    let mut left = if frame.is_colored && mapped.is_none() { SamplePattern::<N>::FULL } else { 0 };
-    while left != 0 {
-        let first = left.trailing_zeros() as usize;
-        let mask = left & samples_alike(frame, &scratch.visibility, (x, y), first);
-        let color = color_of(first, mask);
-        if mask == SamplePattern::<N>::FULL {
-            // Most pixels: one face, or one slope of ground.
-            colors = [color; N];
-            break;
-        }
-        for (sample, slot) in colors.iter_mut().enumerate() {
-            *slot = if mask & (1 << sample) != 0 { color } else { *slot };
-        }
-        left &= !mask;
-    }
-    let transparent = scratch.blend.composite(frame, (x, y), &mut colors);
-    let (depth_m, feature) = depth_and_feature(frame, transparent.unwrap_or(faces[0]), center);
-    let mean = colors.iter().sum::<Vec3>() / N as f32;
-    ResolvedPixel { color: Srgba::from_linear(mean), depth_m, feature }
 }
 
 /// The samples of a pixel that are shaded with sample `first`: those of its face and, on ground colored and lit by the
