@@ -15,7 +15,7 @@ use crate::cpu::screen::Screen;
 const GUARD_PX: f64 = 8192.0;
 
 /// A triangle cut at five planes has at most this many corners.
-const MOST_CORNERS: usize = 8;
+pub const MOST_CORNERS: usize = 8;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Outline {

@@ -13,9 +13,9 @@ use std::ops::Range;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::cpu::clip::{Outline, clipped};
+use crate::cpu::clip::{MOST_CORNERS, Outline, clipped};
 use crate::cpu::plane::TrianglePlanes;
-use crate::cpu::raster::{PixelWindow, SubpixelPoint, doubled_area, snapped};
+use crate::cpu::raster::{PixelWindow, SubpixelBox, SubpixelPoint, doubled_area, snapped};
 use crate::cpu::screen::{Projection, Screen};
 use sandtable_draw::list::{DRAPE_TOLERANCE, DepthLayer, DrawItem, DrawList, DrawMesh};
 use sandtable_draw::material::AlphaMode;
@@ -90,6 +90,26 @@ pub struct GeometrySource<'a> {
     /// The triangles up to the end of each item.
     ends: Vec<u64>,
     total: u64,
+    /// Where samples lie in a pixel.
+    samples: Vec<SubpixelPoint>,
+}
+
+/// A triangle on the picture that may show.
+struct SeenTriangle {
+    /// Its corners, from the eye in meters along the world's axes.
+    offsets: [DVec3; 3],
+    /// The same in homogeneous pixels.
+    points: [DVec3; 3],
+    outline: Outline,
+    snapped: SnappedOutline,
+    /// The pixels that it may touch.
+    window: PixelWindow,
+}
+
+/// An outline in sub-pixels.
+struct SnappedOutline {
+    corners: [SubpixelPoint; MOST_CORNERS],
+    count: usize,
 }
 
 struct ItemSetup<'a> {
@@ -100,20 +120,22 @@ struct ItemSetup<'a> {
     projection: Projection<'a>,
     alpha: AlphaMode,
     two_sided: bool,
+    samples: &'a [SubpixelPoint],
     /// The rows of pixels that are drawn.
     drawn: &'a Range<u32>,
 }
 
 impl<'a> GeometrySource<'a> {
-    /// The source of a checked list. `None` where the list draws more triangles than ids can number (2^32).
-    pub fn new(list: &'a DrawList, screen: &'a Screen) -> Option<Self> {
+    /// The source of a checked list whose pixels have samples in these places. `None` where the list draws more triangles than
+    /// ids can number (2^32).
+    pub fn new(list: &'a DrawList, screen: &'a Screen, samples: Vec<SubpixelPoint>) -> Option<Self> {
         let mut total = 0;
         let ends = list.items.iter().map(|item| {
             total += item.triangles.len() as u64;
             total
         });
         let ends: Vec<u64> = ends.collect();
-        (total < u64::from(u32::MAX) - CHUNK).then_some(Self { list, screen, ends, total })
+        (total < u64::from(u32::MAX) - CHUNK).then_some(Self { list, screen, ends, total, samples })
     }
 
     /// The screen.
@@ -142,13 +164,18 @@ impl<'a> GeometrySource<'a> {
         ScreenGeometry { chunks: self.chunk_numbers().map(chunk).collect() }
     }
 
-    /// The rows that each chunk may touch; calls `visit` with those of each piece, in any order and on all threads.
+    /// The rows that each chunk may touch; calls `visit` with those of each triangle, in any order and on all threads.
     pub fn survey(&self, visit: impl Fn(Range<u32>) + Sync) -> Vec<Range<u32>> {
         let rows = self.rows();
         let surveyed = |number: u64| {
-            let chunk = self.chunk(number, &rows);
-            chunk.pieces.iter().for_each(|piece| visit(piece.window.from[1]..piece.window.to[1]));
-            chunk.rows
+            let (mut top, mut bottom) = (u32::MAX, 0);
+            each_triangle(self, self.chunk_triangles(number), &rows, |setup, triangle| {
+                if let Some(SeenTriangle { window: PixelWindow { from, to }, .. }) = setup.seen(triangle) {
+                    visit(from[1]..to[1]);
+                    (top, bottom) = (top.min(from[1]), bottom.max(to[1]));
+                }
+            });
+            top..bottom
         };
         self.chunk_numbers().map(surveyed).collect()
     }
@@ -157,9 +184,12 @@ impl<'a> GeometrySource<'a> {
         (0..self.total.div_ceil(CHUNK)).into_par_iter()
     }
 
+    fn chunk_triangles(&self, number: u64) -> Range<u64> {
+        number * CHUNK..((number + 1) * CHUNK).min(self.total)
+    }
+
     fn chunk(&self, number: u64, rows: &Range<u32>) -> FaceChunk {
-        let triangles = number * CHUNK..((number + 1) * CHUNK).min(self.total);
-        build_chunk(self, triangles, rows)
+        build_chunk(self, self.chunk_triangles(number), rows)
     }
 }
 
@@ -186,25 +216,38 @@ impl ScreenGeometry {
     }
 }
 
-/// The faces of the triangles number `triangles`, counted through all items, that may be seen in the rows `drawn`.
-fn build_chunk(source: &GeometrySource, triangles: Range<u64>, drawn: &Range<u32>) -> FaceChunk {
-    let &GeometrySource { list, screen, ref ends, .. } = source;
-    let most = (triangles.end - triangles.start) as usize;
-    let (faces, pieces) = (Vec::with_capacity(most), Vec::with_capacity(most));
-    let mut chunk = FaceChunk { faces, pieces, rows: 0..0 };
+/// Calls `visit` with each of the triangles number `triangles`, counted through all items, and the setup of its item.
+fn each_triangle(
+    source: &GeometrySource,
+    triangles: Range<u64>,
+    drawn: &Range<u32>,
+    mut visit: impl FnMut(&ItemSetup<'_>, u32),
+) {
+    let ends = &source.ends;
     let mut index = ends.partition_point(|&end| end <= triangles.start);
     let mut next = triangles.start;
     while next < triangles.end {
-        let setup = ItemSetup::new(list, screen, index, drawn);
+        let setup = ItemSetup::new(source, index, drawn);
         let range = &setup.item.triangles;
         let start = ends[index] - range.len() as u64;
         let end = ends[index].min(triangles.end);
         for number in next..end {
-            let id = FaceId(triangles.start as u32 + chunk.faces.len() as u32);
-            setup.add_triangle(&mut chunk, range.start + (number - start) as u32, id);
+            visit(&setup, range.start + (number - start) as u32);
         }
         (next, index) = (end, index + 1);
     }
+}
+
+/// The faces of the triangles number `triangles`, counted through all items, that may be seen in the rows `drawn`.
+fn build_chunk(source: &GeometrySource, triangles: Range<u64>, drawn: &Range<u32>) -> FaceChunk {
+    let most = (triangles.end - triangles.start) as usize;
+    let (faces, pieces) = (Vec::with_capacity(most), Vec::with_capacity(most));
+    let mut chunk = FaceChunk { faces, pieces, rows: 0..0 };
+    let first = triangles.start as u32;
+    each_triangle(source, triangles, drawn, |setup, triangle| {
+        let id = FaceId(first + chunk.faces.len() as u32);
+        setup.add_triangle(&mut chunk, triangle, id);
+    });
     let (mut top, mut bottom) = (u32::MAX, 0);
     for PixelWindow { from, to } in chunk.pieces.iter().map(|piece| piece.window) {
         (top, bottom) = (top.min(from[1]), bottom.max(to[1]));
@@ -217,7 +260,8 @@ fn build_chunk(source: &GeometrySource, triangles: Range<u64>, drawn: &Range<u32
 }
 
 impl<'a> ItemSetup<'a> {
-    fn new(list: &'a DrawList, screen: &'a Screen, index: usize, drawn: &'a Range<u32>) -> Self {
+    fn new(source: &'a GeometrySource, index: usize, drawn: &'a Range<u32>) -> Self {
+        let GeometrySource { list, screen, samples, .. } = source;
         let item = &list.items[index];
         let material = &list.materials[item.material.0 as usize];
         Self {
@@ -228,19 +272,43 @@ impl<'a> ItemSetup<'a> {
             projection: screen.projection(&item.world_from_mesh),
             alpha: material.alpha,
             two_sided: material.two_sided,
+            samples,
             drawn,
         }
     }
 
-    fn add_triangle(&self, chunk: &mut FaceChunk, triangle: u32, id: FaceId) {
+    /// A triangle on the picture, unless it shows in no pixel that is drawn: most of many are out of view, turned away or
+    /// between the samples.
+    fn seen(&self, triangle: u32) -> Option<SeenTriangle> {
         let corners =
             self.mesh.triangles[triangle as usize].map(|id| self.mesh.vertices[id.index()].position);
         let offsets = corners.map(|position| self.projection.eye_from_mesh(position));
         let points = offsets.map(|offset| self.projection.pixels_from_eye(offset));
         if !points.iter().all(|point| point.is_finite()) {
-            return;
+            return None;
         }
-        let Some(outline) = clipped(points, self.screen) else { return };
+        let outline = clipped(points, self.screen)?;
+        let snapped = SnappedOutline::new(&outline);
+        let bounds = SubpixelBox::around(snapped.corners());
+        let window = bounds.pixels(self.screen.size);
+        let is_drawn = window.from[1] < self.drawn.end && self.drawn.start < window.to[1];
+        if !is_drawn || window.is_empty() || bounds.is_between(self.samples) {
+            return None;
+        }
+        if let [a, b, c] = *snapped.corners() {
+            // Counter-clockwise as seen is the negative sense on a picture whose rows run down.
+            let area = doubled_area(&[a, c, b]);
+            if area == 0 || (area < 0 && !self.two_sided) {
+                return None;
+            }
+        }
+        Some(SeenTriangle { offsets, points, outline, snapped, window })
+    }
+
+    fn add_triangle(&self, chunk: &mut FaceChunk, triangle: u32, id: FaceId) {
+        let Some(SeenTriangle { offsets, points, outline, snapped, .. }) = self.seen(triangle) else {
+            return;
+        };
         let nearness = || offsets.map(|offset| self.screen.nearness(self.screen.depth_from_eye(offset)));
         let planes = match self.screen.is_parallel {
             false => TrianglePlanes::from_corners(points),
@@ -251,7 +319,7 @@ impl<'a> ItemSetup<'a> {
             return;
         }
         let known = chunk.pieces.len();
-        self.push_pieces(&mut chunk.pieces, &outline, planes.faces_eye, id);
+        self.push_pieces(&mut chunk.pieces, &snapped, planes.faces_eye, id);
         if chunk.pieces.len() == known {
             return;
         }
@@ -267,13 +335,17 @@ impl<'a> ItemSetup<'a> {
         chunk.faces.push(ScreenFace { item: self.index, triangle, planes, range, reach });
     }
 
-    /// The outline as a fan of snapped triangles that may touch a pixel that is drawn.
-    fn push_pieces(&self, pieces: &mut Vec<FacePiece>, outline: &Outline, faces_eye: bool, face: FaceId) {
-        let snap = |corner: &DVec3| [snapped(corner.x / corner.z), snapped(corner.y / corner.z)];
-        let [first, rest @ ..] = outline.corners() else { return };
+    /// The outline as a fan of triangles that may touch a pixel that is drawn.
+    fn push_pieces(
+        &self,
+        pieces: &mut Vec<FacePiece>,
+        outline: &SnappedOutline,
+        faces_eye: bool,
+        face: FaceId,
+    ) {
+        let [a, rest @ ..] = outline.corners() else { return };
         for pair in rest.windows(2) {
-            let [a, b, c] = [snap(first), snap(&pair[0]), snap(&pair[1])];
-            // Counter-clockwise as seen is the negative sense on a picture whose rows run down.
+            let (a, b, c) = (*a, pair[0], pair[1]);
             let corners = if faces_eye { [a, c, b] } else { [a, b, c] };
             let window = PixelWindow::around(&corners, self.screen.size);
             let is_drawn = window.from[1] < self.drawn.end && self.drawn.start < window.to[1];
@@ -281,6 +353,20 @@ impl<'a> ItemSetup<'a> {
                 pieces.push(FacePiece { corners, window, face, alpha: self.alpha });
             }
         }
+    }
+}
+
+impl SnappedOutline {
+    fn new(outline: &Outline) -> Self {
+        let mut snapped_outline = Self { corners: [[0; 2]; MOST_CORNERS], count: outline.corners().len() };
+        for (slot, corner) in snapped_outline.corners.iter_mut().zip(outline.corners()) {
+            *slot = [snapped(corner.x / corner.z), snapped(corner.y / corner.z)];
+        }
+        snapped_outline
+    }
+
+    fn corners(&self) -> &[SubpixelPoint] {
+        &self.corners[..self.count]
     }
 }
 

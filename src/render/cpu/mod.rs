@@ -55,6 +55,7 @@ use rayon::prelude::*;
 use crate::cpu::band::{BandRows, TilesLeft, draw_band};
 use crate::cpu::geometry::GeometrySource;
 use crate::cpu::pattern::{EIGHT, FOUR, ONE, SamplePattern};
+use crate::cpu::raster::{SubpixelPoint, sample_places};
 use crate::cpu::screen::Screen;
 use crate::cpu::shade::Shader;
 use crate::cpu::strips::RowStrips;
@@ -137,7 +138,12 @@ pub fn render_counted(
     list.check()?;
     check_memory(bytes_of(list, camera), "the picture", "draw a smaller one")?;
     let screen = Screen::new(camera);
-    let source = source(list, &screen)?;
+    let samples = match quality.samples {
+        SampleCount::One => sample_places(&ONE),
+        SampleCount::Four => sample_places(&FOUR),
+        SampleCount::Eight => sample_places(&EIGHT),
+    };
+    let source = source(list, &screen, samples)?;
     // Before there are faces: what a map is made of takes as much memory as they do.
     let shadows = Shadows::new(list, camera)?;
     let shader = Shader::new(list, &screen, &shadows, quality.anisotropy.clamp(1, 16));
@@ -168,14 +174,19 @@ fn bytes_of(list: &DrawList, camera: &Camera) -> u64 {
 pub fn render_buffers(list: &DrawList, camera: &Camera) -> Result<Rendering, CpuRenderError> {
     list.check()?;
     let screen = Screen::new(camera);
-    let source = source(list, &screen)?;
+    let source = source(list, &screen, sample_places(&EIGHT))?;
     let shadows = Shadows::default();
     let shader = Shader::new(list, &screen, &shadows, RenderQuality::default().anisotropy);
     Ok(draw(&source, &RowStrips::new(&source), &shader, &EIGHT, DrawnAs::Shapes))
 }
 
-fn source<'a>(list: &'a DrawList, screen: &'a Screen) -> Result<GeometrySource<'a>, CpuRenderError> {
-    GeometrySource::new(list, screen).ok_or_else(|| CpuRenderError::TooManyTriangles(list.triangle_count()))
+fn source<'a>(
+    list: &'a DrawList,
+    screen: &'a Screen,
+    samples: Vec<SubpixelPoint>,
+) -> Result<GeometrySource<'a>, CpuRenderError> {
+    let source = GeometrySource::new(list, screen, samples);
+    source.ok_or_else(|| CpuRenderError::TooManyTriangles(list.triangle_count()))
 }
 
 /// What is drawn.
@@ -278,7 +289,7 @@ mod tests {
         let list = confetti();
         let camera = Camera::new(Vec3::ZERO, Vec3::Y, 0.9, (150, 330), (0.5, 1000.0)).expect("sound");
         let (screen, shadows) = (Screen::new(&camera), Shadows::default());
-        let source = GeometrySource::new(&list, &screen).expect("few triangles");
+        let source = GeometrySource::new(&list, &screen, sample_places(&FOUR)).expect("few triangles");
         let shader = Shader::new(&list, &screen, &shadows, 8);
         let drawn = |strips: &RowStrips| {
             draw(&source, strips, &shader, &FOUR, DrawnAs::Colors(&DrawnRows::default()))

@@ -41,14 +41,48 @@ impl PixelWindow {
 
     /// The pixels of a picture of `size` that the triangle of `corners` may touch.
     pub fn around(corners: &[SubpixelPoint; 3], size: [u32; 2]) -> Self {
-        let bound = |axis: usize| {
-            let [a, b, c] = corners.map(|corner| corner[axis]);
-            let pixel = |position: i32| (position >> SUBPIXEL_BITS).clamp(0, size[axis] as i32) as u32;
-            (pixel(a.min(b).min(c)), (pixel(a.max(b).max(c)) + 1).min(size[axis]))
-        };
-        let ((left, right), (top, bottom)) = (bound(0), bound(1));
-        Self { from: [left, top], to: [right, bottom] }
+        SubpixelBox::around(corners).pixels(size)
     }
+}
+
+/// The places from `low` to `high`, both included.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SubpixelBox {
+    pub low: SubpixelPoint,
+    pub high: SubpixelPoint,
+}
+
+impl SubpixelBox {
+    pub fn around(corners: &[SubpixelPoint]) -> Self {
+        let none = Self { low: [i32::MAX; 2], high: [i32::MIN; 2] };
+        corners.iter().fold(none, |Self { low, high }, &[x, y]| Self {
+            low: [low[0].min(x), low[1].min(y)],
+            high: [high[0].max(x), high[1].max(y)],
+        })
+    }
+
+    /// The pixels of a picture of `size` that it touches.
+    pub fn pixels(&self, size: [u32; 2]) -> PixelWindow {
+        let pixel = |at: i32, axis: usize| (at >> SUBPIXEL_BITS).clamp(0, size[axis] as i32) as u32;
+        let from = [0, 1].map(|axis| pixel(self.low[axis], axis));
+        PixelWindow { from, to: [0, 1].map(|axis| (pixel(self.high[axis], axis) + 1).min(size[axis])) }
+    }
+
+    /// Whether it lies within a pixel, between its samples, which are in `places` of a pixel: so it is with most triangles of
+    /// what is far away.
+    pub fn is_between(&self, places: &[SubpixelPoint]) -> bool {
+        let Self { low, high } = *self;
+        let corner = low.map(|at| at >> SUBPIXEL_BITS << SUBPIXEL_BITS);
+        let is_in_pixel = high.map(|at| at >> SUBPIXEL_BITS << SUBPIXEL_BITS) == corner;
+        let holds = |axis: usize, at: i32| (low[axis]..=high[axis]).contains(&(corner[axis] + at));
+        is_in_pixel && !places.iter().any(|&[x, y]| holds(0, x) && holds(1, y))
+    }
+}
+
+/// Where samples lie in a pixel.
+pub fn sample_places<const N: usize>(pattern: &SamplePattern<N>) -> Vec<SubpixelPoint> {
+    const ONE: i32 = 1 << SUBPIXEL_BITS;
+    pattern.sixteenths.iter().map(|offset| offset.map(|part| ONE / 2 + part * (ONE / 16))).collect()
 }
 
 /// The sub-pixel position nearest to a pixel coordinate, clamped to ±32,768 pixels.
