@@ -124,9 +124,14 @@ pub fn clip_convex(polygon: &mut Vec<DVec2>, scratch: &mut Vec<DVec2>, window: &
 /// space.
 pub fn clip_half_plane(polygon: &mut Vec<DVec2>, scratch: &mut Vec<DVec2>, (from, to): (DVec2, DVec2)) {
     scratch.clear();
-    let side = |point: DVec2| (to - from).perp_dot(point - from);
-    clip(polygon, side, |before, here, part| before.lerp(here, part), scratch);
+    clip_to(polygon, scratch, (from, to));
     std::mem::swap(polygon, scratch);
+}
+
+/// Appends to `kept` the part of a convex `polygon` that lies to the left of the line `from`..`to` or on it.
+fn clip_to(polygon: &[DVec2], kept: &mut Vec<DVec2>, (from, to): (DVec2, DVec2)) {
+    let side = |point: DVec2| (to - from).perp_dot(point - from);
+    clip(polygon, side, |before, here, part| before.lerp(here, part), kept);
 }
 
 /// Appends to `kept` the part of a ring where `side` is not negative (Sutherland and Hodgman 1974). Where an edge crosses
@@ -159,14 +164,16 @@ pub fn clip(
 /// The lines through the window's sides cut the parts off one after the other, so there are at most as many parts as
 /// sides.
 pub fn cut_away(mut polygon: Vec<DVec2>, window: &[DVec2], outside: &mut Vec<Vec<DVec2>>) {
-    let mut scratch = Vec::new();
+    // A side cuts off one corner at the least, and adds two.
+    let room = polygon.len() + window.len();
+    let (mut beyond, mut scratch) = (Vec::with_capacity(room), Vec::with_capacity(room));
     for (from, to) in edges(window) {
-        let mut beyond = polygon.clone();
-        clip_half_plane(&mut beyond, &mut scratch, (to, from));
-        clip_half_plane(&mut polygon, &mut scratch, (from, to));
+        beyond.clear();
+        clip_to(&polygon, &mut beyond, (to, from));
         if beyond.len() > 2 {
-            outside.push(beyond);
+            outside.push(beyond.clone());
         }
+        clip_half_plane(&mut polygon, &mut scratch, (from, to));
         if polygon.len() < 3 {
             return;
         }

@@ -33,10 +33,13 @@ const MOST_STRETCHES: usize = 1 << 15;
 
 /// What `windows`, counter-clockwise and taken away in their order, leave of a convex counter-clockwise polygon: convex
 /// pieces, counter-clockwise, without slivers. `None` where they leave all of it.
-pub(crate) fn rest(polygon: &[DVec2], windows: &[[DVec2; 3]]) -> Option<Vec<Vec<DVec2>>> {
-    let mut clip = ConvexClip::default();
+pub(crate) fn rest(
+    polygon: &[DVec2],
+    windows: &[[DVec2; 3]],
+    clip: &mut ConvexClip,
+) -> Option<Vec<Vec<DVec2>>> {
     let cuts: Vec<CutWindow<'_>> =
-        windows.iter().filter_map(|window| CutWindow::new(polygon, window, &mut clip)).collect();
+        windows.iter().filter_map(|window| CutWindow::new(polygon, window, clip)).collect();
     if cuts.is_empty() {
         return None;
     }
@@ -83,21 +86,25 @@ struct CutPiece {
 }
 
 /// All pieces that there were.
-struct CutPieces {
+struct CutPieces<'a> {
     /// The whole polygon first; each piece comes after the one that it was cut from.
     pieces: Vec<CutPiece>,
     /// How many are not cut.
     left: usize,
     stretches: Stretches,
-    clip: ConvexClip,
+    clip: &'a mut ConvexClip,
+    /// Memory for the pieces near a cut, and for the parts of one of them.
+    near: Vec<usize>,
+    parts: Vec<Vec<DVec2>>,
 }
 
-impl CutPieces {
+impl<'a> CutPieces<'a> {
     /// The whole polygon, for so many cuts.
-    fn new(polygon: &[DVec2], cuts: usize, clip: ConvexClip) -> Self {
+    fn new(polygon: &[DVec2], cuts: usize, clip: &'a mut ConvexClip) -> Self {
         let count = (cuts / CUTS_PER_STRETCH).next_power_of_two().min(MOST_STRETCHES);
         let stretches = Stretches::new(&polygon::bounds(polygon), count);
-        let mut all = Self { pieces: Vec::new(), left: 0, stretches, clip };
+        let (near, parts) = (Vec::new(), Vec::new());
+        let mut all = Self { pieces: Vec::new(), left: 0, stretches, clip, near, parts };
         all.add(polygon.to_vec());
         all
     }
@@ -111,9 +118,10 @@ impl CutPieces {
 
     /// Takes away from all pieces what lies in a cut.
     fn cut(&mut self, cut: &CutWindow<'_>) {
-        let mut parts = Vec::new();
+        let (mut near, mut parts) = (std::mem::take(&mut self.near), std::mem::take(&mut self.parts));
         let is_left = |piece: usize| self.pieces[piece].parts.is_none();
-        for index in self.stretches.near(&cut.region, is_left) {
+        self.stretches.find_near(&cut.region, is_left, &mut near);
+        for index in near.drain(..) {
             let piece = &mut self.pieces[index];
             let meets = piece.bounds.meets(&cut.region);
             if !meets || self.clip.intersection(&piece.outline, cut.window, SLIVER_M2).is_none() {
@@ -126,6 +134,7 @@ impl CutPieces {
             parts.drain(..).filter(is_something).for_each(|part| self.add(part));
             self.pieces[index].parts = Some([first, self.pieces.len()]);
         }
+        (self.near, self.parts) = (near, parts);
     }
 
     /// The outlines of the pieces that are left: the parts of each in its place.
@@ -183,10 +192,9 @@ impl Stretches {
         }
     }
 
-    /// The pieces that share a stretch with a rectangle and for which `is_left` holds, in ascending order; others are
-    /// forgotten.
-    fn near(&mut self, rect: &Rect, is_left: impl Fn(usize) -> bool) -> Vec<usize> {
-        let mut near = Vec::new();
+    /// Sets `near`, which is empty, to the pieces that share a stretch with a rectangle and for which `is_left` holds, in ascending
+    /// order; others are forgotten.
+    fn find_near(&mut self, rect: &Rect, is_left: impl Fn(usize) -> bool, near: &mut Vec<usize>) {
         let [mut first, mut last] = self.ends(rect);
         while first > 0 {
             for held in &mut self.held[first..=last] {
@@ -197,7 +205,6 @@ impl Stretches {
         }
         near.sort_unstable();
         near.dedup();
-        near
     }
 }
 
@@ -234,6 +241,10 @@ mod tests {
                 assert!(left.len() < 4 * count, "{} pieces of {count}", left.len());
             }
         }
+    }
+
+    fn rest(polygon: &[DVec2], windows: &[[DVec2; 3]]) -> Option<Vec<Vec<DVec2>>> {
+        super::rest(polygon, windows, &mut ConvexClip::default())
     }
 
     /// What cuts leave where each piece is held against each cut.

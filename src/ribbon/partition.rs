@@ -17,7 +17,7 @@ use rayon::prelude::*;
 
 use crate::cutting::{self, SLIVER_M2};
 use crate::plan::{PlanMesh, TextureMap};
-use sandtable_geom::convex;
+use sandtable_geom::convex::{self, ConvexClip};
 use sandtable_geom::morton;
 use sandtable_geom::polygon;
 use sandtable_geom::rect::Rect;
@@ -33,7 +33,7 @@ const PLANS: usize = 64;
 /// The plans, each without the ground that the plans before it cover.
 pub fn apart<'a>(plans: impl IntoIterator<Item = &'a PlanMesh> + Clone) -> Vec<PlanMesh> {
     let covering = Covering::new(plans.clone());
-    let rests: Vec<Rest> = covering.each(|triangle| covering.rest(triangle));
+    let rests: Vec<Rest> = covering.each(|clip, triangle| covering.rest(triangle, clip));
     let mut rests = rests.into_iter();
     let with_rests = |plan: &'a PlanMesh| (plan, rests.by_ref().take(plan.triangles.len()).collect());
     let each: Vec<(&PlanMesh, Vec<Rest>)> = plans.into_iter().map(with_rests).collect();
@@ -44,7 +44,7 @@ pub fn apart<'a>(plans: impl IntoIterator<Item = &'a PlanMesh> + Clone) -> Vec<P
 /// rounding after [`apart`].
 pub fn overlap_m2<'a>(plans: impl IntoIterator<Item = &'a PlanMesh>) -> f64 {
     let covering = Covering::new(plans);
-    covering.each(|triangle| covering.overlap_m2(triangle)).into_iter().sum()
+    covering.each(|_, triangle| covering.overlap_m2(triangle)).into_iter().sum()
 }
 
 /// The part of `plan` that lies on `ground`, whose own triangles do not overlap; its texture is kept.
@@ -99,15 +99,19 @@ struct Covering {
 
 impl Covering {
     fn new<'a>(plans: impl IntoIterator<Item = &'a PlanMesh>) -> Self {
-        let corners = plans.into_iter().flat_map(PlanMesh::corners);
+        let plans: Vec<&PlanMesh> = plans.into_iter().collect();
+        let corners = plans.into_par_iter().with_min_len(PLANS).flat_map_iter(PlanMesh::corners);
         let triangles: Vec<[DVec2; 3]> = corners.map(|triangle| triangle.map(|corner| corner.at)).collect();
-        let rects: Vec<Rect> = triangles.iter().map(|&corners| Rect::around(corners)).collect();
-        Self { tree: RectTree::new(&rects), ranks: morton::ranks(&rects), triangles }
+        let rects: Vec<Rect> =
+            triangles.par_iter().with_min_len(CHUNK).map(|&corners| Rect::around(corners)).collect();
+        let (tree, ranks) = rayon::join(|| RectTree::new(&rects), || morton::ranks(&rects));
+        Self { tree, ranks, triangles }
     }
 
     /// What `found` says of every triangle, in their order.
-    fn each<T: Send>(&self, found: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
-        (0..self.triangles.len()).into_par_iter().with_min_len(CHUNK).map(found).collect()
+    fn each<T: Send>(&self, found: impl Fn(&mut ConvexClip, usize) -> T + Send + Sync) -> Vec<T> {
+        let triangles = (0..self.triangles.len()).into_par_iter().with_min_len(CHUNK);
+        triangles.map_init(ConvexClip::default, found).collect()
     }
 
     /// The triangles whose rectangles meet a triangle, in ascending order.
@@ -124,7 +128,7 @@ impl Covering {
     }
 
     /// What no triangle before this one covers.
-    fn rest(&self, triangle: usize) -> Rest {
+    fn rest(&self, triangle: usize, clip: &mut ConvexClip) -> Rest {
         let corners = &self.triangles[triangle];
         let mut before: Vec<usize> =
             self.tree.meeting_convex(corners).filter(|&other| other < triangle).collect();
@@ -133,7 +137,7 @@ impl Covering {
         }
         before.sort_unstable_by_key(|&other| self.ranks[other]);
         let windows: Vec<[DVec2; 3]> = before.into_iter().map(|other| self.triangles[other]).collect();
-        cutting::rest(corners, &windows).map_or(Rest::Whole, Rest::Pieces)
+        cutting::rest(corners, &windows, clip).map_or(Rest::Whole, Rest::Pieces)
     }
 }
 

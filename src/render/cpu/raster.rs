@@ -214,6 +214,36 @@ mod tests {
         mixed ^ (mixed >> 31)
     }
 
+    #[test]
+    fn what_lies_between_the_samples_covers_none_of_them() {
+        let (places, mut state) = (sample_places(&EIGHT), 7);
+        let (mut passed_over, mut covering) = (0, 0);
+        for _ in 0..4000 {
+            let size = 1 + (random(&mut state) % (1 << SUBPIXEL_BITS)) as i32;
+            let [left, top] = [(); 2].map(|()| (random(&mut state) % (20 << SUBPIXEL_BITS)) as i32);
+            // Half of the corners lie at samples.
+            let mut corner = || {
+                let place = places[(random(&mut state) >> 8) as usize % places.len()];
+                let within = |at: i32, random: u64| at + (random >> 8) as i32 % size;
+                let free = [within(left, random(&mut state)), within(top, random(&mut state))];
+                let pixel = [left, top].map(|at| at >> SUBPIXEL_BITS << SUBPIXEL_BITS);
+                if random(&mut state) & 256 == 0 { free } else { [pixel[0] + place[0], pixel[1] + place[1]] }
+            };
+            let corners = [corner(), corner(), corner()];
+            if doubled_area(&corners) == 0 {
+                continue;
+            }
+            let covered = counts(&[corners], &EIGHT).into_iter().flatten().sum::<u32>();
+            if SubpixelBox::around(&corners).is_between(&places) {
+                passed_over += 1;
+                assert_eq!(covered, 0, "{corners:?}");
+            } else {
+                covering += u32::from(covered > 0);
+            }
+        }
+        assert!(passed_over > 100 && covering > 100, "{passed_over}, {covering}");
+    }
+
     /// How often each sample is covered by the triangles, either way round.
     fn counts<const N: usize>(triangles: &[[SubpixelPoint; 3]], pattern: &SamplePattern<N>) -> Vec<[u32; N]> {
         let mut counts = vec![[0; N]; (SIDE * SIDE) as usize];
