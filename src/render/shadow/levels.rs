@@ -49,34 +49,15 @@ impl ShadowMap {
     /// # Errors
     /// There is not the memory for it.
     pub fn new(source: &MapSource, texel_px: f32) -> Result<Option<Self>, MemoryRefused> {
-        let (camera, axes) = (source.camera, &source.axes);
-        let solids = LightTriangles::new(&source.triangles.solids, axes, |_| true);
-        // By meter of depth; with parallel rays at any depth, and there is one level.
-        let pixel = 1.0 / camera.pixels_per_meter(1.0);
-        let planned = (0..MOST_DOUBLINGS).find_map(|doubling| {
-            let scale =
-                LevelScale { texel_per_depth: pixel * texel_px * (1u32 << doubling) as f32, least: 0 };
-            plan(source, &solids, scale)
-        });
-        let Some((scale, levels, pages)) = planned else { return Ok(None) };
-        let stored = pages.iter().filter(|page| page.number > 0).count();
-        if stored == 0 {
-            return Ok(None);
-        }
+        let solids = LightTriangles::new(&source.triangles.solids, &source.axes, |_| true);
+        let Some(mut map) = Self::planned(source, &solids, texel_px) else { return Ok(None) };
+        let stored = map.stored();
         let bytes = stored as u64 * u64::from(PAGE * PAGE) * BYTES_PER_TEXEL;
         check_memory(bytes, "drawing shadow maps", "draw a smaller picture, or fewer solids")?;
-        let mut map = Self {
-            eye: camera.eye(),
-            forward: camera.forward(),
-            axes: source.axes,
-            scale,
-            levels,
-            pages,
-            texels: bytemuck::zeroed_vec(stored * (PAGE * PAGE) as usize),
-        };
+        map.texels = bytemuck::zeroed_vec(stored * (PAGE * PAGE) as usize);
         let kept: Vec<_> = map.levels.iter().map(|level| KeptPages::new(level, &map.pages)).collect();
         let is_near = |bounds: LightBox| kept.iter().any(|kept| kept.pages_on(bounds).is_some());
-        let ground = LightTriangles::new(&source.triangles.ground, axes, is_near);
+        let ground = LightTriangles::new(&source.triangles.ground, &source.axes, is_near);
         let mut texels = map.texels.as_mut_slice();
         for (level, kept) in map.levels.iter().zip(&kept) {
             let pages = &mut map.pages[level.pages()];
@@ -87,6 +68,26 @@ impl ShadowMap {
             texels = others;
         }
         Ok(Some(map))
+    }
+
+    /// The map without texels, its pages numbered; `None` where no shadow is seen. `solids` are along its axes.
+    pub(super) fn planned(source: &MapSource, solids: &LightTriangles, texel_px: f32) -> Option<Self> {
+        let camera = source.camera;
+        // By meter of depth; with parallel rays at any depth, and there is one level.
+        let pixel = 1.0 / camera.pixels_per_meter(1.0);
+        let (scale, levels, pages) = (0..MOST_DOUBLINGS).find_map(|doubling| {
+            let scale =
+                LevelScale { texel_per_depth: pixel * texel_px * (1u32 << doubling) as f32, least: 0 };
+            plan(source, solids, scale)
+        })?;
+        let (eye, forward, axes) = (camera.eye(), camera.forward(), source.axes);
+        let map = Self { eye, forward, axes, scale, levels, pages, texels: Vec::new() };
+        (map.stored() > 0).then_some(map)
+    }
+
+    /// How many pages are stored.
+    pub fn stored(&self) -> usize {
+        self.pages.iter().filter(|page| page.number > 0).count()
     }
 }
 
@@ -158,7 +159,7 @@ pub struct KeptPages<'a> {
 }
 
 impl<'a> KeptPages<'a> {
-    fn new(level: &'a ShadowLevel, pages: &[ShadowPage]) -> Self {
+    pub fn new(level: &'a ShadowLevel, pages: &[ShadowPage]) -> Self {
         let stride = level.columns as usize + 1;
         let mut counts = vec![0; stride * (level.rows as usize + 1)];
         for (row, pages) in pages[level.pages()].chunks_exact(level.columns as usize).enumerate() {
@@ -189,7 +190,7 @@ impl<'a> KeptPages<'a> {
 
 impl ShadowLevel {
     /// Where its pages are in [`ShadowMap::pages`].
-    fn pages(&self) -> Range<usize> {
+    pub fn pages(&self) -> Range<usize> {
         self.first as usize..(self.first + self.columns * self.rows) as usize
     }
 

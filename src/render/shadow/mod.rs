@@ -19,7 +19,8 @@
 //!
 //! `casters` turns triangles to the map's space, `levels` finds the pages, `fill` and `coverage` rasterize them with integer
 //! coverage, row of pages by row of pages in parallel; the greatest height does not depend on the order. [`filter`]
-//! reads them. Both renderers read the same map, so that they show the same shadows.
+//! reads them. Both renderers read the same map, so that they show the same shadows. A graphics adapter may draw the texels
+//! itself: [`plan`] gives it the pages without them.
 //!
 //! The ground receives from solids only, since the ground map holds the shadow of terrain on terrain, softer and finer
 //! than triangles could cast it. Solids receive from both.
@@ -41,11 +42,12 @@ mod cut;
 mod fill;
 pub mod filter;
 mod levels;
+pub mod plan;
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
-use crate::shadow::casters::ListTriangles;
+use crate::shadow::casters::{ListTriangles, TriangleUse};
 use crate::shadow::levels::MapSource;
 use sandtable_base::limits::memory::{MemoryRefused, check_memory};
 use sandtable_draw::list::DrawList;
@@ -69,6 +71,10 @@ const SUN_TEXEL_PX: f32 = 1.4;
 
 /// The same for the sky's map: contact shade is blurred and needs few.
 const SKY_TEXEL_PX: f32 = 4.0;
+
+/// How far above the ground an underside lies at the least of what does not touch it, in texels: as far as contact
+/// shade reaches.
+pub const FLOATING_TEXELS: f32 = 2.0;
 
 /// The height of a texel where nothing is: finite, since shaders need not know infinity.
 const NOTHING: f32 = -1e30;
@@ -179,8 +185,10 @@ impl Shadows {
     /// There is not the memory for them.
     pub fn new(list: &DrawList, camera: &Camera) -> Result<Self, MemoryRefused> {
         let to_sun = list.lighting.to_sun;
-        check_memory(ListTriangles::bytes_of(list), "drawing shadows", "draw fewer or coarser solids")?;
-        let Some(triangles) = ListTriangles::new(list, camera) else { return Ok(Self::default()) };
+        let (doing, remedy) = ("drawing shadows", "draw fewer or coarser solids");
+        check_memory(ListTriangles::bytes_of(list, TriangleUse::Draw), doing, remedy)?;
+        let triangles = ListTriangles::new(list, camera, TriangleUse::Draw);
+        let Some(triangles) = triangles else { return Ok(Self::default()) };
         let map = |toward: Vec3, texel_px: f32, purpose: ShadowPurpose| {
             let axes = LightAxes::new(toward, camera);
             ShadowMap::new(&MapSource { list, camera, triangles: &triangles, axes, purpose }, texel_px)
