@@ -71,13 +71,14 @@ impl LiveLoader {
             let patches = PatchStore::new(list, &places);
             let loader = Loader::new(gpu);
             let LiveShadows(shadows) = shadows;
-            let textures = FrameTextures::upload(&loader, list.ground.as_deref(), shadows)?;
-            let has_shadows = [&shadows.sun, &shadows.sky].map(Option::is_some);
+            let shadow_textures = ShadowTextures::upload(&loader, shadows)?;
+            let textures = FrameTextures::upload(&loader, list.ground.as_deref(), shadow_textures)?;
+            let has_shadows = shadows.maps().map(|map| map.is_some());
             let scene = LoadedScene {
                 map: EditedMap::new(list.ground.clone()),
                 lighting: list.lighting,
                 parts: ShaderParts::of_picture(list.ground.as_deref(), &list.lighting, has_shadows),
-                shadows: ShadowView::both(shadows),
+                shadows: ShadowView::both(shadows.maps()),
                 row_bits: row_bits(gpu.limits.max_texture_dimension_2d),
                 frame: FrameGroup::new(&loader, layouts, &textures)?,
                 textures,
@@ -101,8 +102,8 @@ impl LiveLoader {
         self.gpu.guarded("sending the shadows", || {
             let textures = ShadowTextures::upload(&Loader::new(&self.gpu), shadows)?;
             self.gpu.finish_sending()?;
-            let has_shadows = [&shadows.sun, &shadows.sky].map(Option::is_some);
-            Ok(PreparedShadows { textures, views: ShadowView::both(shadows), has_shadows })
+            let has_shadows = shadows.maps().map(|map| map.is_some());
+            Ok(PreparedShadows { textures, views: ShadowView::both(shadows.maps()), has_shadows })
         })
     }
 

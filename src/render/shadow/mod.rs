@@ -201,6 +201,11 @@ impl Shadows {
         let sun = sun()?;
         Ok(Self { sun, sky: map(Vec3::Z, SKY_TEXEL_PX, ShadowPurpose::Contact)? })
     }
+
+    /// The maps of the sun and of the sky.
+    pub fn maps(&self) -> [Option<&ShadowMap>; 2] {
+        [self.sun.as_ref(), self.sky.as_ref()]
+    }
 }
 
 impl LightAxes {
