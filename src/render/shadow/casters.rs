@@ -21,10 +21,6 @@ const SEEN_MARGIN: f32 = 1.05;
 /// Corners farther from the eye than this, in meters, are left out: squares of it are still finite.
 const FARTHEST_M: f32 = 1e15;
 
-/// Corners up to here, in meters from the eye, are those of real scenes, which adapters clip as the processor does: a
-/// quarter of the way around the Earth.
-const FARTHEST_REAL_M: f32 = 1e7;
-
 /// A finite triangle, in meters from the eye.
 #[derive(Clone, Copy, Debug)]
 pub struct CasterTriangle {
@@ -40,42 +36,23 @@ pub struct LightBox {
     pub high: Vec2,
 }
 
-/// The use of a list's triangles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TriangleUse {
-    /// Maps are planned and drawn.
-    Draw,
-    /// Maps are planned alone: of the ground its depths are needed.
-    Plan,
-}
-
 /// The shadow casters of a list, along the world's axes.
 #[derive(Debug)]
 pub struct ListTriangles {
     /// Of solids that cast shadows, in the list's order; never empty.
     pub solids: Vec<CasterTriangle>,
-    /// Of the ground; none for [`TriangleUse::Plan`].
+    /// Of the ground.
     pub ground: Vec<CasterTriangle>,
     /// The least and greatest depth of what is seen, in meters; above 0 in perspective.
     pub depths_m: [f32; 2],
-    /// The masks of the textures of solids, by texture; none for [`TriangleUse::Plan`].
+    /// The masks of the textures of solids, by texture.
     pub masks: BTreeMap<u32, AlphaMask>,
-    /// Whether every corner is finite and no farther away than those of real scenes; for [`TriangleUse::Plan`].
-    pub is_real: bool,
 }
 
-/// What a plan knows of triangles that it does not keep.
-#[derive(Clone, Copy, Debug)]
-struct TriangleMeasure {
-    /// [`seen_depths`].
-    depths_m: [f32; 2],
-    is_real: bool,
-}
-
-/// Triangles along the axes of a light, each with its box.
+/// Triangles along the axes of a light, or what of them is needed, each with its box.
 #[derive(Debug)]
-pub struct LightTriangles {
-    pub triangles: Vec<(CasterTriangle, LightBox)>,
+pub struct LightTriangles<T = CasterTriangle> {
+    pub triangles: Vec<(T, LightBox)>,
     pub bounds: LightBox,
 }
 
@@ -87,6 +64,11 @@ impl LightBox {
             let at = corner.truncate();
             Self { low: bounds.low.min(at), high: bounds.high.max(at) }
         })
+    }
+
+    pub fn of_triangle(corners: [Vec3; 3]) -> Self {
+        let [a, b, c] = corners.map(Vec3::truncate);
+        Self { low: a.min(b).min(c), high: a.max(b).max(c) }
     }
 
     pub fn union(self, other: Self) -> Self {
@@ -108,34 +90,27 @@ impl LightBox {
 
 impl ListTriangles {
     /// The memory that the triangles of a checked list take, with those along the light of a map; 0 where no solid casts.
-    pub fn bytes_of(list: &DrawList, wanted: TriangleUse) -> u64 {
+    pub fn bytes_of(list: &DrawList) -> u64 {
         const COLLECTED: u64 = 2;
         const BYTES: u64 = COLLECTED * (size_of::<CasterTriangle>() + LightTriangles::BYTES) as u64;
         if !list.items.iter().any(|item| is_caster(list, item)) {
             return 0;
         }
-        let has_ground = wanted == TriangleUse::Draw;
-        let counted = list
-            .items
-            .iter()
-            .filter(|item| (has_ground && item.layer == DepthLayer::Ground) || is_caster(list, item));
+        let counted =
+            list.items.iter().filter(|item| item.layer == DepthLayer::Ground || is_caster(list, item));
         counted.map(|item| item.triangles.len() as u64).sum::<u64>() * BYTES
     }
 
     /// The shadow casters of a checked list; `None` where no solid casts or nothing is seen.
-    pub fn new(list: &DrawList, camera: &Camera, wanted: TriangleUse) -> Option<Self> {
+    pub fn new(list: &DrawList, camera: &Camera) -> Option<Self> {
         let is_caster = |item: &DrawItem| is_caster(list, item);
         let first = list.items.partition_point(|item| item.layer < DepthLayer::Solid);
         if !list.items[first..].iter().any(is_caster) {
             return None;
         }
         let ground_end = list.items.partition_point(|item| item.layer == DepthLayer::Ground);
-        let portions = |items: Range<usize>| -> Vec<(usize, Range<u32>)> {
-            let casting = items.filter(|&index| index < first || is_caster(&list.items[index]));
-            casting.flat_map(|index| portions(&list.items[index]).map(move |part| (index, part))).collect()
-        };
-        let collected = |portions: Vec<(usize, Range<u32>)>| -> Vec<CasterTriangle> {
-            let lists: Vec<_> = portions
+        let triangles = |items: Range<usize>| -> Vec<CasterTriangle> {
+            let lists: Vec<_> = portions(list, items)
                 .into_par_iter()
                 .fold(Vec::new, |mut triangles, (index, part)| {
                     add_triangles(&mut triangles, list, camera.eye(), (index, part));
@@ -144,57 +119,16 @@ impl ListTriangles {
                 .collect();
             lists.concat()
         };
-        let measured = |portions: Vec<(usize, Range<u32>)>| {
-            let of_portion = |(index, part): (usize, Range<u32>)| {
-                let (mut triangles, wanted) = (Vec::new(), part.len());
-                add_triangles(&mut triangles, list, camera.eye(), (index, part));
-                TriangleMeasure::new(&triangles, wanted, camera)
-            };
-            let none = || TriangleMeasure::new(&[], 0, camera);
-            portions.into_par_iter().map(of_portion).reduce(none, TriangleMeasure::and)
-        };
-        let (of_solids, of_ground) = (portions(first..list.items.len()), portions(0..ground_end));
-        let solid_count = of_solids.iter().map(|(_, part)| part.len()).sum();
-        let solids = collected(of_solids);
-        let (ground, depths_m, is_real) = match wanted {
-            TriangleUse::Draw => {
-                let ground = collected(of_ground);
-                let [of_solids, of_ground] =
-                    [&solids, &ground].map(|triangles| seen_depths(triangles, camera));
-                (ground, wider(of_solids, of_ground), false)
-            }
-            TriangleUse::Plan => {
-                let of_solids = TriangleMeasure::new(&solids, solid_count, camera);
-                let TriangleMeasure { depths_m, is_real } = of_solids.and(measured(of_ground));
-                (Vec::new(), depths_m, is_real)
-            }
-        };
-        let masks = match wanted {
-            TriangleUse::Draw => masks(list, &list.items[first..]),
-            TriangleUse::Plan => BTreeMap::new(),
-        };
-        let is_seen = !solids.is_empty() && depths_m[0] <= depths_m[1];
-        is_seen.then_some(Self { solids, ground, depths_m, masks, is_real })
-    }
-}
-
-impl TriangleMeasure {
-    /// That of what is left of so many triangles.
-    fn new(triangles: &[CasterTriangle], count: usize, camera: &Camera) -> Self {
-        let is_near = |corner: &Vec3| corner.abs().cmple(Vec3::splat(FARTHEST_REAL_M)).all();
-        let all_near = || triangles.iter().all(|triangle| triangle.corners.iter().all(is_near));
-        let is_real = triangles.len() == count && all_near();
-        Self { depths_m: seen_depths(triangles, camera), is_real }
-    }
-
-    fn and(self, other: Self) -> Self {
-        let is_real = self.is_real && other.is_real;
-        Self { depths_m: wider(self.depths_m, other.depths_m), is_real }
+        let (solids, ground) = (triangles(first..list.items.len()), triangles(0..ground_end));
+        let [of_solids, of_ground] = [&solids, &ground].map(|triangles| seen_depths(triangles, camera));
+        let depths_m = [of_solids[0].min(of_ground[0]), of_solids[1].max(of_ground[1])];
+        let masks = masks(list, &list.items[first..]);
+        (!solids.is_empty() && depths_m[0] <= depths_m[1]).then_some(Self { solids, ground, depths_m, masks })
     }
 }
 
 /// Whether an item of a checked list casts a shadow.
-fn is_caster(list: &DrawList, item: &DrawItem) -> bool {
+pub fn is_caster(list: &DrawList, item: &DrawItem) -> bool {
     let alpha = list.materials[item.material.0 as usize].alpha;
     item.layer == DepthLayer::Solid && alpha != AlphaMode::Blend && !item.triangles.is_empty()
 }
@@ -210,10 +144,8 @@ impl LightTriangles {
         is_near: impl Fn(LightBox) -> bool + Sync,
     ) -> Self {
         let turned = |triangle: &CasterTriangle| {
-            let [a, b, c] = triangle.corners;
-            let corners = [axes.turned(a), axes.turned(b), axes.turned(c)];
-            let [a, b, c] = corners.map(Vec3::truncate);
-            let bounds = LightBox { low: a.min(b).min(c), high: a.max(b).max(c) };
+            let corners = triangle.corners.map(|corner| axes.turned(corner));
+            let bounds = LightBox::of_triangle(corners);
             is_near(bounds).then_some((CasterTriangle { corners, ..*triangle }, bounds))
         };
         let triangles: Vec<_> = triangles.par_iter().with_min_len(1024).filter_map(turned).collect();
@@ -222,16 +154,25 @@ impl LightTriangles {
     }
 }
 
-/// The triangles of an item in ranges for which threads work apart.
-fn portions(item: &DrawItem) -> impl Iterator<Item = Range<u32>> + use<> {
+/// The triangles of the ground and of casters among these items of a checked list, by item, in ranges for which threads
+/// work apart.
+pub fn portions(list: &DrawList, items: Range<usize>) -> Vec<(usize, Range<u32>)> {
     /// Triangles of a portion: some tenths of a millisecond.
     const PORTION: u32 = 4096;
-    let Range { start, end } = item.triangles;
-    (start..end).step_by(PORTION as usize).map(move |from| from..from.saturating_add(PORTION).min(end))
+    let casting = items.filter(|&index| {
+        let item = &list.items[index];
+        item.layer == DepthLayer::Ground || is_caster(list, item)
+    });
+    let of_item = |index: usize| {
+        let Range { start, end } = list.items[index].triangles;
+        let starts = (start..end).step_by(PORTION as usize);
+        starts.map(move |from| (index, from..from.saturating_add(PORTION).min(end)))
+    };
+    casting.flat_map(of_item).collect()
 }
 
 /// Adds the finite triangles of a part of an item.
-fn add_triangles(
+pub fn add_triangles(
     triangles: &mut Vec<CasterTriangle>,
     list: &DrawList,
     eye: Vec3,
@@ -256,7 +197,7 @@ fn add_triangles(
 
 /// The least and greatest depth of what the camera sees, in meters: in perspective of corners, with parallel rays of
 /// triangles, since there one map must hold all of it; the first is the greater where it sees nothing.
-fn seen_depths(triangles: &[CasterTriangle], camera: &Camera) -> [f32; 2] {
+pub fn seen_depths(triangles: &[CasterTriangle], camera: &Camera) -> [f32; 2] {
     if let Some(frame) = camera.parallel_frame() {
         return depths_in_frame(triangles, camera, frame);
     }
@@ -282,7 +223,7 @@ fn seen_depths(triangles: &[CasterTriangle], camera: &Camera) -> [f32; 2] {
 }
 
 /// The wider of two ranges of depths.
-fn wider(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
+pub fn wider(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 

@@ -36,6 +36,7 @@
 //! while it is drawn, of which there are at most [`MOST_PAGES`] pages per map; these are asked for before they are drawn. A pixel costs
 //! one look-up per map where nothing is near, and from 9 to some 100 readings where a solid lies toward the light.
 
+mod caster_boxes;
 mod casters;
 mod coverage;
 mod cut;
@@ -47,7 +48,7 @@ pub mod plan;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
-use crate::shadow::casters::{ListTriangles, TriangleUse};
+use crate::shadow::casters::ListTriangles;
 use crate::shadow::levels::MapSource;
 use sandtable_base::limits::memory::{MemoryRefused, check_memory};
 use sandtable_draw::list::DrawList;
@@ -185,10 +186,8 @@ impl Shadows {
     /// There is not the memory for them.
     pub fn new(list: &DrawList, camera: &Camera) -> Result<Self, MemoryRefused> {
         let to_sun = list.lighting.to_sun;
-        let (doing, remedy) = ("drawing shadows", "draw fewer or coarser solids");
-        check_memory(ListTriangles::bytes_of(list, TriangleUse::Draw), doing, remedy)?;
-        let triangles = ListTriangles::new(list, camera, TriangleUse::Draw);
-        let Some(triangles) = triangles else { return Ok(Self::default()) };
+        check_memory(ListTriangles::bytes_of(list), "drawing shadows", "draw fewer or coarser solids")?;
+        let Some(triangles) = ListTriangles::new(list, camera) else { return Ok(Self::default()) };
         let map = |toward: Vec3, texel_px: f32, purpose: ShadowPurpose| {
             let axes = LightAxes::new(toward, camera);
             ShadowMap::new(&MapSource { list, camera, triangles: &triangles, axes, purpose }, texel_px)

@@ -6,10 +6,12 @@
 
 use rayon::prelude::*;
 
-use crate::shadow::casters::{LightTriangles, ListTriangles, TriangleUse};
-use crate::shadow::levels::{KeptPages, MapSource};
-use crate::shadow::{LightAxes, SKY_TEXEL_PX, SUN_TEXEL_PX, ShadowMap, ShadowPurpose};
 use glam::Vec3;
+
+use crate::shadow::caster_boxes::CasterBoxes;
+use crate::shadow::casters::LightTriangles;
+use crate::shadow::levels::{KeptPages, LightView};
+use crate::shadow::{LightAxes, SKY_TEXEL_PX, SUN_TEXEL_PX, ShadowMap, ShadowPurpose};
 use sandtable_base::limits::memory::{MemoryRefused, check_memory};
 use sandtable_draw::list::DrawList;
 use sandtable_view::camera::Camera;
@@ -44,20 +46,22 @@ impl ShadowPlan {
     /// There is not the memory for the triangles of solids.
     pub fn new(list: &DrawList, camera: &Camera) -> Result<Option<Self>, MemoryRefused> {
         let to_sun = list.lighting.to_sun;
-        let (doing, remedy) = ("planning shadows", "draw fewer or coarser solids");
-        check_memory(ListTriangles::bytes_of(list, TriangleUse::Plan), doing, remedy)?;
-        let triangles = ListTriangles::new(list, camera, TriangleUse::Plan);
-        let Some(triangles) = triangles else { return Ok(Some(Self::default())) };
-        if !triangles.is_real {
+        let sun = (to_sun.z > 0.0).then_some(to_sun);
+        let lights: Vec<LightAxes> =
+            [Some(Vec3::Z), sun].into_iter().flatten().map(|toward| LightAxes::new(toward, camera)).collect();
+        let bytes = CasterBoxes::bytes_of(list, lights.len());
+        check_memory(bytes, "planning shadows", "draw fewer or coarser solids")?;
+        let Some(boxes) = CasterBoxes::new(list, camera, &lights) else { return Ok(Some(Self::default())) };
+        if !boxes.is_real {
             return Ok(None);
         }
-        let map = |toward: Vec3, texel_px: f32, purpose: ShadowPurpose| {
-            let axes = LightAxes::new(toward, camera);
-            let source = MapSource { list, camera, triangles: &triangles, axes, purpose };
-            PlannedShadowMap::new(&source, texel_px)
+        let map = |light: usize, texel_px: f32, purpose: ShadowPurpose| {
+            let view = LightView { camera, axes: *lights.get(light)?, depths_m: boxes.depths_m };
+            PlannedShadowMap::new(&view, &boxes.by_light[light], texel_px, purpose)
         };
-        let sun = if to_sun.z > 0.0 { map(to_sun, SUN_TEXEL_PX, ShadowPurpose::Sun) } else { None };
-        Ok(Some(Self { sun, sky: map(Vec3::Z, SKY_TEXEL_PX, ShadowPurpose::Contact) }))
+        let (sky, sun) =
+            (map(0, SKY_TEXEL_PX, ShadowPurpose::Contact), map(1, SUN_TEXEL_PX, ShadowPurpose::Sun));
+        Ok(Some(Self { sun, sky }))
     }
 
     /// The maps of the sun and of the sky.
@@ -67,23 +71,27 @@ impl ShadowPlan {
 }
 
 impl PlannedShadowMap {
-    fn new(source: &MapSource, texel_px: f32) -> Option<Self> {
-        let solids = LightTriangles::new(&source.triangles.solids, &source.axes, |_| true);
-        let map = ShadowMap::planned(source, &solids, texel_px)?;
+    fn new(
+        view: &LightView,
+        solids: &LightTriangles<u32>,
+        texel_px: f32,
+        purpose: ShadowPurpose,
+    ) -> Option<Self> {
+        let map = ShadowMap::planned(view, solids, texel_px)?;
         let on_level = |level| {
             let kept = KeptPages::new(level, &map.pages);
             let mut items = Vec::new();
-            for (triangle, bounds) in &solids.triangles {
+            for (item, bounds) in &solids.triangles {
                 // Triangles come item by item.
-                if items.last() != Some(&triangle.item) && kept.pages_on(*bounds).is_some() {
-                    items.push(triangle.item);
+                if items.last() != Some(item) && kept.pages_on(*bounds).is_some() {
+                    items.push(*item);
                 }
             }
             items
         };
         let casters = map.levels.par_iter().map(on_level).collect();
         let stored = map.stored() as u32;
-        Some(Self { map, stored, purpose: source.purpose, casters })
+        Some(Self { map, stored, purpose, casters })
     }
 }
 
