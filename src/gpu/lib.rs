@@ -7,8 +7,8 @@
 //!            │ adapter ─► device, errors as values                ┘        └─► live ─► a window's frame
 //! ```
 //!
-//! Shadow maps are planned by the processor, for both renderers alike. The adapter draws those of a picture (`shadow_maps`), where it can
-//! and is not the processor itself; those of a window the processor draws, and they are uploaded as textures.
+//! Shadow maps are planned by the processor, for both renderers alike. The adapter draws them (`shadow_maps`) where it can
+//! and is not the processor itself; else the processor does, and they are uploaded as textures.
 //!
 //! It draws the same list by the same formulas as the CPU renderer, but rounds as the driver does: pictures differ
 //! slightly from machine to machine. Where the exact bytes matter, use the CPU renderer.

@@ -102,3 +102,67 @@ impl PlanCasters {
         calls
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::{Mat4, Vec3};
+
+    use super::*;
+    use crate::materials::TextureScope;
+    use sandtable_draw::color::Srgba;
+    use sandtable_draw::list::{DrawMesh, DrawVertex, FeatureId, MeshId};
+    use sandtable_draw::material::Material;
+    use sandtable_mesh::sink::{MeshSink, VertexId};
+
+    /// Ground, a drape and solids of one triangle with these kinds of alpha; the last three are places of one mesh.
+    fn list(solids: &[AlphaMode]) -> DrawList {
+        let mut list = DrawList::default();
+        let layers = [(DepthLayer::Ground, AlphaMode::Opaque), (DepthLayer::Draped(0), AlphaMode::Opaque)];
+        let solids = solids.iter().map(|&alpha| (DepthLayer::Solid, alpha));
+        for (layer, alpha) in layers.into_iter().chain(solids) {
+            let mut mesh = DrawMesh::default();
+            for position in [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]] {
+                mesh.vertex(DrawVertex { position, normal: [0.0; 3], uv: [0.0; 2], color: Srgba::WHITE });
+            }
+            mesh.triangle([VertexId(0), VertexId(1), VertexId(2)]);
+            let (mesh, world_from_mesh) = (list.add_mesh(mesh), Mat4::IDENTITY);
+            let material = list.add_material(Material { alpha, ..Default::default() });
+            let feature = FeatureId::GROUND;
+            list.items.push(DrawItem { mesh, triangles: 0..1, material, world_from_mesh, layer, feature });
+        }
+        for x in [1.0, 2.0] {
+            let last = list.items[list.items.len() - 1].clone();
+            list.items.push(DrawItem { world_from_mesh: Mat4::from_translation(Vec3::X * x), ..last });
+        }
+        list
+    }
+
+    #[test]
+    fn what_casts_is_drawn_from_the_buffers_of_the_plan_and_few_others_part_no_calls() {
+        use AlphaMode::{Blend, Mask, Opaque};
+        let list = list(&[Opaque, Opaque, Blend, Opaque, Mask(0.5), Opaque]);
+        let places = TexturePlaces::new(&list, TextureScope::Items, &wgpu::Limits::default());
+        let casters = PlanCasters::new(&list, &places, &Plan::new(&list, &places, |_| true));
+        let shapes = |is_on: &dyn Fn(usize) -> bool| -> Vec<(bool, bool, DrawShape)> {
+            let calls = casters.on_level(is_on);
+            calls.into_iter().map(|call| (call.key.on_ground, call.key.masked, call.shape)).collect()
+        };
+        let merged = |indices| DrawShape::Merged { chunk: 0, indices };
+        let placed = |instances| DrawShape::Placed { mesh: MeshId(7), indices: 0..3, instances };
+        let ground = (true, false, merged(0..3));
+        assert_eq!(
+            shapes(&|_| true),
+            [
+                ground.clone(),
+                (false, false, merged(6..12)),
+                (false, false, merged(15..18)),
+                (false, true, merged(18..21)),
+                (false, false, placed(0..3)),
+            ]
+        );
+        assert_eq!(shapes(&|_| false), [ground.clone()]);
+        let ends = (false, false, placed(0..3));
+        assert_eq!(shapes(&|item| item == 7 || item == 9), [ground.clone(), ends], "one lies between");
+        assert_eq!(shapes(&|item| item == 8), [ground, (false, false, placed(1..2))]);
+    }
+}

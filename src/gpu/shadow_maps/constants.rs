@@ -93,3 +93,50 @@ pub fn tiles(map: &ShadowMap, level: &ShadowLevel, longest: u32) -> Vec<LevelTil
     }
     tiles
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sandtable_render::shadow::{LevelScale, LightAxes, ShadowPage, ShadowTexel};
+
+    /// A map of one level of which these pages are stored.
+    fn map([columns, rows]: [u32; 2], stored: &[[u32; 2]]) -> ShadowMap {
+        let page = |index: u32| {
+            let number = stored.iter().position(|&[x, y]| y * columns + x == index);
+            ShadowPage { number: number.map_or(0, |number| number as u32 + 1), highest: ShadowTexel::EMPTY }
+        };
+        ShadowMap {
+            eye: Vec3::ZERO,
+            forward: Vec3::Y,
+            axes: LightAxes { across: [Vec3::X, Vec3::Y], toward: Vec3::Z },
+            scale: LevelScale { texel_per_depth: 1.0, least: 0 },
+            levels: vec![ShadowLevel { origin: [0.0; 2], texel_m: 1.0, columns, rows, first: 0 }],
+            pages: (0..columns * rows).map(page).collect(),
+            texels: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn tiles_cover_each_stored_page_once_and_nothing_around_them() {
+        let stored = [[3, 2], [4, 2], [9, 7], [3, 11]];
+        let map = map([16, 12], &stored);
+        let all = |longest| tiles(&map, &map.levels[0], longest);
+        assert_eq!(all(4096), [LevelTile { first: [96, 64], size: [224, 320] }]);
+        for longest in [32, 64, 100, 127, 4096] {
+            let tiles = all(longest);
+            assert!(tiles.iter().all(|tile| tile.size.into_iter().all(|side| side <= longest)));
+            for [x, y] in stored.map(|page| page.map(|at| at * PAGE)) {
+                let holds = |tile: &&LevelTile| {
+                    [x, y]
+                        .iter()
+                        .zip(tile.first.iter().zip(tile.size))
+                        .all(|(at, (first, size))| first <= at && at + PAGE <= first + size)
+                };
+                assert_eq!(tiles.iter().filter(holds).count(), 1, "{longest}");
+            }
+        }
+        assert_eq!(all(32).len(), stored.len());
+        let empty = self::map([4, 4], &[]);
+        assert!(tiles(&empty, &empty.levels[0], 64).is_empty());
+    }
+}

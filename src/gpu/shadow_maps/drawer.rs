@@ -171,7 +171,9 @@ impl ShadowDrawer {
         if level.tiles.is_empty() {
             return;
         }
-        let is_on = |item: usize| casting.binary_search(&(item as u32)).is_ok();
+        let mut casts = vec![false; casting.last().map_or(0, |&last| last as usize + 1)];
+        casting.iter().for_each(|&item| casts[item as usize] = true);
+        let is_on = |item: usize| casts.get(item).copied().unwrap_or(false);
         let calls: Vec<(&GpuGeometry, Vec<CasterCall>)> =
             scene.casters.iter().map(|loaded| (loaded.geometry, loaded.casters.on_level(is_on))).collect();
         for (tile, number) in level.tiles.iter().zip(level.first..) {
@@ -192,11 +194,16 @@ impl ShadowDrawer {
             pass.set_viewport(0.0, 0.0, width, height, 0.0, 1.0);
             pass.set_scissor_rect(0, 0, tile.size[0], tile.size[1]);
             pass.set_bind_group(0, &buffers.drawn, &[offset_of(number)]);
+            let (mut key, mut array) = (None, None);
             for (geometry, calls) in &calls {
                 for call in calls {
                     let Some(pipeline) = self.0.get(call.key) else { continue };
-                    pass.set_pipeline(pipeline);
-                    pass.set_bind_group(1, scene.materials.group(call.array), &[]);
+                    if key.replace(call.key) != Some(call.key) {
+                        pass.set_pipeline(pipeline);
+                    }
+                    if array.replace(call.array) != Some(call.array) {
+                        pass.set_bind_group(1, scene.materials.group(call.array), &[]);
+                    }
                     geometry.draw(&mut pass, &call.shape);
                 }
             }

@@ -4,7 +4,7 @@ use crate::adapter::Gpu;
 use crate::error::GpuError;
 use crate::geometry::GpuGeometry;
 use crate::layouts::Layouts;
-use crate::materials::{GpuMaterials, TexturePlaces};
+use crate::materials::{GpuMaterials, TexturePlaces, TextureScope};
 use crate::memory::Loader;
 use crate::plan::Plan;
 use crate::shadow::{ShadowTextures, TABLE_FORMAT, TEXEL_FORMAT};
@@ -12,7 +12,7 @@ use crate::shadow_maps::ShadowMaker;
 use crate::shadow_maps::caster_calls::PlanCasters;
 use crate::shadow_maps::drawer::{LoadedCasters, ShadowDrawer, ShadowScene, fits};
 use crate::shadow_maps::pipelines::{STORAGE_BUFFERS, STORAGE_TEXTURES, WORKGROUP};
-use sandtable_draw::list::DrawList;
+use sandtable_draw::list::{DepthLayer, DrawList};
 use sandtable_render::shadow::plan::ShadowPlan;
 use sandtable_render::shadow::{ShadowMap, Shadows};
 use sandtable_view::camera::Camera;
@@ -104,4 +104,30 @@ pub fn draw_planned(
         LoadedCasters { geometry: &hidden_geometry, casters: &hidden },
     ];
     drawer.draw(loader, plan, ShadowScene { casters: &casters, materials }, to)
+}
+
+/// Draws the planned maps of a checked list that is not on the device, to textures of their own: of the list is sent what
+/// they need. Waits until they are drawn.
+pub fn draw_alone(
+    loader: &Loader<'_>,
+    layouts: &Layouts,
+    drawer: &mut Option<ShadowDrawer>,
+    list: &DrawList,
+    plan: &ShadowPlan,
+) -> Result<ShadowTextures, GpuError> {
+    let to = ShadowTextures::to_draw(loader, plan)?;
+    if plan.maps().iter().all(Option::is_none) {
+        return Ok(to);
+    }
+    let places = TexturePlaces::new(list, TextureScope::Masks, &loader.gpu.limits);
+    let ground = Plan::new(list, &places, |item| list.items[item].layer == DepthLayer::Ground);
+    let loaded = LoadedList {
+        list,
+        places: &places,
+        plan: &ground,
+        geometry: &GpuGeometry::upload(loader, list, &ground, None)?,
+        materials: &GpuMaterials::upload(loader, layouts, list, &places)?,
+    };
+    draw_planned(loader, layouts, drawer, loaded, (plan, &to))?;
+    Ok(to)
 }

@@ -8,10 +8,14 @@
 //! ```
 //!
 //! The light sees the buffers that the picture is drawn from, so that the ground and what is in view is sent once; solids out
-//! of view that cast on a stored page are sent besides (`caster_calls`). A fragment raises an integer that rises with the
+//! of view that cast on a stored page are sent besides (`maker`). A fragment raises an integer that rises with the
 //! height, since shaders have no maximum of floats that many invocations can take at once. Pages that are not stored take
-//! no memory. Nothing but the processor's memory and time differ: the textures are those of
-//! [`Shadows`](sandtable_render::shadow::Shadows), which the processor draws.
+//! no memory. The textures hold what they do where the processor draws the maps
+//! ([`Shadows`](sandtable_render::shadow::Shadows)).
+//!
+//! # Cost
+//! The processor plans, in a fiftieth to a seventh of the time in which it draws the maps. The device has 12 bytes for a
+//! stored texel while it draws, besides the texel itself, and a target of at most 16 MiB.
 //!
 //! # Accuracy
 //! Corners are rounded to the rasterizer's grid, of 1/256 texel on most adapters and 1/16,384 on the processor, so that
@@ -41,7 +45,8 @@ pub enum ShadowMaker {
 }
 
 impl ShadowMaker {
-    /// The adapter, unless that is the processor itself behind a driver.
+    /// The adapter, unless that is the processor itself behind a driver: Mesa's takes one and a half to four times as long as
+    /// the processor's own way.
     pub fn of(gpu: &Gpu) -> Self {
         if gpu.is_software() { Self::Processor } else { Self::Adapter }
     }

@@ -4,16 +4,13 @@ use bytemuck::cast_slice;
 
 use crate::adapter::Gpu;
 use crate::error::{DriverError, GpuError};
-use crate::geometry::GpuGeometry;
 use crate::layouts::Layouts;
-use crate::materials::{GpuMaterials, TexturePlaces, TextureScope};
 use crate::memory::Loader;
-use crate::plan::Plan;
 use crate::readback::{TextureCopy, wait};
 use crate::shadow::{PAGE_COLUMNS, ShadowTextures};
 use crate::shadow_maps::ShadowMaker;
-use crate::shadow_maps::maker::{CastShadows, LoadedList, draw_planned};
-use sandtable_draw::list::{DepthLayer, DrawList};
+use crate::shadow_maps::maker::{CastShadows, draw_alone};
+use sandtable_draw::list::DrawList;
 use sandtable_render::shadow::plan::{PlannedShadowMap, ShadowPlan};
 use sandtable_render::shadow::{PAGE, ShadowMap, ShadowPage, ShadowTexel, Shadows};
 use sandtable_view::camera::Camera;
@@ -31,15 +28,7 @@ pub fn drawn_shadows(gpu: &Gpu, list: &DrawList, camera: &Camera) -> Result<Opti
     };
     gpu.guarded("drawing shadow maps", || {
         let (loader, layouts) = (Loader::new(gpu), Layouts::new(gpu));
-        let places = TexturePlaces::new(list, TextureScope::Items, &gpu.limits);
-        let is_ground = |item: usize| list.items[item].layer == DepthLayer::Ground;
-        let shown = Plan::new(list, &places, is_ground);
-        let materials = GpuMaterials::upload(&loader, &layouts, list, &places)?;
-        let geometry = GpuGeometry::upload(&loader, list, &shown, Some(camera))?;
-        let loaded =
-            LoadedList { list, places: &places, plan: &shown, geometry: &geometry, materials: &materials };
-        let textures = ShadowTextures::to_draw(&loader, &plan)?;
-        draw_planned(&loader, &layouts, &mut None, loaded, (&plan, &textures))?;
+        let textures = draw_alone(&loader, &layouts, &mut None, list, &plan)?;
         read(gpu, plan, &textures).map(Some)
     })
 }
