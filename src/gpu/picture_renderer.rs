@@ -180,6 +180,7 @@ impl PictureRenderer {
             let materials = GpuMaterials::upload(&loader, &self.layouts, list, &places)?;
             let geometry = GpuGeometry::upload(&loader, list, &plan, Some(camera))?;
             if let CastShadows::Planned(planned) = &shadows {
+                gpu.finish_sending()?;
                 progress("casting shadows");
                 let loaded = LoadedList {
                     list,

@@ -160,7 +160,7 @@ mod tests {
                 (false, false, placed(0..3)),
             ]
         );
-        assert_eq!(shapes(&|_| false), [ground.clone()]);
+        assert_eq!(shapes(&|_| false), std::slice::from_ref(&ground));
         let ends = (false, false, placed(0..3));
         assert_eq!(shapes(&|item| item == 7 || item == 9), [ground.clone(), ends], "one lies between");
         assert_eq!(shapes(&|item| item == 8), [ground, (false, false, placed(1..2))]);
