@@ -17,7 +17,7 @@ pub enum GpuError {
     NoAdapter(Vec<(GpuApi, DriverError)>),
     #[error("the draw list is unsound: {0}")]
     List(#[from] DrawListError),
-    /// There is not enough memory for the shadow maps, which the processor makes.
+    /// There is not enough memory for the shadow maps that the processor draws or plans.
     #[error(transparent)]
     Memory(#[from] MemoryRefused),
     #[error("{what} exceed the {limit} {unit} that {adapter} holds; use less detail or --backend cpu")]

@@ -16,7 +16,6 @@ use crate::windows::WindowTexture;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::ground::GroundMap;
 use sandtable_draw::pixels::Pixels;
-use sandtable_render::shadow::Shadows;
 
 /// The textures of group 0.
 #[derive(Debug)]
@@ -36,15 +35,24 @@ pub struct FrameGroup {
 }
 
 impl FrameTextures {
-    /// Sends a checked map and the maps of shadows.
-    pub fn upload(loader: &Loader<'_>, map: Option<&GroundMap>, shadows: &Shadows) -> Result<Self, GpuError> {
+    /// Sends a checked map, beside the maps of shadows.
+    pub fn upload(
+        loader: &Loader<'_>,
+        map: Option<&GroundMap>,
+        shadows: ShadowTextures,
+    ) -> Result<Self, GpuError> {
         Ok(Self {
             ground: GroundTextures::upload(loader, map)?,
             ramp: ramp_stops(loader, map)?,
             imagery: imagery_texture(loader, map)?,
-            shadows: ShadowTextures::upload(loader, shadows)?,
+            shadows,
             windows: WindowTexture::upload(loader, &[])?,
         })
+    }
+
+    /// The maps of shadows on the device.
+    pub fn shadows(&self) -> &ShadowTextures {
+        &self.shadows
     }
 
     /// The ground map on the device.

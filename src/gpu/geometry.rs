@@ -31,7 +31,8 @@ pub struct MergedTriangles {
     pub indices: Vec<u32>,
 }
 
-#[derive(Debug)]
+/// A mesh on the device; clones share it.
+#[derive(Clone, Debug)]
 pub struct MeshBuffers {
     vertices: wgpu::Buffer,
     indices: wgpu::Buffer,
@@ -129,6 +130,22 @@ impl GpuGeometry {
         plan: &Plan,
         camera: Option<&Camera>,
     ) -> Result<Self, GpuError> {
+        Self::upload_beside(loader, list, plan, camera, &[])
+    }
+
+    /// Sends what another plan of the same list draws; meshes that instances of this one place are not sent again.
+    pub fn upload_more(&self, loader: &Loader<'_>, list: &DrawList, plan: &Plan) -> Result<Self, GpuError> {
+        Self::upload_beside(loader, list, plan, None, &self.placed)
+    }
+
+    /// Sends what `plan` draws; of `sent`, by mesh, are those that the device has.
+    fn upload_beside(
+        loader: &Loader<'_>,
+        list: &DrawList,
+        plan: &Plan,
+        camera: Option<&Camera>,
+        sent: &[Option<MeshBuffers>],
+    ) -> Result<Self, GpuError> {
         let merged = plan.merged.chunk_by(|a, b| a.chunk == b.chunk).map(|parts| {
             let mut merged = MergedTriangles::default();
             for part in parts {
@@ -154,6 +171,9 @@ impl GpuGeometry {
         plan.placed.iter().for_each(|&item| is_placed[list.items[item].mesh.0 as usize] = true);
         let placed = list.meshes.iter().zip(is_placed).enumerate().map(|(index, (mesh, is_placed))| {
             let upload = || {
+                if let Some(sent) = sent.get(index).and_then(Option::as_ref) {
+                    return Ok(sent.clone());
+                }
                 let indices: Vec<[u32; 3]> =
                     mesh.triangles.iter().map(|corners| corners.map(|id| id.0)).collect();
                 let what = || format!("mesh {index}");

@@ -27,17 +27,7 @@ impl Layouts {
             has_dynamic_offset: false,
             min_binding_size: wgpu::BufferSize::new(size as u64),
         };
-        let group = |label: &'static str, bindings: &[(wgpu::ShaderStages, wgpu::BindingType)]| {
-            let entry = |(binding, &(visibility, ty))| wgpu::BindGroupLayoutEntry {
-                binding,
-                visibility,
-                ty,
-                count: None,
-            };
-            let entries: Vec<_> = (0..).zip(bindings).map(entry).collect();
-            let descriptor = wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries };
-            gpu.device.create_bind_group_layout(&descriptor)
-        };
+        let group = |label, bindings: &[_]| group_layout(gpu, label, bindings);
         Self {
             frame: group(
                 "frame",
@@ -70,4 +60,17 @@ impl Layouts {
             depths: group("depths", &[(fragment, texture(wgpu::TextureSampleType::Depth))]),
         }
     }
+}
+
+/// A layout of bindings that are numbered from 0.
+pub fn group_layout(
+    gpu: &Gpu,
+    label: &'static str,
+    bindings: &[(wgpu::ShaderStages, wgpu::BindingType)],
+) -> wgpu::BindGroupLayout {
+    let entry =
+        |(binding, &(visibility, ty))| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
+    let entries: Vec<_> = (0..).zip(bindings).map(entry).collect();
+    let descriptor = wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries };
+    gpu.device.create_bind_group_layout(&descriptor)
 }

@@ -7,7 +7,8 @@
 //!            │ adapter ─► device, errors as values                ┘        └─► live ─► a window's frame
 //! ```
 //!
-//! Shadow maps are made by the processor, for both renderers alike, and uploaded as textures.
+//! Shadow maps are planned by the processor, for both renderers alike. The adapter draws them (`shadow_maps`) where it can
+//! and is not the processor itself; else the processor does, and they are uploaded as textures.
 //!
 //! It draws the same list by the same formulas as the CPU renderer, but rounds as the driver does: pictures differ
 //! slightly from machine to machine. Where the exact bytes matter, use the CPU renderer.
@@ -40,6 +41,7 @@ mod pipelines;
 mod plan;
 pub mod readback;
 mod shadow;
+pub mod shadow_maps;
 mod tiled_picture;
 mod tiles;
 mod uniforms;

@@ -75,6 +75,8 @@ pub enum TextureScope {
     Items,
     /// Those of all materials: of what will lie on the ground, too.
     All,
+    /// Those that cut holes in its items.
+    Masks,
 }
 
 #[derive(Debug)]
@@ -95,7 +97,9 @@ impl TexturePlaces {
         let mut known: BTreeMap<(TextureForm, ArrayKind), (ArrayId, u32)> = BTreeMap::new();
         let mut open: BTreeMap<ArrayKind, usize> = BTreeMap::new();
         for (index, material) in list.materials.iter().enumerate() {
-            let Some(id) = material.texture.filter(|_| used[index] && material.area.is_none()) else {
+            let is_shown = scope != TextureScope::Masks || matches!(material.alpha, AlphaMode::Mask(_));
+            let is_read = used[index] && is_shown && material.area.is_none();
+            let Some(id) = material.texture.filter(|_| is_read) else {
                 continue;
             };
             let pixels = &list.textures[id.0 as usize];
@@ -318,9 +322,13 @@ mod tests {
         let expected = [(1, 0), (1, 1), (2, 0), (2, 1), (1, 2), (3, 0), none, none, (4, 0), (4, 1)];
         assert_eq!(found, expected);
         assert_eq!(places.arrays[3].kind.sides, [32, 32]);
-        let unused = DrawList { items: Vec::new(), ..list };
+        let unused = DrawList { items: Vec::new(), ..list.clone() };
         let arrays = |scope| TexturePlaces::new(&unused, scope, &limits(32, 4)).arrays.len();
         assert_eq!([TextureScope::Items, TextureScope::All].map(arrays), [0, 4]);
+        let mut masked = list.clone();
+        masked.materials[8].alpha = AlphaMode::Mask(0.5);
+        let places = TexturePlaces::new(&masked, TextureScope::Masks, &limits(32, 4));
+        assert_eq!(places.arrays.iter().map(|array| array.layers.len()).collect::<Vec<_>>(), [1]);
     }
 
     #[test]

@@ -26,7 +26,10 @@ use crate::pipeline_key::PipelineKey;
 use crate::pipelines::{GpuPass, PassTarget, Pipelines, shader};
 use crate::plan::Plan;
 use crate::readback::{DrawnTile, Targets};
-use crate::shadow::{ShadowTextures, ShadowView};
+use crate::shadow::ShadowView;
+use crate::shadow_maps::ShadowMaker;
+use crate::shadow_maps::drawer::ShadowDrawer;
+use crate::shadow_maps::maker::{CastShadows, LoadedList, draw_planned};
 use crate::tiled_picture::TiledPicture;
 use crate::tiles::{PictureTile, PictureTiles};
 use crate::uniforms::{FrameScene, FrameUniforms};
@@ -34,7 +37,6 @@ use sandtable_draw::ground::GroundMap;
 use sandtable_draw::list::DrawList;
 use sandtable_draw::water_relief::STEEP;
 use sandtable_render::picture::Rendering;
-use sandtable_render::shadow::Shadows;
 use sandtable_view::camera::{Camera, ViewProjection};
 
 /// Draws pictures on one device.
@@ -46,6 +48,8 @@ pub struct PictureRenderer {
     features: Pipelines,
     targets: Option<KeptTargets>,
     ground: Option<KeptGround>,
+    shadow_maker: ShadowMaker,
+    shadow_drawer: Option<ShadowDrawer>,
     /// The longest side of a tile in pixels.
     longest_tile: u32,
 }
@@ -73,6 +77,14 @@ impl PictureRenderer {
     /// # Errors
     /// See [`GpuError`].
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Self::with_shadow_maker(gpu, ShadowMaker::of(gpu))
+    }
+
+    /// A renderer on an open device whose shadow maps `shadow_maker` draws.
+    ///
+    /// # Errors
+    /// See [`GpuError`].
+    pub fn with_shadow_maker(gpu: &Gpu, shadow_maker: ShadowMaker) -> Result<Self, GpuError> {
         gpu.guarded("building its shaders", || {
             let layouts = Layouts::new(gpu);
             let shader = shader(gpu);
@@ -82,7 +94,17 @@ impl PictureRenderer {
             let colors = pipelines(GpuPass::Color, COLOR, gpu.samples);
             let features = pipelines(GpuPass::Feature, FEATURE, 1);
             let (gpu, longest_tile) = (gpu.clone(), gpu.longest_side());
-            Ok(Self { gpu, layouts, colors, features, targets: None, ground: None, longest_tile })
+            Ok(Self {
+                gpu,
+                layouts,
+                colors,
+                features,
+                targets: None,
+                ground: None,
+                shadow_maker,
+                shadow_drawer: None,
+                longest_tile,
+            })
         })
     }
 
@@ -107,8 +129,8 @@ impl PictureRenderer {
         let is_seen = seen_items(list, camera);
         let plan = Plan::new(list, &places, |item| is_seen[item]);
         progress("casting shadows");
-        let shadows = Shadows::new(list, camera)?;
-        let has_shadows = [&shadows.sun, &shadows.sky].map(Option::is_some);
+        let shadows = CastShadows::new(&gpu, self.shadow_maker, list, camera)?;
+        let has_shadows = shadows.maps().map(|map| map.is_some());
         let parts = ShaderParts::of_picture(list.ground.as_deref(), &list.lighting, has_shadows);
         let parts = if is_from_above(camera) { parts.without(ShaderParts::WATER_RELIEF) } else { parts };
         progress("making pipelines");
@@ -137,24 +159,39 @@ impl PictureRenderer {
             let ground = match ground {
                 Some(mut ground) => {
                     loader.keep("the ground map", ground.bytes)?;
-                    ground.textures.replace_shadows(ShadowTextures::upload(&loader, &shadows)?);
+                    ground.textures.replace_shadows(shadows.textures(&loader)?);
                     ground
                 }
                 None => {
                     let before = loader.taken();
-                    let textures = FrameTextures::upload(&loader, list.ground.as_deref(), &shadows)?;
+                    let shadow_textures = shadows.textures(&loader)?;
+                    let textures = FrameTextures::upload(&loader, list.ground.as_deref(), shadow_textures)?;
                     let map = list.ground.as_ref().map(Arc::downgrade);
                     KeptGround { map, textures, bytes: loader.taken() - before }
                 }
             };
             let frame = FrameGroup::new(&loader, &self.layouts, &ground.textures)?;
-            let shadows = ShadowView::both(&shadows);
+            let views = ShadowView::both(shadows.maps());
             let row_bits = row_bits(gpu.limits.max_texture_dimension_2d);
             let map = list.ground.as_deref();
-            let scene = FrameScene { ground: map, windows: &[], lighting: &list.lighting, shadows, row_bits };
+            let scene =
+                FrameScene { ground: map, windows: &[], lighting: &list.lighting, shadows: views, row_bits };
             let constants = FrameUniforms::new(scene, camera);
             let materials = GpuMaterials::upload(&loader, &self.layouts, list, &places)?;
             let geometry = GpuGeometry::upload(&loader, list, &plan, Some(camera))?;
+            if let CastShadows::Planned(planned) = &shadows {
+                gpu.finish_sending()?;
+                progress("casting shadows");
+                let loaded = LoadedList {
+                    list,
+                    places: &places,
+                    plan: &plan,
+                    geometry: &geometry,
+                    materials: &materials,
+                };
+                let (drawer, to) = (&mut self.shadow_drawer, ground.textures.shadows());
+                draw_planned(&loader, &self.layouts, drawer, loaded, (planned, to))?;
+            }
             Ok((targets, ground, frame, constants, materials, geometry))
         });
         let (targets, ground, frame, constants, materials, geometry) = loaded?;

@@ -31,6 +31,10 @@ pub fn shader_text() -> String {
 }
 
 const SHADER: &str = concat!(
+    include_str!("items.wgsl"),
+    "\n",
+    include_str!("shadow_pages.wgsl"),
+    "\n",
     include_str!("shader.wgsl"),
     "\n",
     include_str!("area.wgsl"),
@@ -45,7 +49,7 @@ const SHADER: &str = concat!(
 );
 
 /// Corners with their owners.
-const MERGED_BUFFERS: [Option<wgpu::VertexBufferLayout>; 1] = [Some(wgpu::VertexBufferLayout {
+pub const MERGED_BUFFERS: [Option<wgpu::VertexBufferLayout>; 1] = [Some(wgpu::VertexBufferLayout {
     array_stride: size_of::<MergedVertex>() as u64,
     step_mode: wgpu::VertexStepMode::Vertex,
     attributes: &wgpu::vertex_attr_array![
@@ -63,7 +67,7 @@ const DRAPED_BUFFERS: [Option<wgpu::VertexBufferLayout>; 1] = [Some(wgpu::Vertex
 })];
 
 /// Corners, and instances.
-const PLACED_BUFFERS: [Option<wgpu::VertexBufferLayout>; 2] = [
+pub const PLACED_BUFFERS: [Option<wgpu::VertexBufferLayout>; 2] = [
     Some(wgpu::VertexBufferLayout {
         array_stride: size_of::<DrawVertex>() as u64,
         step_mode: wgpu::VertexStepMode::Vertex,
@@ -244,7 +248,7 @@ pub fn shader(gpu: &Gpu) -> wgpu::ShaderModule {
     })
 }
 
-fn options<'a>(constants: &'a [(&'a str, f64)]) -> wgpu::PipelineCompilationOptions<'a> {
+pub fn options<'a>(constants: &'a [(&'a str, f64)]) -> wgpu::PipelineCompilationOptions<'a> {
     wgpu::PipelineCompilationOptions { constants, ..Default::default() }
 }
 

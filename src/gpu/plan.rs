@@ -36,7 +36,7 @@ pub const MERGED_TRIANGLES: u32 = 1 << 19;
 
 /// The most triangles of neighbors out of view that a call draws between those in view: they cost a device less than another
 /// call costs the processor.
-const HIDDEN_TRIANGLES: u64 = 1024;
+pub const HIDDEN_TRIANGLES: u64 = 1024;
 
 /// The shape that one call draws.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -125,7 +125,7 @@ impl DrawCall {
 
 impl DrawShape {
     /// How many triangles it has at all places.
-    fn triangles(&self) -> u64 {
+    pub fn triangles(&self) -> u64 {
         let (indices, places) = match self {
             Self::Merged { indices, .. } => (indices, 1),
             Self::Placed { indices, instances, .. } => (indices, instances.len() as u64),
@@ -134,7 +134,7 @@ impl DrawShape {
     }
 
     /// Adds `next` if it goes on where this one ends.
-    fn extend(&mut self, next: &Self) -> bool {
+    pub fn extend(&mut self, next: &Self) -> bool {
         match (self, next) {
             (Self::Merged { chunk, indices }, Self::Merged { chunk: next_chunk, indices: added })
                 if *chunk == *next_chunk && indices.end == added.start =>

@@ -59,28 +59,6 @@ struct ShadowView {
     tables: array<vec4u, 8>, // columns and rows of pages, first entry in `shadow_pages`
 }
 
-struct Surface {
-    base_color: vec4f, // linear rgb, straight alpha
-    flags: vec4u,      // x: bits of the constants below; y: layer of its texture
-    cutoff: vec4f,     // x: alpha below it is a hole, for the color where MASK is set, for the feature too where BLEND is
-}
-
-const FROM_GROUND_NORMAL = 1u;
-const FROM_GROUND_ALBEDO = 2u;
-const MASK = 4u;
-const BLEND = 8u;
-const WATER = 16u;
-const IN_ALL_LIGHT = 32u;
-const HATCHING = 64u;
-const NATURAL = 128u;
-const TEXTURED = 256u;
-const EDGES = 512u;
-const AREA = 1024u;
-
-// Materials in a row of their table, and texels of each.
-const TABLE_MATERIALS = 64u;
-const MATERIAL_TEXELS = 12u;
-
 // The most readings of the ground along the longer side of a pixel seen at a grazing angle.
 const MOST_TAPS = 8.0;
 // The same of plain ground.
@@ -101,11 +79,6 @@ const MASK_LEVEL_BIAS = -1.0;
 // The draped picture, colors multiplied by alpha.
 @group(0) @binding(5) var imagery_texture: texture_2d<f32>;
 @group(0) @binding(6) var imagery_sampler: sampler;
-// The bits of every material's `Surface`; the first is the bare ground's.
-@group(1) @binding(0) var material_table: texture_2d<u32>;
-// Colors multiplied by alpha where the item is not opaque, so that unseen colors count for nothing.
-@group(1) @binding(1) var base_texture: texture_2d_array<f32>;
-@group(1) @binding(2) var base_sampler: sampler;
 
 // The material of the fragment that is drawn, and the texel it shows.
 var<private> material: Surface;
@@ -145,27 +118,6 @@ const AREA_PART = 65536u;
 const WATER_RELIEF_PART = 131072u;
 const PLAIN_SHADOWS_PART = 262144u;
 const PLAIN_GROUND_PART = 524288u;
-
-struct Corner {
-    @location(0) position: vec3f,
-    @location(1) normal: vec3f,
-    @location(2) uv: vec2f,
-    @location(3) color: vec4f,
-}
-
-// Whose a corner is.
-struct Owner {
-    @location(4) feature: u32,
-    @location(5) material: u32,
-}
-
-// The place of an item.
-struct Place {
-    @location(6) x_axis: vec4f,
-    @location(7) y_axis: vec4f,
-    @location(8) z_axis: vec4f,
-    @location(9) origin: vec4f,
-}
 
 struct Varying {
     @invariant @builtin(position) clip: vec4f,
@@ -271,16 +223,6 @@ fn patch_vertex(@location(0) position: vec3f) -> Varying {
 @vertex
 fn patch_depth(@location(0) position: vec3f) -> @invariant @builtin(position) vec4f {
     return projected(position).clip;
-}
-
-fn material_bits(index: u32, texel: u32) -> vec4u {
-    let column = index % TABLE_MATERIALS * MATERIAL_TEXELS + texel;
-    return textureLoad(material_table, vec2u(column, index / TABLE_MATERIALS), 0);
-}
-
-fn material_of(index: u32) -> Surface {
-    let color = bitcast<vec4f>(material_bits(index, 0u));
-    return Surface(color, material_bits(index, 1u), bitcast<vec4f>(material_bits(index, 2u)));
 }
 
 struct Post {
@@ -677,12 +619,7 @@ fn contour_cover(height: f32, per_pixel: f32, width_px: f32) -> f32 {
     return clamp(width * 0.5 + 0.5 - abs(height - line * interval) / per_pixel, 0.0, 1.0) * strength;
 }
 
-// The constants of render/shadow.
-const TABLE_COLUMNS = 1024u;
-const PAGE_COLUMNS = 64u;
-const PAGE = 32;
-const NOTHING = -1e30;
-const MOST_WINDOW = 12; // more texels than any radius reads
+const MOST_WINDOW = 12; // more texels than any radius of shadows reads
 
 // A point as a map sees it: its level, its place in texels, its height toward the light.
 struct ShadowPlace {

@@ -1,16 +1,22 @@
-//! The shadow maps as textures: the tables of both with their pages' numbers, and the texels of all pages.
+//! The shadow maps as textures: the tables of both with their pages' numbers, and the texels of all pages. The processor's
+//! are uploaded; others are drawn to (`shadow_maps`).
 
 use bytemuck::{Pod, Zeroable, cast_slice};
 
 use crate::error::GpuError;
 use crate::memory::{Loader, texture};
+use sandtable_render::shadow::plan::ShadowPlan;
 use sandtable_render::shadow::{MOST_LEVELS, PAGE, ShadowMap, ShadowTexel, Shadows};
 
 /// Table entries in a row of their texture; the shader's constant of the same name.
 const TABLE_COLUMNS: u32 = 1024;
 
 /// Pages in a row of theirs; the shader's constant of the same name.
-const PAGE_COLUMNS: u32 = 64;
+pub const PAGE_COLUMNS: u32 = 64;
+
+/// The formats of both textures.
+pub const TABLE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
+pub const TEXEL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
 
 /// The constants of a map: `ShadowView` in the shader; zero where there is none.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -32,12 +38,12 @@ pub struct ShadowTextures {
 
 impl ShadowView {
     /// The constants of the sun's map and of the sky's, whose entries lie after the sun's.
-    pub fn both(shadows: &Shadows) -> [Self; 2] {
-        let after = shadows.sun.as_ref().map_or(0, |map| map.pages.len());
-        let view = |map: &Option<ShadowMap>, first: usize| {
-            map.as_ref().map_or_else(Self::zeroed, |map| Self::new(map, first as u32))
+    pub fn both([sun, sky]: [Option<&ShadowMap>; 2]) -> [Self; 2] {
+        let after = sun.map_or(0, |map| map.pages.len());
+        let view = |map: Option<&ShadowMap>, first: usize| {
+            map.map_or_else(Self::zeroed, |map| Self::new(map, first as u32))
         };
-        [view(&shadows.sun, 0), view(&shadows.sky, after)]
+        [view(sun, 0), view(sky, after)]
     }
 
     fn new(map: &ShadowMap, first: u32) -> Self {
@@ -63,7 +69,7 @@ impl ShadowView {
 impl ShadowTextures {
     /// Sends the maps to the device; without any, one texel each that nothing reads.
     pub fn upload(loader: &Loader<'_>, shadows: &Shadows) -> Result<Self, GpuError> {
-        let maps = || [&shadows.sun, &shadows.sky].into_iter().flatten();
+        let maps = || shadows.maps().into_iter().flatten();
         let mut table: Vec<[u32; 4]> = Vec::new();
         let mut before = 0;
         for map in maps() {
@@ -76,26 +82,55 @@ impl ShadowTextures {
         let texels: Vec<&[ShadowTexel]> = maps().map(|map| map.texels.as_slice()).collect();
         Ok(Self { pages: page_table(loader, table)?, texels: page_texels(loader, &texels.concat())? })
     }
+
+    /// Textures that the device is to draw the maps to.
+    pub fn to_draw(loader: &Loader<'_>, plan: &ShadowPlan) -> Result<Self, GpuError> {
+        let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC;
+        let maps = || plan.maps().into_iter().flatten();
+        let entries = maps().map(|map| map.map.pages.len()).sum();
+        let stored = maps().map(|map| map.stored).sum();
+        let pages = table_texture(loader, entries, usage)?;
+        Ok(Self { pages, texels: texel_texture(loader, stored, usage)? })
+    }
 }
 
 fn page_table(loader: &Loader<'_>, mut table: Vec<[u32; 4]>) -> Result<wgpu::Texture, GpuError> {
-    let rows = table.len().div_ceil(TABLE_COLUMNS as usize).max(1);
-    table.resize(rows * TABLE_COLUMNS as usize, [0; 4]);
-    let size = [TABLE_COLUMNS, rows as u32];
-    let what = || format!("the table of {} shadow pages", table.len());
-    let format = wgpu::TextureFormat::Rgba32Uint;
-    let texture = loader.texture(what, &texture("table of shadow pages", size[0], size[1], format))?;
-    loader.gpu.write(texture.as_image_copy(), size[0], size[1], cast_slice(&table));
+    let texture = table_texture(loader, table.len(), wgpu::TextureUsages::empty())?;
+    let (width, height) = (texture.width(), texture.height());
+    table.resize((width * height) as usize, [0; 4]);
+    loader.gpu.write(texture.as_image_copy(), width, height, cast_slice(&table));
     Ok(texture)
+}
+
+/// A texture for the table of so many pages.
+fn table_texture(
+    loader: &Loader<'_>,
+    pages: usize,
+    usage: wgpu::TextureUsages,
+) -> Result<wgpu::Texture, GpuError> {
+    let rows = pages.div_ceil(TABLE_COLUMNS as usize).max(1);
+    let mut descriptor = texture("table of shadow pages", TABLE_COLUMNS, rows as u32, TABLE_FORMAT);
+    descriptor.usage |= usage;
+    loader.texture(|| format!("the table of {pages} shadow pages"), &descriptor)
+}
+
+/// A texture for so many stored pages.
+fn texel_texture(
+    loader: &Loader<'_>,
+    pages: u32,
+    usage: wgpu::TextureUsages,
+) -> Result<wgpu::Texture, GpuError> {
+    let size = [PAGE_COLUMNS * PAGE, pages.div_ceil(PAGE_COLUMNS).max(1) * PAGE];
+    let mut descriptor = texture("shadow pages", size[0], size[1], TEXEL_FORMAT);
+    descriptor.usage |= usage;
+    loader.texture(|| format!("{pages} shadow pages"), &descriptor)
 }
 
 /// The pages beside each other, [`PAGE_COLUMNS`] in a row.
 fn page_texels(loader: &Loader<'_>, texels: &[ShadowTexel]) -> Result<wgpu::Texture, GpuError> {
     let pages = texels.len() as u32 / (PAGE * PAGE);
-    let size = [PAGE_COLUMNS * PAGE, pages.div_ceil(PAGE_COLUMNS).max(1) * PAGE];
-    let format = wgpu::TextureFormat::Rg32Float;
-    let descriptor = texture("shadow pages", size[0], size[1], format);
-    let texture = loader.texture(|| format!("{pages} shadow pages"), &descriptor)?;
+    let texture = texel_texture(loader, pages, wgpu::TextureUsages::empty())?;
+    let size = [texture.width(), texture.height()];
     let row_of_pages = (PAGE_COLUMNS * PAGE * PAGE) as usize;
     for (row, texels) in texels.chunks(row_of_pages).enumerate() {
         let mut lines = vec![ShadowTexel::EMPTY; row_of_pages];

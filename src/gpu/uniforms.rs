@@ -34,6 +34,7 @@ const NATURAL: u32 = 128;
 const TEXTURED: u32 = 256;
 const EDGES: u32 = 512;
 const AREA: u32 = 1024;
+const TWO_SIDED: u32 = 2048;
 
 /// The constants of a picture: `Frame` in the shader.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -251,6 +252,7 @@ impl SurfaceConstants {
         let natural = if material.is_natural { NATURAL } else { 0 };
         let edges = if material.shows_edges { EDGES } else { 0 };
         let area = if material.area.is_some() { AREA } else { 0 };
+        let sides = if material.two_sided { TWO_SIDED } else { 0 };
         let (alpha, cutoff) = match material.alpha {
             AlphaMode::Opaque => (0, 0.0),
             AlphaMode::Mask(cutoff) => (MASK, cutoff),
@@ -259,7 +261,7 @@ impl SurfaceConstants {
         Self {
             base_color: with(material.base_color.linear(), material.base_color.alpha()),
             flags: [
-                normal | albedo | alpha | water | light | natural | textured | edges | area,
+                normal | albedo | alpha | water | light | natural | textured | edges | area | sides,
                 layer.unwrap_or(0),
                 0,
                 0,

@@ -46,7 +46,7 @@ impl OpenedScene {
         let (list, slot) = (std::sync::Arc::clone(&self.list), slot.clone());
         let work = move || {
             let Some(loader) = slot.loader() else { return Ok(None) };
-            loader.prepare_shadows(&view.shadows(&list)?).map(Some)
+            loader.cast_shadows(&view.ground.with_list(&list), &view.camera).map(Some)
         };
         self.shadows.made_for = Some(camera);
         self.shadows.job = Some(WorkerJob::start(context, work));

@@ -9,3 +9,4 @@ mod render_gpu;
 mod render_live;
 mod render_parity;
 mod shaders;
+mod shadow_maps;

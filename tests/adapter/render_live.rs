@@ -17,6 +17,7 @@ use sandtable_gpu::live::{
     KeptPatches, LiveDetail, LiveOptions, LiveQuality, LiveRenderer, LiveShadows, UploadedBytes,
 };
 use sandtable_gpu::render_on;
+use sandtable_gpu::shadow_maps::ShadowMaker;
 use sandtable_mesh::sink::{MeshSink, VertexId};
 use sandtable_view::camera::Camera;
 
@@ -180,6 +181,24 @@ fn a_frame_is_the_picture_of_the_same_scene() {
         let apart = share_apart(&window.frame(&mut renderer, &camera), &picture);
         assert!(apart < 1e-3, "{apart} of the pixels differ on {}", gpu.name());
         assert!(bare > 0.01, "without its shadows a frame differs, {bare} on {}", gpu.name());
+    }
+}
+
+#[test]
+fn shadows_that_the_adapter_draws_for_a_frame_are_those_of_the_picture() {
+    let (list, camera) = (scene(), camera(SIZE.0, SIZE.1));
+    for gpu in gpus() {
+        let picture = render_on(gpu, &list, &camera).unwrap_or_else(|error| panic!("{error}"));
+        let picture: Vec<[u8; 4]> = picture.pixels.data().iter().map(|color| color.0).collect();
+        let mut renderer = loaded(gpu, &list, WINDOW);
+        let window = Window::new(gpu, WINDOW);
+        for maker in [ShadowMaker::Processor, ShadowMaker::Adapter, ShadowMaker::Adapter] {
+            let prepared = renderer.loader().cast_shadows_by(maker, &list, &camera);
+            let shown = prepared.and_then(|prepared| renderer.show_shadows(prepared));
+            shown.unwrap_or_else(|error| panic!("{maker:?}: {error}"));
+            let apart = share_apart(&window.frame(&mut renderer, &camera), &picture);
+            assert!(apart < 1e-3, "{apart} of the pixels differ on {} by {maker:?}", gpu.name());
+        }
     }
 }
 

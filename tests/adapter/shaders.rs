@@ -11,8 +11,10 @@ use sandtable_render::shadow::filter;
 const FOLDER: &str = concat!(env!("SANDTABLE_ROOT"), "src/gpu");
 
 /// The modules, as files that are joined.
-const MODULES: [&[&str]; 2] = [
+const MODULES: [&[&str]; 4] = [
     &[
+        "items.wgsl",
+        "shadow_pages.wgsl",
         "shader.wgsl",
         "area.wgsl",
         "ground_windows.wgsl",
@@ -21,6 +23,8 @@ const MODULES: [&[&str]; 2] = [
         "sky.wgsl",
     ],
     &["whole_picture.wgsl", "encode.wgsl"],
+    &["items.wgsl", "shadow_pages.wgsl", "shadow_level.wgsl", "shadow_draw.wgsl"],
+    &["shadow_pages.wgsl", "shadow_level.wgsl", "shadow_finish.wgsl"],
 ];
 
 fn text_of(module: &[&str]) -> String {

@@ -18,10 +18,14 @@
 //! as pixels.
 //!
 //! # Shadows
-//! Shadow maps of solids are made for a camera, by the processor, in some ten milliseconds: too long for every frame. A map
-//! is therefore kept while the camera moves. It stays right wherever it reaches, because shadows do not depend on the eye;
-//! only how fine its texels are does. Beyond it nothing is shaded. Whoever moves the camera makes a new map, on another
-//! thread, when the eye has moved a good part of its distance to the ground.
+//! Shadow maps of solids are made for a camera, in some ten milliseconds: too long for every frame. A map is therefore kept
+//! while the camera moves. It stays right wherever it reaches, because shadows do not depend on the eye; only how fine its
+//! texels are does. Beyond it nothing is shaded. Whoever moves the camera makes a new map, on another thread, when the eye
+//! has moved a good part of its distance to the ground.
+//!
+//! The maps of a scene that is loaded are the processor's. Later ones are drawn by the adapter, to which what a map needs of
+//! the scene is sent for it, unless the adapter is the processor itself
+//! ([`LiveLoader::cast_shadows`](prepared::LiveLoader::cast_shadows)).
 
 mod arena;
 mod drapes;
@@ -46,7 +50,9 @@ use crate::live::encode::Encoder;
 use crate::live::ground_map::EditedMap;
 use crate::live::moving::MovingPipelines;
 use crate::live::patches::{PatchStore, ShownCalls};
-use crate::live::prepared::{LiveLoader, PreparedScene, PreparedShadows, PreparedWindows};
+use crate::live::prepared::{
+    LiveLoader, PreparedScene, PreparedShadows, PreparedWindows, SharedShadowDrawer,
+};
 use crate::live::targets::{LiveFormat, LiveTargets};
 use crate::materials::GpuMaterials;
 use crate::memory::Loader;
@@ -133,6 +139,7 @@ pub struct LiveRenderer {
     targets: Option<LiveTargets>,
     scene: Option<LoadedScene>,
     timer: Option<Arc<PassTimer>>,
+    shadow_drawer: SharedShadowDrawer,
 }
 
 /// The treatment of the patches that are shown when another list is loaded.
@@ -240,6 +247,7 @@ impl LiveRenderer {
             targets: None,
             scene: None,
             timer: None,
+            shadow_drawer: SharedShadowDrawer::default(),
         })
     }
 
@@ -271,7 +279,7 @@ impl LiveRenderer {
 
     /// A loader that prepares scenes for this renderer on other threads.
     pub fn loader(&self) -> LiveLoader {
-        LiveLoader::new(&self.gpu, &self.layouts, &self.colors)
+        LiveLoader::new(&self.gpu, &self.layouts, &self.colors, &self.shadow_drawer)
     }
 
     /// Shows a scene that a loader of this renderer has prepared.

@@ -3,7 +3,7 @@
 //! A [`LiveLoader`] has what a scene needs of its renderer: the device and its bindings. What it makes, buffers, textures and
 //! pipelines, is shown by [`LiveRenderer::show`](super::LiveRenderer::show), which only swaps them in.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::adapter::Gpu;
 use crate::error::GpuError;
@@ -20,10 +20,14 @@ use crate::parts::ShaderParts;
 use crate::pipelines::Pipelines;
 use crate::plan::Plan;
 use crate::shadow::{ShadowTextures, ShadowView};
+use crate::shadow_maps::ShadowMaker;
+use crate::shadow_maps::drawer::ShadowDrawer;
+use crate::shadow_maps::maker::{CastShadows, draw_alone};
 use crate::windows::WindowTexture;
 use sandtable_draw::ground_window::GroundWindow;
 use sandtable_draw::list::DrawList;
 use sandtable_draw::patches::GroundChanges;
+use sandtable_view::camera::Camera;
 
 /// Prepares scenes for a renderer, on any thread.
 #[derive(Clone, Debug)]
@@ -31,7 +35,11 @@ pub struct LiveLoader {
     gpu: Gpu,
     layouts: Arc<Layouts>,
     colors: Pipelines,
+    shadow_drawer: SharedShadowDrawer,
 }
+
+/// What draws shadow maps, made at first use; the renderer and its loaders share it.
+pub(super) type SharedShadowDrawer = Arc<Mutex<Option<ShadowDrawer>>>;
 
 /// A scene on the device that is not shown yet.
 #[derive(Debug)]
@@ -54,8 +62,14 @@ pub struct PreparedShadows {
 pub struct PreparedWindows(pub(super) WindowTexture);
 
 impl LiveLoader {
-    pub(super) fn new(gpu: &Gpu, layouts: &Arc<Layouts>, colors: &Pipelines) -> Self {
-        Self { gpu: gpu.clone(), layouts: Arc::clone(layouts), colors: colors.clone() }
+    pub(super) fn new(
+        gpu: &Gpu,
+        layouts: &Arc<Layouts>,
+        colors: &Pipelines,
+        shadow_drawer: &SharedShadowDrawer,
+    ) -> Self {
+        let (layouts, shadow_drawer) = (Arc::clone(layouts), Arc::clone(shadow_drawer));
+        Self { gpu: gpu.clone(), layouts, colors: colors.clone(), shadow_drawer }
     }
 
     /// Brings a list to the device as [`LiveRenderer::load`](super::LiveRenderer::load) does, and waits until it is there.
@@ -64,20 +78,21 @@ impl LiveLoader {
     /// See [`GpuError`].
     pub fn prepare(&self, list: &DrawList, shadows: &LiveShadows) -> Result<PreparedScene, GpuError> {
         list.check()?;
-        let Self { gpu, layouts, colors } = self;
+        let Self { gpu, layouts, colors, .. } = self;
         gpu.guarded("loading the scene", || {
             let places = TexturePlaces::new(list, TextureScope::All, &gpu.limits);
             let plan = Plan::of_solids(list, &places);
             let patches = PatchStore::new(list, &places);
             let loader = Loader::new(gpu);
             let LiveShadows(shadows) = shadows;
-            let textures = FrameTextures::upload(&loader, list.ground.as_deref(), shadows)?;
-            let has_shadows = [&shadows.sun, &shadows.sky].map(Option::is_some);
+            let shadow_textures = ShadowTextures::upload(&loader, shadows)?;
+            let textures = FrameTextures::upload(&loader, list.ground.as_deref(), shadow_textures)?;
+            let has_shadows = shadows.maps().map(|map| map.is_some());
             let scene = LoadedScene {
                 map: EditedMap::new(list.ground.clone()),
                 lighting: list.lighting,
                 parts: ShaderParts::of_picture(list.ground.as_deref(), &list.lighting, has_shadows),
-                shadows: ShadowView::both(shadows),
+                shadows: ShadowView::both(shadows.maps()),
                 row_bits: row_bits(gpu.limits.max_texture_dimension_2d),
                 frame: FrameGroup::new(&loader, layouts, &textures)?,
                 textures,
@@ -101,9 +116,42 @@ impl LiveLoader {
         self.gpu.guarded("sending the shadows", || {
             let textures = ShadowTextures::upload(&Loader::new(&self.gpu), shadows)?;
             self.gpu.finish_sending()?;
-            let has_shadows = [&shadows.sun, &shadows.sky].map(Option::is_some);
-            Ok(PreparedShadows { textures, views: ShadowView::both(shadows), has_shadows })
+            let has_shadows = shadows.maps().map(|map| map.is_some());
+            Ok(PreparedShadows { textures, views: ShadowView::both(shadows.maps()), has_shadows })
         })
+    }
+
+    /// The shadow maps for what `camera` sees of a list with its ground, on the device: drawn by the adapter, unless that is
+    /// the processor itself.
+    ///
+    /// # Errors
+    /// See [`GpuError`].
+    pub fn cast_shadows(&self, list: &DrawList, camera: &Camera) -> Result<PreparedShadows, GpuError> {
+        self.cast_shadows_by(ShadowMaker::of(&self.gpu), list, camera)
+    }
+
+    /// [`LiveLoader::cast_shadows`], drawn by `maker`.
+    ///
+    /// # Errors
+    /// See [`GpuError`].
+    pub fn cast_shadows_by(
+        &self,
+        maker: ShadowMaker,
+        list: &DrawList,
+        camera: &Camera,
+    ) -> Result<PreparedShadows, GpuError> {
+        list.check()?;
+        let Self { gpu, layouts, shadow_drawer, .. } = self;
+        match CastShadows::new(gpu, maker, list, camera)? {
+            CastShadows::Drawn(shadows) => self.prepare_shadows(&LiveShadows(shadows)),
+            CastShadows::Planned(plan) => gpu.guarded("casting shadows", || {
+                let mut drawer = shadow_drawer.lock().unwrap_or_else(PoisonError::into_inner);
+                let textures = draw_alone(&Loader::new(gpu), layouts, &mut drawer, list, &plan)?;
+                let maps = plan.maps().map(|planned| planned.map(|planned| &planned.map));
+                let has_shadows = maps.map(|map| map.is_some());
+                Ok(PreparedShadows { textures, views: ShadowView::both(maps), has_shadows })
+            }),
+        }
     }
 
     /// Makes the pipelines that a prepared scene needs for windows of finer ground, so that no frame waits for them.

@@ -49,10 +49,10 @@ pub struct ListTriangles {
     pub masks: BTreeMap<u32, AlphaMask>,
 }
 
-/// Triangles along the axes of a light, each with its box.
+/// Triangles along the axes of a light, or what of them is needed, each with its box.
 #[derive(Debug)]
-pub struct LightTriangles {
-    pub triangles: Vec<(CasterTriangle, LightBox)>,
+pub struct LightTriangles<T = CasterTriangle> {
+    pub triangles: Vec<(T, LightBox)>,
     pub bounds: LightBox,
 }
 
@@ -64,6 +64,11 @@ impl LightBox {
             let at = corner.truncate();
             Self { low: bounds.low.min(at), high: bounds.high.max(at) }
         })
+    }
+
+    pub fn of_triangle(corners: [Vec3; 3]) -> Self {
+        let [a, b, c] = corners.map(Vec3::truncate);
+        Self { low: a.min(b).min(c), high: a.max(b).max(c) }
     }
 
     pub fn union(self, other: Self) -> Self {
@@ -105,11 +110,7 @@ impl ListTriangles {
         }
         let ground_end = list.items.partition_point(|item| item.layer == DepthLayer::Ground);
         let triangles = |items: Range<usize>| -> Vec<CasterTriangle> {
-            let casting = items.filter(|&index| index < first || is_caster(&list.items[index]));
-            let portions: Vec<_> = casting
-                .flat_map(|index| portions(&list.items[index]).map(move |part| (index, part)))
-                .collect();
-            let lists: Vec<_> = portions
+            let lists: Vec<_> = portions(list, items)
                 .into_par_iter()
                 .fold(Vec::new, |mut triangles, (index, part)| {
                     add_triangles(&mut triangles, list, camera.eye(), (index, part));
@@ -127,7 +128,7 @@ impl ListTriangles {
 }
 
 /// Whether an item of a checked list casts a shadow.
-fn is_caster(list: &DrawList, item: &DrawItem) -> bool {
+pub fn is_caster(list: &DrawList, item: &DrawItem) -> bool {
     let alpha = list.materials[item.material.0 as usize].alpha;
     item.layer == DepthLayer::Solid && alpha != AlphaMode::Blend && !item.triangles.is_empty()
 }
@@ -143,10 +144,8 @@ impl LightTriangles {
         is_near: impl Fn(LightBox) -> bool + Sync,
     ) -> Self {
         let turned = |triangle: &CasterTriangle| {
-            let [a, b, c] = triangle.corners;
-            let corners = [axes.turned(a), axes.turned(b), axes.turned(c)];
-            let [a, b, c] = corners.map(Vec3::truncate);
-            let bounds = LightBox { low: a.min(b).min(c), high: a.max(b).max(c) };
+            let corners = triangle.corners.map(|corner| axes.turned(corner));
+            let bounds = LightBox::of_triangle(corners);
             is_near(bounds).then_some((CasterTriangle { corners, ..*triangle }, bounds))
         };
         let triangles: Vec<_> = triangles.par_iter().with_min_len(1024).filter_map(turned).collect();
@@ -155,16 +154,25 @@ impl LightTriangles {
     }
 }
 
-/// The triangles of an item in ranges for which threads work apart.
-fn portions(item: &DrawItem) -> impl Iterator<Item = Range<u32>> + use<> {
+/// The triangles of the ground and of casters among these items of a checked list, by item, in ranges for which threads
+/// work apart.
+pub fn portions(list: &DrawList, items: Range<usize>) -> Vec<(usize, Range<u32>)> {
     /// Triangles of a portion: some tenths of a millisecond.
     const PORTION: u32 = 4096;
-    let Range { start, end } = item.triangles;
-    (start..end).step_by(PORTION as usize).map(move |from| from..from.saturating_add(PORTION).min(end))
+    let casting = items.filter(|&index| {
+        let item = &list.items[index];
+        item.layer == DepthLayer::Ground || is_caster(list, item)
+    });
+    let of_item = |index: usize| {
+        let Range { start, end } = list.items[index].triangles;
+        let starts = (start..end).step_by(PORTION as usize);
+        starts.map(move |from| (index, from..from.saturating_add(PORTION).min(end)))
+    };
+    casting.flat_map(of_item).collect()
 }
 
 /// Adds the finite triangles of a part of an item.
-fn add_triangles(
+pub fn add_triangles(
     triangles: &mut Vec<CasterTriangle>,
     list: &DrawList,
     eye: Vec3,
@@ -189,7 +197,7 @@ fn add_triangles(
 
 /// The least and greatest depth of what the camera sees, in meters: in perspective of corners, with parallel rays of
 /// triangles, since there one map must hold all of it; the first is the greater where it sees nothing.
-fn seen_depths(triangles: &[CasterTriangle], camera: &Camera) -> [f32; 2] {
+pub fn seen_depths(triangles: &[CasterTriangle], camera: &Camera) -> [f32; 2] {
     if let Some(frame) = camera.parallel_frame() {
         return depths_in_frame(triangles, camera, frame);
     }
@@ -215,7 +223,7 @@ fn seen_depths(triangles: &[CasterTriangle], camera: &Camera) -> [f32; 2] {
 }
 
 /// The wider of two ranges of depths.
-fn wider(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
+pub fn wider(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 

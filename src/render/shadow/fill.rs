@@ -12,7 +12,7 @@ use crate::shadow::casters::{CasterTriangle, LightTriangles};
 use crate::shadow::coverage::cover_centers;
 use crate::shadow::cut::cut_at;
 use crate::shadow::levels::{KeptPages, MapSource, PageRange};
-use crate::shadow::{NOTHING, PAGE, ShadowLevel, ShadowPage, ShadowPurpose, ShadowTexel};
+use crate::shadow::{FLOATING_TEXELS, NOTHING, PAGE, ShadowLevel, ShadowPage, ShadowPurpose, ShadowTexel};
 use sandtable_draw::material::{AlphaMode, TextureWrap};
 
 /// How far outside a level corners may lie, in texels; triangles that reach farther are cut.
@@ -20,10 +20,6 @@ const GUARD_TEXELS: f32 = 8192.0;
 
 /// More than snapping to the rasterizer's grid moves a corner, in texels.
 const SNAPPED_TEXELS: f32 = 1e-3;
-
-/// How far above the ground an underside lies at the least of what does not touch it, in texels: as far as contact
-/// shade reaches.
-const FLOATING_TEXELS: f32 = 2.0;
 
 /// Rows of pages that a triangle in a bucket reaches at the most.
 const SHORT_ROWS: u32 = 4;

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use glam::{Vec2, Vec3};
+use rayon::prelude::*;
 
 use crate::shadow::casters::{LightBox, LightTriangles, ListTriangles};
 use crate::shadow::fill::Filling;
@@ -43,40 +44,32 @@ pub struct MapSource<'a> {
     pub purpose: ShadowPurpose,
 }
 
+/// What a light's map is planned by, besides the solids.
+#[derive(Debug)]
+pub struct LightView<'a> {
+    pub camera: &'a Camera,
+    pub axes: LightAxes,
+    /// The least and greatest depth of what is seen, in meters; above 0 in perspective.
+    pub depths_m: [f32; 2],
+}
+
 impl ShadowMap {
     /// The map with texels of up to `texel_px` pixels; `None` where no shadow is seen.
     ///
     /// # Errors
     /// There is not the memory for it.
     pub fn new(source: &MapSource, texel_px: f32) -> Result<Option<Self>, MemoryRefused> {
-        let (camera, axes) = (source.camera, &source.axes);
-        let solids = LightTriangles::new(&source.triangles.solids, axes, |_| true);
-        // By meter of depth; with parallel rays at any depth, and there is one level.
-        let pixel = 1.0 / camera.pixels_per_meter(1.0);
-        let planned = (0..MOST_DOUBLINGS).find_map(|doubling| {
-            let scale =
-                LevelScale { texel_per_depth: pixel * texel_px * (1u32 << doubling) as f32, least: 0 };
-            plan(source, &solids, scale)
-        });
-        let Some((scale, levels, pages)) = planned else { return Ok(None) };
-        let stored = pages.iter().filter(|page| page.number > 0).count();
-        if stored == 0 {
-            return Ok(None);
-        }
+        let solids = LightTriangles::new(&source.triangles.solids, &source.axes, |_| true);
+        let MapSource { camera, axes, triangles, .. } = *source;
+        let view = LightView { camera, axes, depths_m: triangles.depths_m };
+        let Some(mut map) = Self::planned(&view, &solids, texel_px) else { return Ok(None) };
+        let stored = map.stored();
         let bytes = stored as u64 * u64::from(PAGE * PAGE) * BYTES_PER_TEXEL;
         check_memory(bytes, "drawing shadow maps", "draw a smaller picture, or fewer solids")?;
-        let mut map = Self {
-            eye: camera.eye(),
-            forward: camera.forward(),
-            axes: source.axes,
-            scale,
-            levels,
-            pages,
-            texels: bytemuck::zeroed_vec(stored * (PAGE * PAGE) as usize),
-        };
+        map.texels = bytemuck::zeroed_vec(stored * (PAGE * PAGE) as usize);
         let kept: Vec<_> = map.levels.iter().map(|level| KeptPages::new(level, &map.pages)).collect();
         let is_near = |bounds: LightBox| kept.iter().any(|kept| kept.pages_on(bounds).is_some());
-        let ground = LightTriangles::new(&source.triangles.ground, axes, is_near);
+        let ground = LightTriangles::new(&source.triangles.ground, &source.axes, is_near);
         let mut texels = map.texels.as_mut_slice();
         for (level, kept) in map.levels.iter().zip(&kept) {
             let pages = &mut map.pages[level.pages()];
@@ -88,17 +81,40 @@ impl ShadowMap {
         }
         Ok(Some(map))
     }
+
+    /// The map without texels, its pages numbered; `None` where no shadow is seen. `solids` are along its axes.
+    pub(super) fn planned<T: Sync>(
+        view: &LightView,
+        solids: &LightTriangles<T>,
+        texel_px: f32,
+    ) -> Option<Self> {
+        let camera = view.camera;
+        // By meter of depth; with parallel rays at any depth, and there is one level.
+        let pixel = 1.0 / camera.pixels_per_meter(1.0);
+        let (scale, levels, pages) = (0..MOST_DOUBLINGS).find_map(|doubling| {
+            let scale =
+                LevelScale { texel_per_depth: pixel * texel_px * (1u32 << doubling) as f32, least: 0 };
+            plan(view, solids, scale)
+        })?;
+        let (eye, forward, axes) = (camera.eye(), camera.forward(), view.axes);
+        let map = Self { eye, forward, axes, scale, levels, pages, texels: Vec::new() };
+        (map.stored() > 0).then_some(map)
+    }
+
+    /// How many pages are stored.
+    pub fn stored(&self) -> usize {
+        self.pages.iter().filter(|page| page.number > 0).count()
+    }
 }
 
 /// The levels of a scale with their pages numbered; `None` where they exceed the limits.
-fn plan(
-    source: &MapSource,
-    solids: &LightTriangles,
+fn plan<T: Sync>(
+    view: &LightView,
+    solids: &LightTriangles<T>,
     mut scale: LevelScale,
 ) -> Option<(LevelScale, Vec<ShadowLevel>, Vec<ShadowPage>)> {
-    let is_parallel = source.camera.parallel_frame().is_some();
-    let [least, most] =
-        source.triangles.depths_m.map(|depth| scale.exponent(if is_parallel { 1.0 } else { depth }));
+    let is_parallel = view.camera.parallel_frame().is_some();
+    let [least, most] = view.depths_m.map(|depth| scale.exponent(if is_parallel { 1.0 } else { depth }));
     scale.least = least.max(most - (MOST_LEVELS as i32 - 1));
     let (mut levels, mut pages, mut stored) = (Vec::new(), Vec::new(), 0);
     for exponent in scale.least..=most {
@@ -106,11 +122,11 @@ fn plan(
         let nearest = if exponent == scale.least { 0.0 } else { texel_m };
         // A level reaches a little beyond its depths, since renderers round differently.
         let depths = if is_parallel {
-            source.triangles.depths_m
+            view.depths_m
         } else {
             [nearest * 0.98, texel_m * 2.04].map(|texel| texel / scale.texel_per_depth)
         };
-        let seen = slab(source.camera, &source.axes, depths).intersection(solids.bounds);
+        let seen = slab(view.camera, &view.axes, depths).intersection(solids.bounds);
         let seen = if seen.is_empty() { LightBox { low: Vec2::ZERO, high: Vec2::ZERO } } else { seen };
         let mut bounds = seen.grown(PAGE_MARGIN * texel_m);
         // Pages of a level lie at the same places whatever solids there are: what is out of view moves no texel.
@@ -158,7 +174,7 @@ pub struct KeptPages<'a> {
 }
 
 impl<'a> KeptPages<'a> {
-    fn new(level: &'a ShadowLevel, pages: &[ShadowPage]) -> Self {
+    pub fn new(level: &'a ShadowLevel, pages: &[ShadowPage]) -> Self {
         let stride = level.columns as usize + 1;
         let mut counts = vec![0; stride * (level.rows as usize + 1)];
         for (row, pages) in pages[level.pages()].chunks_exact(level.columns as usize).enumerate() {
@@ -189,7 +205,7 @@ impl<'a> KeptPages<'a> {
 
 impl ShadowLevel {
     /// Where its pages are in [`ShadowMap::pages`].
-    fn pages(&self) -> Range<usize> {
+    pub fn pages(&self) -> Range<usize> {
         self.first as usize..(self.first + self.columns * self.rows) as usize
     }
 
@@ -234,17 +250,29 @@ impl ShadowLevel {
 
     /// Whether a solid is on or near each page. Counts the boxes that begin and end, so that a box costs the same
     /// however large it is.
-    fn touched(&self, solids: &LightTriangles) -> Vec<bool> {
+    fn touched<T: Sync>(&self, solids: &LightTriangles<T>) -> Vec<bool> {
+        /// Boxes that a thread counts at once: each has a grid of its own.
+        const COUNTED: usize = 1 << 16;
         let stride = self.columns as usize + 1;
-        let mut counts = vec![0i64; stride * (self.rows as usize + 1)];
-        for range in solids.triangles.iter().filter_map(|(_, bounds)| self.pages_near(*bounds, PAGE_MARGIN)) {
-            let [[left, bottom], [right, top]] =
-                [range.from, range.to].map(|at| at.map(|page| page as usize));
-            counts[bottom * stride + left] += 1;
-            counts[bottom * stride + right] -= 1;
-            counts[top * stride + left] -= 1;
-            counts[top * stride + right] += 1;
-        }
+        let size = stride * (self.rows as usize + 1);
+        let counted = |boxes: &[(T, LightBox)]| {
+            let mut counts = vec![0i64; size];
+            for range in boxes.iter().filter_map(|(_, bounds)| self.pages_near(*bounds, PAGE_MARGIN)) {
+                let [[left, bottom], [right, top]] =
+                    [range.from, range.to].map(|at| at.map(|page| page as usize));
+                counts[bottom * stride + left] += 1;
+                counts[bottom * stride + right] -= 1;
+                counts[top * stride + left] -= 1;
+                counts[top * stride + right] += 1;
+            }
+            counts
+        };
+        let sum = |mut counts: Vec<i64>, others: Vec<i64>| {
+            counts.iter_mut().zip(&others).for_each(|(count, other)| *count += other);
+            counts
+        };
+        let counts = solids.triangles.par_chunks(COUNTED).map(counted).reduce_with(sum);
+        let mut counts = counts.unwrap_or_else(|| vec![0; size]);
         for index in 0..counts.len() {
             let west = if index % stride > 0 { counts[index - 1] } else { 0 };
             let south = if index >= stride { counts[index - stride] } else { 0 };

@@ -19,7 +19,8 @@
 //!
 //! `casters` turns triangles to the map's space, `levels` finds the pages, `fill` and `coverage` rasterize them with integer
 //! coverage, row of pages by row of pages in parallel; the greatest height does not depend on the order. [`filter`]
-//! reads them. Both renderers read the same map, so that they show the same shadows.
+//! reads them. Both renderers read the same map, so that they show the same shadows. A graphics adapter may draw the texels
+//! itself: [`plan`] gives it the pages without them.
 //!
 //! The ground receives from solids only, since the ground map holds the shadow of terrain on terrain, softer and finer
 //! than triangles could cast it. Solids receive from both.
@@ -35,12 +36,14 @@
 //! while it is drawn, of which there are at most [`MOST_PAGES`] pages per map; these are asked for before they are drawn. A pixel costs
 //! one look-up per map where nothing is near, and from 9 to some 100 readings where a solid lies toward the light.
 
+mod caster_boxes;
 mod casters;
 mod coverage;
 mod cut;
 mod fill;
 pub mod filter;
 mod levels;
+pub mod plan;
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
@@ -69,6 +72,10 @@ const SUN_TEXEL_PX: f32 = 1.4;
 
 /// The same for the sky's map: contact shade is blurred and needs few.
 const SKY_TEXEL_PX: f32 = 4.0;
+
+/// How far above the ground an underside lies at the least of what does not touch it, in texels: as far as contact
+/// shade reaches.
+pub const FLOATING_TEXELS: f32 = 2.0;
 
 /// The height of a texel where nothing is: finite, since shaders need not know infinity.
 const NOTHING: f32 = -1e30;
@@ -192,6 +199,11 @@ impl Shadows {
         // One after the other, each by all threads: what they are made of takes more memory than they do.
         let sun = sun()?;
         Ok(Self { sun, sky: map(Vec3::Z, SKY_TEXEL_PX, ShadowPurpose::Contact)? })
+    }
+
+    /// The maps of the sun and of the sky.
+    pub fn maps(&self) -> [Option<&ShadowMap>; 2] {
+        [self.sun.as_ref(), self.sky.as_ref()]
     }
 }
 
