@@ -46,6 +46,7 @@ pub struct PictureRenderer {
     features: Pipelines,
     targets: Option<KeptTargets>,
     ground: Option<KeptGround>,
+    grounds_sent: usize,
     /// The longest side of a tile in pixels.
     longest_tile: u32,
 }
@@ -82,13 +83,32 @@ impl PictureRenderer {
             let colors = pipelines(GpuPass::Color, COLOR, gpu.samples);
             let features = pipelines(GpuPass::Feature, FEATURE, 1);
             let (gpu, longest_tile) = (gpu.clone(), gpu.longest_side());
-            Ok(Self { gpu, layouts, colors, features, targets: None, ground: None, longest_tile })
+            Ok(Self {
+                gpu,
+                layouts,
+                colors,
+                features,
+                targets: None,
+                ground: None,
+                grounds_sent: 0,
+                longest_tile,
+            })
         })
     }
 
     /// Lets tiles of pictures be no larger than `longest_px` pixels a side, where the adapter allows for more.
     pub fn limit_tiles(&mut self, longest_px: u32) {
         self.longest_tile = longest_px.clamp(1, self.gpu.longest_side());
+    }
+
+    /// The number of pipelines that are made.
+    pub fn pipelines(&self) -> usize {
+        self.colors.count() + self.features.count()
+    }
+
+    /// How often a ground map was sent, one of no ground among them.
+    pub fn grounds_sent(&self) -> usize {
+        self.grounds_sent
     }
 
     /// The picture of `list` as `camera` sees it. `progress` is called with the name of each step as it begins.
@@ -134,6 +154,7 @@ impl PictureRenderer {
                     KeptTargets { textures, bytes: loader.taken() }
                 }
             };
+            let sent = usize::from(ground.is_none());
             let ground = match ground {
                 Some(mut ground) => {
                     loader.keep("the ground map", ground.bytes)?;
@@ -155,9 +176,10 @@ impl PictureRenderer {
             let constants = FrameUniforms::new(scene, camera);
             let materials = GpuMaterials::upload(&loader, &self.layouts, list, &places)?;
             let geometry = GpuGeometry::upload(&loader, list, &plan, Some(camera))?;
-            Ok((targets, ground, frame, constants, materials, geometry))
+            Ok((targets, ground, frame, constants, materials, geometry, sent))
         });
-        let (targets, ground, frame, constants, materials, geometry) = loaded?;
+        let (targets, ground, frame, constants, materials, geometry, sent) = loaded?;
+        self.grounds_sent += sent;
         progress("drawing on the adapter");
         let scene = PictureScene { frame, constants, materials, geometry, plan, parts };
         let picture = gpu.guarded("drawing the picture", || {
