@@ -11,7 +11,7 @@ use sandtable_render::shadow::filter;
 const FOLDER: &str = concat!(env!("SANDTABLE_ROOT"), "src/gpu");
 
 /// The modules, as files that are joined.
-const MODULES: [&[&str]; 2] = [
+const MODULES: [&[&str]; 3] = [
     &[
         "shader.wgsl",
         "area.wgsl",
@@ -21,6 +21,7 @@ const MODULES: [&[&str]; 2] = [
         "sky.wgsl",
     ],
     &["whole_picture.wgsl", "encode.wgsl"],
+    &["instance_culling.wgsl"],
 ];
 
 fn text_of(module: &[&str]) -> String {

@@ -10,10 +10,11 @@ use crate::error::GpuError;
 use crate::frame::{FrameGroup, FrameTextures};
 use crate::geometry::GpuGeometry;
 use crate::ground::row_bits;
+use crate::instance_culling::{InstanceCuller, InstanceCulling};
 use crate::layouts::Layouts;
 use crate::live::ground_map::EditedMap;
 use crate::live::patches::PatchStore;
-use crate::live::{LiveShadows, LoadedScene};
+use crate::live::{LiveRenderer, LiveShadows, LoadedScene};
 use crate::materials::{GpuMaterials, TexturePlaces, TextureScope};
 use crate::memory::Loader;
 use crate::parts::ShaderParts;
@@ -31,6 +32,7 @@ pub struct LiveLoader {
     gpu: Gpu,
     layouts: Arc<Layouts>,
     colors: Pipelines,
+    culler: Option<Arc<InstanceCuller>>,
 }
 
 /// A scene on the device that is not shown yet.
@@ -54,8 +56,14 @@ pub struct PreparedShadows {
 pub struct PreparedWindows(pub(super) WindowTexture);
 
 impl LiveLoader {
-    pub(super) fn new(gpu: &Gpu, layouts: &Arc<Layouts>, colors: &Pipelines) -> Self {
-        Self { gpu: gpu.clone(), layouts: Arc::clone(layouts), colors: colors.clone() }
+    pub(super) fn new(renderer: &LiveRenderer) -> Self {
+        let LiveRenderer { gpu, layouts, colors, culler, .. } = renderer;
+        Self {
+            gpu: gpu.clone(),
+            layouts: Arc::clone(layouts),
+            colors: colors.clone(),
+            culler: culler.clone(),
+        }
     }
 
     /// Brings a list to the device as [`LiveRenderer::load`](super::LiveRenderer::load) does, and waits until it is there.
@@ -64,15 +72,21 @@ impl LiveLoader {
     /// See [`GpuError`].
     pub fn prepare(&self, list: &DrawList, shadows: &LiveShadows) -> Result<PreparedScene, GpuError> {
         list.check()?;
-        let Self { gpu, layouts, colors } = self;
+        let Self { gpu, layouts, colors, culler } = self;
         gpu.guarded("loading the scene", || {
             let places = TexturePlaces::new(list, TextureScope::All, &gpu.limits);
-            let plan = Plan::of_solids(list, &places);
+            let culling = match culler {
+                Some(_) => InstanceCulling::of(gpu, list.items.len()),
+                None => InstanceCulling::Processor,
+            };
+            let plan = Plan::of_solids(list, &places, culling);
             let patches = PatchStore::new(list, &places);
             let loader = Loader::new(gpu);
             let LiveShadows(shadows) = shadows;
             let textures = FrameTextures::upload(&loader, list.ground.as_deref(), shadows)?;
             let has_shadows = [&shadows.sun, &shadows.sky].map(Option::is_some);
+            let geometry = GpuGeometry::upload(&loader, list, &plan, None)?;
+            let culled = culler.as_ref().map(|culler| culler.load(&loader, &plan, geometry.instances()));
             let scene = LoadedScene {
                 map: EditedMap::new(list.ground.clone()),
                 lighting: list.lighting,
@@ -82,7 +96,8 @@ impl LiveLoader {
                 frame: FrameGroup::new(&loader, layouts, &textures)?,
                 textures,
                 materials: GpuMaterials::upload(&loader, layouts, list, &places)?,
-                geometry: GpuGeometry::upload(&loader, list, &plan, None)?,
+                geometry,
+                culled: culled.transpose()?.flatten(),
                 plan,
                 patches,
             };
