@@ -4,6 +4,7 @@ pub mod analysis;
 pub mod dem;
 pub mod elevation;
 pub mod error;
+pub mod gpu_renderer;
 pub mod plan;
 #[cfg(feature = "cli")]
 pub mod program;

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::api::error::Error;
+use crate::api::gpu_renderer::GPU;
 use sandtable_shards::gather::{PlanProgress, gather};
 use sandtable_shards::plan::ShardPlan;
 use sandtable_shards::record::ShardState;
@@ -72,7 +73,7 @@ impl WorkPlan {
         let idle = self.idle().pop();
         let mut worker = match idle {
             Some(worker) => worker,
-            None => ShardWorker::open(&self.plan)?,
+            None => ShardWorker::open(&self.plan, GPU)?,
         };
         worker.work(shard)?;
         self.idle().push(worker);

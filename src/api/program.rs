@@ -1,8 +1,8 @@
 //! The program `sandtable`: the command line, with the height service and the window where they are built in.
 
+use crate::api::gpu_renderer::GPU;
 use sandtable_cli::invocation::Invocation;
 use sandtable_cli::{BuiltInPrograms, ServeProgram, ViewProgram};
-use sandtable_render::OtherRenderer;
 
 #[cfg(feature = "serve")]
 const SERVE: Option<ServeProgram> = Some(|options| Ok(sandtable_serve::run(options)?));
@@ -15,13 +15,6 @@ const VIEW: Option<ViewProgram> = Some(|options| Ok(sandtable_viewer::run(option
 
 #[cfg(not(feature = "viewer"))]
 const VIEW: Option<ViewProgram> = None;
-
-#[cfg(feature = "gpu")]
-const GPU: Option<OtherRenderer> =
-    Some(|list, camera, progress| Ok(sandtable_gpu::render(list, camera, progress)?));
-
-#[cfg(not(feature = "gpu"))]
-const GPU: Option<OtherRenderer> = None;
 
 /// Runs the program `sandtable` (feature `cli`), which prints answers and errors, and returns its exit code: 0 done, 1 the input
 /// is wrong, 2 wrong usage.

@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::backend::BackendName;
 use crate::error::CliError;
 use crate::options::SceneArguments;
 use crate::output::{print_summary, row};
@@ -12,6 +11,7 @@ use crate::progress::{CountedBar, StepTimer};
 use crate::values::{choice, number, picture_size};
 use sandtable_base::limits::FLIGHT_FRAMES;
 use sandtable_render::OtherRenderer;
+use sandtable_render::backend_name::BackendName;
 use sandtable_sheet::picture::PictureSize;
 use sandtable_walk::flown_scene::open_scene_with_flight;
 use sandtable_walk::fly::{FlyOptions, fly_to_file, fly_to_folder};

@@ -4,7 +4,6 @@
 mod address_space;
 mod analyze;
 mod arguments;
-mod backend;
 mod catalog;
 mod check;
 mod completions;
@@ -156,7 +155,7 @@ fn run(
         Command::Viewshed(arguments) => viewshed::run(arguments),
         Command::Analyze(command) => analyze::run(command),
         Command::Plan { command } => plan::run(command),
-        Command::Work(arguments) => work::run(arguments),
+        Command::Work(arguments) => work::run(arguments, programs.gpu),
         Command::Gather(arguments) => gather::run(arguments),
         Command::Serve(arguments) => serve::run(arguments, programs.serve),
         Command::View(arguments) => view::run(arguments, programs.view),

@@ -17,6 +17,7 @@ use sandtable_description::document::PAPER_DPI;
 use sandtable_description::words::PaperName;
 use sandtable_files::disk;
 use sandtable_geom::crs::Crs;
+use sandtable_render::backend_name::BackendName;
 use sandtable_shards::atlas::arguments::{AtlasArguments, atlas_scene, pixel_m};
 use sandtable_shards::atlas::plan::plan as plan_atlas;
 use sandtable_shards::heights::arguments::HeightsArguments;
@@ -93,6 +94,9 @@ pub struct PlanAtlasArguments {
     /// Pixels per inch
     #[arg(long, value_name = "DPI", default_value_t = PAPER_DPI, value_parser = number::<f64>(10.0..=1e4, "write a number from 10 to 10000"))]
     dpi: f64,
+    /// The renderer of all sheets: the processor, the same on every machine, or a graphics adapter
+    #[arg(long, default_value = "cpu", value_parser = choice::<BackendName>())]
+    backend: BackendName,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -186,7 +190,8 @@ fn run_viewsheds(arguments: &PlanViewshedsArguments) -> Result<(), CliError> {
 
 fn run_atlas(arguments: &PlanAtlasArguments) -> Result<(), CliError> {
     let SceneArguments { scene, access } = &arguments.scene;
-    let opened = atlas_scene(scene, &access.allow, pixel_m(arguments.scale, arguments.dpi))?;
+    let opened =
+        atlas_scene(scene, &access.allow, (pixel_m(arguments.scale, arguments.dpi), arguments.backend))?;
     let folder = &arguments.output;
     disk::make_folder(folder)?;
     let planned = AtlasArguments {
@@ -196,6 +201,7 @@ fn run_atlas(arguments: &PlanAtlasArguments) -> Result<(), CliError> {
         paper: PlannedWord(arguments.paper),
         portrait: arguments.portrait,
         dpi: arguments.dpi,
+        backend: PlannedWord(arguments.backend),
     };
     let sheets = plan_atlas(planned, &opened, folder)?;
     report(folder, "atlas", sheets, arguments.json)

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Map, Value, json};
 
-use crate::backend::BackendName;
 use crate::check::{contents, counted_findings};
 use crate::error::CliError;
 use crate::options::AccessArguments;
@@ -20,6 +19,7 @@ use sandtable_base::message::suggest::{nearest, quoted};
 use sandtable_description::finding::{Finding, Severity};
 use sandtable_files::disk::{self, WriteFileCause, WriteFileError};
 use sandtable_render::OtherRenderer;
+use sandtable_render::backend_name::BackendName;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::scene_view::SceneView;
 use sandtable_sheet::picture::PictureSize;

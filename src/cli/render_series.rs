@@ -5,7 +5,6 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::backend::BackendName;
 use crate::error::CliError;
 use crate::picture_maker::{ComposedPicture, MadePicture, PictureMaker};
 use crate::progress::StepTimer;
@@ -20,6 +19,7 @@ use sandtable_files::fingerprint::fingerprint;
 use sandtable_files::output_files::OutputFiles;
 use sandtable_files::png::encode_png;
 use sandtable_render::RenderBackend;
+use sandtable_render::backend_name::BackendName;
 use sandtable_scene::planned_pictures::{ElevationNeed, NearGround, PlannedCameras, PlannedPictures};
 use sandtable_scene::scene_file::{open_scene_for, phases};
 use sandtable_scene::scene_model::SceneModel;

@@ -10,6 +10,7 @@ use crate::error::CliError;
 use crate::output::{is_quiet, print, warn};
 use crate::progress::CountedBar;
 use sandtable_base::message::chain::error_text;
+use sandtable_render::OtherRenderer;
 use sandtable_shards::plan::ShardPlan;
 use sandtable_shards::work::{ShardWorker, is_done};
 
@@ -35,8 +36,9 @@ fn shard_range(text: &str) -> Result<Range<usize>, &'static str> {
     ends.ok_or("write the first shard and the one after the last, as in 0..100")
 }
 
-/// Does the shards that are not done, and prints a line for each; goes on past one that fails.
-pub fn run(arguments: &WorkArguments) -> Result<(), CliError> {
+/// Does the shards that are not done, and prints a line for each; goes on past one that fails. `gpu` draws the sheets of a plan that
+/// states a graphics adapter.
+pub fn run(arguments: &WorkArguments, gpu: Option<OtherRenderer>) -> Result<(), CliError> {
     let plan = Arc::new(ShardPlan::open(&arguments.plan)?);
     let one = arguments.shard.map(|shard| shard..shard.saturating_add(1));
     let ids = one.or_else(|| arguments.shards.clone()).unwrap_or_default();
@@ -53,7 +55,7 @@ pub fn run(arguments: &WorkArguments) -> Result<(), CliError> {
         }
         let worker: &mut ShardWorker = match &mut worker {
             Some(worker) => worker,
-            none => none.insert(ShardWorker::open(&plan)?),
+            none => none.insert(ShardWorker::open(&plan, gpu)?),
         };
         match worker.work(id) {
             Ok(()) => say(format!("{id} done\n"))?,

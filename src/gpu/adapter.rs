@@ -8,6 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::error::{DriverError, GpuError};
 use crate::formats::{COLOR, DEPTH};
+use crate::instance_culling::{BLOCK_INSTANCES, STORAGE_BUFFERS};
 
 /// The most readings of a texture along a pixel seen at a grazing angle; on a software adapter those of the CPU renderer,
 /// since each costs time there.
@@ -42,6 +43,8 @@ pub struct Gpu {
     pub(super) is_software: bool,
     /// Whether it reads from a buffer what a call is to draw.
     pub(super) draws_indirectly: bool,
+    /// Whether it can leave out instances of what stands by itself.
+    pub(super) culls_instances: bool,
     api: GpuApi,
     name: String,
     failure: DeviceFailure,
@@ -71,10 +74,12 @@ impl Gpu {
         let flags = adapter.get_downlevel_capabilities().flags;
         let info = adapter.get_info();
         let api = api_of(adapter);
+        let limits = device.limits();
         Self {
             adapter: adapter.clone(),
             failure: watch(&device),
-            limits: device.limits(),
+            culls_instances: culls_instances(flags, &limits),
+            limits,
             device,
             queue,
             samples: if supports_samples(adapter) { SAMPLES } else { 1 },
@@ -229,6 +234,14 @@ fn watch(device: &wgpu::Device) -> DeviceFailure {
     let stray = Arc::clone(&failure);
     device.on_uncaptured_error(Arc::new(move |error| record(DriverError::Command(error), &stray)));
     failure
+}
+
+/// Whether shaders that compute may write what calls draw, with as many threads and buffers as the culling of instances has.
+fn culls_instances(flags: wgpu::DownlevelFlags, limits: &wgpu::Limits) -> bool {
+    flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS | wgpu::DownlevelFlags::INDIRECT_EXECUTION)
+        && limits.max_storage_buffers_per_shader_stage >= STORAGE_BUFFERS
+        && limits.max_compute_invocations_per_workgroup.min(limits.max_compute_workgroup_size_x)
+            >= BLOCK_INSTANCES
 }
 
 fn supports_samples(adapter: &wgpu::Adapter) -> bool {

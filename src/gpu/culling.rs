@@ -22,7 +22,7 @@ use sandtable_view::frustum::Frustum;
 const CELL_BITS: u32 = 5;
 
 /// Groups whose largest item is smaller than this many pixels are not drawn: a pixel's samples miss most of them.
-const LEAST_PX: f32 = 0.5;
+pub const LEAST_PX: f32 = 0.5;
 
 /// Items that are drawn or left out together.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,10 +6,12 @@ use std::ops::Range;
 use bytemuck::{Zeroable, cast_slice};
 use glam::{Mat4, Vec3};
 
+use crate::draw_call::DrawShape;
 use crate::error::GpuError;
+use crate::instance_culling::CulledInstances;
 use crate::memory::Loader;
 use crate::merged_vertex::{MergedVertex, SurfaceOwner};
-use crate::plan::{DrawShape, Plan};
+use crate::plan::Plan;
 use crate::uniforms::Instance;
 use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh, DrawVertex};
 use sandtable_mesh::sink::VertexId;
@@ -185,6 +187,27 @@ impl GpuGeometry {
         Ok(Self { merged, placed, instances: instances(loader, list, plan)? })
     }
 
+    /// The instances of the plan, in its order.
+    pub fn instances(&self) -> &wgpu::Buffer {
+        &self.instances
+    }
+
+    /// Draws those instances of run `run` of the plan's culled ones, of this shape, that `culled` has found to be seen, with the
+    /// pipeline and the groups that are set.
+    pub fn draw_seen(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        (run, shape): (usize, &DrawShape),
+        culled: &CulledInstances,
+    ) {
+        let DrawShape::Placed { mesh, instances, .. } = shape else { return };
+        let Some(buffers) = &self.placed[mesh.0 as usize] else { return };
+        buffers.set(pass);
+        pass.set_vertex_buffer(1, culled.seen_from(instances.start));
+        let (calls, offset) = culled.call(run);
+        pass.draw_indexed_indirect(calls, offset);
+    }
+
     /// Draws a shape of the plan with the pipeline and the groups that are set.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, shape: &DrawShape) {
         match shape {
@@ -246,7 +269,8 @@ fn instances(loader: &Loader<'_>, list: &DrawList, plan: &Plan) -> Result<wgpu::
         instances.push(Instance::zeroed());
     }
     let what = || format!("the placement of {} items", instances.len());
-    loader.filled_buffer(what, wgpu::BufferUsages::VERTEX, cast_slice(&instances))
+    let read = if plan.culled.is_empty() { wgpu::BufferUsages::empty() } else { wgpu::BufferUsages::STORAGE };
+    loader.filled_buffer(what, wgpu::BufferUsages::VERTEX | read, cast_slice(&instances))
 }
 
 #[cfg(test)]

@@ -21,11 +21,13 @@
 pub mod adapter;
 mod culling;
 mod draped_vertex;
+mod draw_call;
 pub mod error;
 mod formats;
 mod frame;
 mod geometry;
 mod ground;
+mod instance_culling;
 mod layouts;
 pub mod live;
 mod materials;

@@ -97,15 +97,29 @@ impl PassTimer {
 
     /// What a pass of the frame that is recorded writes; `None` beyond the passes that are timed.
     pub fn writes(&self, label: &'static str) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
+        self.begin(label).map(|first| wgpu::RenderPassTimestampWrites {
+            query_set: &self.set,
+            beginning_of_pass_write_index: Some(first),
+            end_of_pass_write_index: Some(first + 1),
+        })
+    }
+
+    /// [`PassTimer::writes`] for a pass that computes.
+    pub fn compute_writes(&self, label: &'static str) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
+        self.begin(label).map(|first| wgpu::ComputePassTimestampWrites {
+            query_set: &self.set,
+            beginning_of_pass_write_index: Some(first),
+            end_of_pass_write_index: Some(first + 1),
+        })
+    }
+
+    /// The place of a pass's first time; `None` beyond the passes that are timed.
+    fn begin(&self, label: &'static str) -> Option<u32> {
         let mut frames = self.frames();
         let index = frames.labels.len() as u32;
         (index < MOST_PASSES).then(|| {
             frames.labels.push(label);
-            wgpu::RenderPassTimestampWrites {
-                query_set: &self.set,
-                beginning_of_pass_write_index: Some(index * 2),
-                end_of_pass_write_index: Some(index * 2 + 1),
-            }
+            index * 2
         })
     }
 

@@ -3,13 +3,14 @@
 //! Colors and features need separate passes: a pixel's color is the mean of its samples, and a mean of two feature
 //! numbers is a third feature. Where the ground is shaded pixel by pixel, colors take three passes ([`PassStage`]).
 
+use crate::draw_call::DrawCall;
 use crate::geometry::GpuGeometry;
+use crate::instance_culling::CulledInstances;
 use crate::materials::{ArrayId, GpuMaterials};
 use crate::parts::ShaderParts;
 use crate::pass_timer::PassTimer;
 use crate::pipeline_key::PipelineKey;
 use crate::pipelines::Pipelines;
-use crate::plan::DrawCall;
 
 /// The part of a picture that a pass draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -123,6 +124,20 @@ impl<'e, 'a> ScenePass<'e, 'a> {
         for call in calls {
             if self.set(call.key(picture), call.array) {
                 geometry.draw(&mut self.pass, &call.shape);
+            }
+        }
+    }
+
+    /// Draws what `culled` has found to be seen of the culled runs of a plan, in their order.
+    pub fn draw_seen(
+        &mut self,
+        geometry: &GpuGeometry,
+        (runs, culled): (&[DrawCall], &CulledInstances),
+        picture: ShaderParts,
+    ) {
+        for (run, call) in runs.iter().enumerate() {
+            if self.set(call.key(picture), call.array) {
+                geometry.draw_seen(&mut self.pass, (run, &call.shape), culled);
             }
         }
     }

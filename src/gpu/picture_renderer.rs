@@ -50,6 +50,7 @@ pub struct PictureRenderer {
     ground: Option<KeptGround>,
     shadow_maker: ShadowMaker,
     shadow_drawer: Option<ShadowDrawer>,
+    grounds_sent: usize,
     /// The longest side of a tile in pixels.
     longest_tile: u32,
 }
@@ -103,6 +104,7 @@ impl PictureRenderer {
                 ground: None,
                 shadow_maker,
                 shadow_drawer: None,
+                grounds_sent: 0,
                 longest_tile,
             })
         })
@@ -111,6 +113,16 @@ impl PictureRenderer {
     /// Lets tiles of pictures be no larger than `longest_px` pixels a side, where the adapter allows for more.
     pub fn limit_tiles(&mut self, longest_px: u32) {
         self.longest_tile = longest_px.clamp(1, self.gpu.longest_side());
+    }
+
+    /// The number of pipelines that are made.
+    pub fn pipelines(&self) -> usize {
+        self.colors.count() + self.features.count()
+    }
+
+    /// How often a ground map was sent, one of no ground among them.
+    pub fn grounds_sent(&self) -> usize {
+        self.grounds_sent
     }
 
     /// The picture of `list` as `camera` sees it. `progress` is called with the name of each step as it begins.
@@ -156,6 +168,7 @@ impl PictureRenderer {
                     KeptTargets { textures, bytes: loader.taken() }
                 }
             };
+            let sent = usize::from(ground.is_none());
             let ground = match ground {
                 Some(mut ground) => {
                     loader.keep("the ground map", ground.bytes)?;
@@ -192,9 +205,10 @@ impl PictureRenderer {
                 let (drawer, to) = (&mut self.shadow_drawer, ground.textures.shadows());
                 draw_planned(&loader, &self.layouts, drawer, loaded, (planned, to))?;
             }
-            Ok((targets, ground, frame, constants, materials, geometry))
+            Ok((targets, ground, frame, constants, materials, geometry, sent))
         });
-        let (targets, ground, frame, constants, materials, geometry) = loaded?;
+        let (targets, ground, frame, constants, materials, geometry, sent) = loaded?;
+        self.grounds_sent += sent;
         progress("drawing on the adapter");
         let scene = PictureScene { frame, constants, materials, geometry, plan, parts };
         let picture = gpu.guarded("drawing the picture", || {

@@ -11,7 +11,8 @@
 //! markings are one call.
 //!
 //! A window's plan has its solids in groups of neighbors (`culling`), whose order in depth the depth rule alone decides. Few
-//! triangles out of view do not part two groups in view that one call draws.
+//! triangles out of view do not part two groups in view that one call draws. Of many opaque instances of one mesh the device
+//! itself leaves out those that are not seen, where it can (`instance_culling`).
 //!
 //! Items of a mesh of their own are copied into one buffer, in the list's order and in world space, so that those that
 //! follow each other there are drawn at once. A mesh at many places is drawn once with an instance a place.
@@ -22,10 +23,12 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use crate::culling::{CullingView, GroupId, ItemCells, ItemGroup, mesh_bounds, placed_bounds};
+use crate::draw_call::{DrawCall, DrawShape, color_call, push};
+use crate::instance_culling::InstanceCulling;
 use crate::materials::{ArrayId, TexturePlaces};
 use crate::parts::ShaderParts;
-use crate::pipeline_key::{DepthRule, PipelineKey, VertexSource};
-use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, MeshId};
+use crate::pipeline_key::{DepthRule, PipelineKey};
+use sandtable_draw::list::{DepthLayer, DrawItem, DrawList};
 use sandtable_draw::material::AlphaMode;
 use sandtable_geom::aabb::Aabb;
 use sandtable_view::camera::Camera;
@@ -38,28 +41,8 @@ pub const MERGED_TRIANGLES: u32 = 1 << 19;
 /// call costs the processor.
 pub const HIDDEN_TRIANGLES: u64 = 1024;
 
-/// The shape that one call draws.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum DrawShape {
-    /// A range of the indices of a merged buffer.
-    Merged { chunk: u32, indices: Range<u32> },
-    /// A range of a mesh's indices for a range of instances.
-    Placed { mesh: MeshId, indices: Range<u32>, instances: Range<u32> },
-}
-
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct DrawCall {
-    pub shape: DrawShape,
-    /// The array that holds all textures it shows.
-    pub array: ArrayId,
-    /// The parts that its materials need.
-    parts: ShaderParts,
-    rule: DepthRule,
-    two_sided: bool,
-    masked: bool,
-    /// The group of what it draws; `None` in a plan without groups.
-    group: Option<GroupId>,
-}
+/// The fewest instances of a run that the device culls: fewer are drawn, or left out, for less than a call that may be empty.
+const LONG_RUN: usize = 64;
 
 /// A range of an item's triangles in a merged buffer; parts lie there one after the other.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -77,8 +60,12 @@ pub struct Plan {
     pub features: Vec<DrawCall>,
     /// What the merged buffers hold, chunks rising.
     pub merged: Vec<MergedPart>,
-    /// The items that instances place, in order.
+    /// The items that instances place, in order; those of `culled` come first.
     pub placed: Vec<usize>,
+    /// For the color, runs of many opaque solids of which the device draws what it sees, one call each. They come before `color`.
+    pub culled: Vec<DrawCall>,
+    /// The boxes of their items, in order.
+    pub culled_bounds: Vec<Aabb>,
     /// The groups that are drawn or left out together.
     groups: Vec<ItemGroup>,
     transparent: Vec<TransparentCall>,
@@ -93,66 +80,6 @@ struct TransparentCall {
 
 /// What calls must share to follow each other in a sorted plan.
 type SortKey = (bool, ArrayId, bool, bool, ShaderParts);
-
-impl DrawCall {
-    /// The key of its pipeline in a picture that has the parts `picture`.
-    pub fn key(&self, picture: ShaderParts) -> PipelineKey {
-        let source = match self.shape {
-            DrawShape::Merged { .. } => VertexSource::Merged,
-            DrawShape::Placed { .. } => VertexSource::Placed,
-        };
-        let Self { rule, two_sided, masked, array, .. } = *self;
-        let is_colored = self.parts != self.parts.of_alpha();
-        let parts = if is_colored { self.parts.in_picture(picture) } else { self.parts };
-        PipelineKey { source, rule, two_sided, masked, textured: array != ArrayId::NONE, parts }
-    }
-
-    /// Adds `next` to this call if one call draws both, this one first.
-    fn join(&mut self, next: &Self) -> bool {
-        let is_alike = (self.rule, self.two_sided, self.masked) == (next.rule, next.two_sided, next.masked);
-        let array = self.array.max(next.array);
-        let shares_array = [self.array, next.array].iter().all(|&own| own == array || own == ArrayId::NONE);
-        // What is seen in one frame and not in the next must not need another pipeline.
-        let is_same = self.group.is_none() || (self.array, self.parts) == (next.array, next.parts);
-        let joins = is_alike && shares_array && is_same && self.shape.extend(&next.shape);
-        if joins {
-            self.array = array;
-            self.parts = self.parts.with(next.parts);
-        }
-        joins
-    }
-}
-
-impl DrawShape {
-    /// How many triangles it has at all places.
-    pub fn triangles(&self) -> u64 {
-        let (indices, places) = match self {
-            Self::Merged { indices, .. } => (indices, 1),
-            Self::Placed { indices, instances, .. } => (indices, instances.len() as u64),
-        };
-        indices.len() as u64 / 3 * places
-    }
-
-    /// Adds `next` if it goes on where this one ends.
-    pub fn extend(&mut self, next: &Self) -> bool {
-        match (self, next) {
-            (Self::Merged { chunk, indices }, Self::Merged { chunk: next_chunk, indices: added })
-                if *chunk == *next_chunk && indices.end == added.start =>
-            {
-                indices.end = added.end;
-                true
-            }
-            (
-                Self::Placed { mesh, indices, instances },
-                Self::Placed { mesh: next_mesh, indices: next_indices, instances: added },
-            ) if (*mesh, &*indices) == (*next_mesh, next_indices) && instances.end == added.start => {
-                instances.end = added.end;
-                true
-            }
-            _ => false,
-        }
-    }
-}
 
 impl Plan {
     /// The plan for those items of a checked list that are `wanted`; items without triangles are left out.
@@ -170,11 +97,14 @@ impl Plan {
         plan
     }
 
-    /// The plan for the solids of a checked list, in groups of neighbors of which a frame draws those that it sees.
-    pub fn of_solids(list: &DrawList, places: &TexturePlaces) -> Self {
+    /// The plan for the solids of a checked list, in groups of neighbors of which a frame draws those that it sees. Long runs of
+    /// opaque ones come first, as runs without groups where the device culls them.
+    pub fn of_solids(list: &DrawList, places: &TexturePlaces, culling: InstanceCulling) -> Self {
         let mut plan = Self::default();
         let is_drawn = |item: &DrawItem| item.layer == DepthLayer::Solid && !item.triangles.is_empty();
-        let runs: Vec<Range<usize>> = list.runs().filter(|run| is_drawn(&list.items[run.start])).collect();
+        let mut runs: Vec<Range<usize>> =
+            list.runs().filter(|run| is_drawn(&list.items[run.start])).collect();
+        runs.sort_by_key(|run| !is_long(list, run));
         let bounds: Vec<Vec<Aabb>> = runs
             .par_iter()
             .map(|run| {
@@ -185,6 +115,7 @@ impl Plan {
         let cells = ItemCells::new(bounds.iter().flatten());
         let mut alone: Vec<(SortKey, u32, usize, Aabb)> = Vec::new();
         for (run, bounds) in runs.into_iter().zip(bounds) {
+            let is_long = is_long(list, &run);
             if let (1, Some(bounds)) = (run.len(), bounds.first()) {
                 alone.push((sort_key(list, places, run.start), cells.of(bounds), run.start, *bounds));
                 continue;
@@ -192,6 +123,12 @@ impl Plan {
             let mut placed: Vec<(u32, usize, Aabb)> =
                 run.zip(bounds).map(|(item, bounds)| (cells.of(&bounds), item, bounds)).collect();
             placed.sort_by_key(|(cell, ..)| *cell);
+            if culling == InstanceCulling::Device && is_long {
+                let run: Vec<(usize, Aabb)> =
+                    placed.into_iter().map(|(_, item, bounds)| (item, bounds)).collect();
+                plan.cull(list, places, &run);
+                continue;
+            }
             for cell in placed.chunk_by(|one, next| one.0 == next.0) {
                 let group = plan.group(cell.iter().map(|(_, _, bounds)| *bounds));
                 let items: Vec<usize> = cell.iter().map(|(_, item, _)| *item).collect();
@@ -282,8 +219,24 @@ impl Plan {
     /// The keys of all calls for the color in a picture that has the parts `picture`, and of all for the features.
     pub fn keys(&self, picture: ShaderParts) -> [Vec<PipelineKey>; 2] {
         let transparent = self.transparent.iter().map(|each| &each.call);
-        let color = self.color.iter().chain(transparent).map(|call| call.key(picture));
+        let calls = self.culled.iter().chain(&self.color).chain(transparent);
+        let color = calls.map(|call| call.key(picture));
         [color.collect(), self.features.iter().map(|call| call.key(picture)).collect()]
+    }
+
+    /// Adds a run of opaque items of one mesh, of which the device draws what it sees.
+    fn cull(&mut self, list: &DrawList, places: &TexturePlaces, run: &[(usize, Aabb)]) {
+        let Some(&(start, _)) = run.first() else { return };
+        let first = self.placed.len() as u32;
+        self.placed.extend(run.iter().map(|(item, _)| *item));
+        self.culled_bounds.extend(run.iter().map(|(_, bounds)| *bounds));
+        let item = &list.items[start];
+        let shape = DrawShape::Placed {
+            mesh: item.mesh,
+            indices: item.triangles.start * 3..item.triangles.end * 3,
+            instances: first..first + run.len() as u32,
+        };
+        self.culled.push(color_call(list, places, (start, None), shape));
     }
 
     /// Adds items of one mesh, which are of a run and of a group.
@@ -314,16 +267,11 @@ impl Plan {
     ) {
         let item = &list.items[index];
         let material = &list.materials[item.material.0 as usize];
-        let is_draped = matches!(item.layer, DepthLayer::Draped(_));
-        let is_transparent = material.alpha == AlphaMode::Blend && !is_draped;
-        let rule = if is_draped { DepthRule::Drape } else { DepthRule::Solid };
-        let (array, two_sided) = (places.array_of(item.material), material.two_sided);
-        let masked = matches!(material.alpha, AlphaMode::Mask(_));
-        let parts = ShaderParts::of_material(material);
-        let color = DrawCall { shape, array, parts, rule, two_sided, masked, group };
+        let color = color_call(list, places, (index, group), shape);
+        let is_transparent = material.alpha == AlphaMode::Blend && color.rule != DepthRule::Drape;
         // An opaque surface hides what is behind it, whatever its texture.
-        let array = if material.alpha == AlphaMode::Opaque { ArrayId::NONE } else { array };
-        let feature = DrawCall { array, parts: parts.of_alpha(), masked: false, ..color.clone() };
+        let array = if material.alpha == AlphaMode::Opaque { ArrayId::NONE } else { color.array };
+        let feature = DrawCall { array, parts: color.parts.of_alpha(), masked: false, ..color.clone() };
         push(&mut self.features, feature);
         if is_transparent {
             let call = DrawCall { rule: DepthRule::Blend, ..color };
@@ -335,12 +283,10 @@ impl Plan {
     }
 }
 
-/// Adds a call; calls of different groups stay apart.
-fn push(calls: &mut Vec<DrawCall>, call: DrawCall) {
-    let joins = |last: &mut DrawCall| last.group == call.group && last.join(&call);
-    if !calls.last_mut().is_some_and(joins) {
-        calls.push(call);
-    }
+/// Whether a run is worth a call of its own whatever is seen of it.
+fn is_long(list: &DrawList, run: &Range<usize>) -> bool {
+    let material = list.items[run.start].material;
+    run.len() >= LONG_RUN && list.materials[material.0 as usize].alpha != AlphaMode::Blend
 }
 
 /// The end of what the merged buffers hold so far.
@@ -516,7 +462,7 @@ mod tests {
         });
         list.items.extend(trees);
         let places = TexturePlaces::new(&list, TextureScope::Items, &wgpu::Limits::default());
-        let plan = Plan::of_solids(&list, &places);
+        let plan = Plan::of_solids(&list, &places, InstanceCulling::Processor);
         let seen = |toward: Vec3| -> Vec<Vec<usize>> {
             let camera = Camera::new(Vec3::ZERO, toward, 1.0, (800, 800), (0.1, 100.0)).expect("sound");
             let calls = plan.seen(&camera);
@@ -547,7 +493,7 @@ mod tests {
                 list.items.push(DrawItem { world_from_mesh, ..list.items[0].clone() });
             }
             let places = TexturePlaces::new(&list, TextureScope::Items, &wgpu::Limits::default());
-            let plan = Plan::of_solids(&list, &places);
+            let plan = Plan::of_solids(&list, &places, InstanceCulling::Processor);
             let camera = Camera::new(Vec3::ZERO, Vec3::Y, 0.5, (800, 800), (0.1, 500.0)).expect("sound");
             plan.seen(&camera).iter().map(|call| items_of(&plan, call)).collect()
         };

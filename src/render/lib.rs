@@ -4,6 +4,7 @@
 //! Both draw the same list by the same formulas, read far ground and far textures from the same coarser levels, and
 //! shadows from the same maps.
 
+pub mod backend_name;
 pub mod cpu;
 pub mod drawn_rows;
 pub mod mip_levels;

@@ -13,6 +13,7 @@ use sandtable_query::dem::OpenDemError;
 use sandtable_query::ground::GroundError;
 use sandtable_query::heights_above::HeightsAboveError;
 use sandtable_query::positions::PositionsError;
+use sandtable_render::RenderError;
 use sandtable_scene::scene_file::OpenSceneError;
 use sandtable_sheet::picture::PictureError;
 
@@ -89,6 +90,8 @@ pub enum PlanFault {
         "the plan was made by sandtable {found}, and this is {own}, whose results may differ; plan again with it"
     )]
     Program { found: String, own: &'static str },
+    #[error("its `backend` is gpu: work on it where there is a graphics adapter, or plan again with cpu")]
+    Backend(#[source] Box<RenderError>),
     #[error("{0}; plan again")]
     Value(String),
     #[error("{0}")]

@@ -156,8 +156,15 @@ fn inputs(stated: &Path, files: &[PathBuf], folder: &Path) -> Result<Vec<PlanInp
 }
 
 /// A value that a plan states by its word.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PlannedWord<T>(pub T);
+
+impl<T: Default + PartialEq> PlannedWord<T> {
+    /// Whether it is the word that holds where a plan states none.
+    pub fn is_default(&self) -> bool {
+        self.0 == T::default()
+    }
+}
 
 impl<T: Choice> Serialize for PlannedWord<T> {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::analysis::arguments::OpenedAnalysis;
 use crate::atlas::arguments::AtlasArguments;
+use crate::atlas::renderer::renderer;
 use crate::atlas::work::AtlasScene;
 use crate::error::ShardError;
 use crate::heights::arguments::HeightsArguments;
@@ -13,6 +14,7 @@ use crate::record::{self, ShardFile, ShardState};
 use crate::tiles::arguments::TilesArguments;
 use crate::viewsheds::arguments::ViewshedsArguments;
 use crate::{analysis, atlas, heights, raster_result, tiles, viewsheds};
+use sandtable_render::OtherRenderer;
 
 /// A worker: everything that all shards of a plan share, opened once.
 pub struct ShardWorker {
@@ -34,11 +36,12 @@ pub fn is_done(plan: &ShardPlan, id: usize) -> bool {
 }
 
 impl ShardWorker {
-    /// Checks that the inputs of a plan have not changed, and opens them.
+    /// Checks that the inputs of a plan have not changed, and opens them. `gpu` draws for a plan that states a graphics adapter; `None`
+    /// where it is not built in.
     ///
     /// # Errors
-    /// An input has changed or cannot be opened, or an argument is wrong.
-    pub fn open(plan: &Arc<ShardPlan>) -> Result<Self, ShardError> {
+    /// An input has changed or cannot be opened, an argument is wrong, or there is no adapter where one draws.
+    pub fn open(plan: &Arc<ShardPlan>, gpu: Option<OtherRenderer>) -> Result<Self, ShardError> {
         plan.verify_inputs()?;
         let opened = match &plan.product {
             PlannedProduct::Heights(arguments) => {
@@ -52,7 +55,8 @@ impl ShardWorker {
             }
             PlannedProduct::Atlas(arguments) => {
                 arguments.fault().map_or(Ok(()), |fault| Err(plan.wrong_argument(fault)))?;
-                let scene = AtlasScene::new(arguments.open(&plan.folder)?);
+                let backend = renderer(plan, arguments, gpu)?;
+                let scene = AtlasScene::new(arguments.open(&plan.folder)?, backend);
                 OpenedProduct::Atlas(arguments.clone(), Box::new(scene))
             }
             PlannedProduct::Tiles(arguments) => {

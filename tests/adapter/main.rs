@@ -7,6 +7,7 @@ mod common;
 
 mod render_gpu;
 mod render_live;
+mod render_live_culling;
 mod render_parity;
 mod shaders;
 mod shadow_maps;

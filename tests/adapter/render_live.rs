@@ -30,7 +30,7 @@ const PATCH_POSTS: usize = 33;
 const PATCHES: usize = 2;
 
 /// The size of the pictures; 64 pixels in a row make copies without padding.
-const SIZE: (u32, u32) = (640, 480);
+pub const SIZE: (u32, u32) = (640, 480);
 
 /// Which patch holds a place in the plan.
 fn patch_at(at: Vec2) -> usize {
@@ -40,7 +40,7 @@ fn patch_at(at: Vec2) -> usize {
 }
 
 /// The ground and the drapes of a list by patches, as if all were shown for the first time.
-fn changes(list: &DrawList) -> GroundChanges {
+pub fn changes(list: &DrawList) -> GroundChanges {
     let mut changes = GroundChanges::default();
     let ground = &list.meshes[list.items[0].mesh.0 as usize];
     for patch in 0..PATCHES * PATCHES {
@@ -88,12 +88,12 @@ fn piece(list: &DrawList, item: &DrawItem, patch: usize) -> DrapedPiece {
 }
 
 /// A texture to draw frames to, and the bytes of one.
-struct Window {
+pub struct Window {
     texture: wgpu::Texture,
 }
 
 impl Window {
-    fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
+    pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
         let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
             label: Some("window"),
             size: wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 },
@@ -107,7 +107,7 @@ impl Window {
         Self { texture }
     }
 
-    fn frame(&self, renderer: &mut LiveRenderer, camera: &Camera) -> Vec<[u8; 4]> {
+    pub fn frame(&self, renderer: &mut LiveRenderer, camera: &Camera) -> Vec<[u8; 4]> {
         self.frame_with(renderer, camera, &LiveOptions::default())
     }
 
@@ -165,7 +165,7 @@ fn share_apart<'a>(
     one.into_iter().zip(other).filter(|&pair| apart(pair)).count() as f64 / f64::from(SIZE.0 * SIZE.1)
 }
 
-const WINDOW: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+pub const WINDOW: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
 #[test]
 fn a_frame_is_the_picture_of_the_same_scene() {

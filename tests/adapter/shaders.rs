@@ -11,7 +11,7 @@ use sandtable_render::shadow::filter;
 const FOLDER: &str = concat!(env!("SANDTABLE_ROOT"), "src/gpu");
 
 /// The modules, as files that are joined.
-const MODULES: [&[&str]; 4] = [
+const MODULES: [&[&str]; 5] = [
     &[
         "items.wgsl",
         "shadow_pages.wgsl",
@@ -25,6 +25,7 @@ const MODULES: [&[&str]; 4] = [
     &["whole_picture.wgsl", "encode.wgsl"],
     &["items.wgsl", "shadow_pages.wgsl", "shadow_level.wgsl", "shadow_draw.wgsl"],
     &["shadow_pages.wgsl", "shadow_level.wgsl", "shadow_finish.wgsl"],
+    &["instance_culling.wgsl"],
 ];
 
 fn text_of(module: &[&str]) -> String {

@@ -51,6 +51,7 @@ mod sets;
 mod shards;
 mod shards_analysis;
 mod shards_atlas;
+mod shards_atlas_backend;
 mod shards_colors;
 #[cfg(unix)]
 mod shards_killed;

@@ -17,6 +17,10 @@
 //! (`ground_pixels.wgsl`): a driver that shades blocks of pixels does most of its work for nothing where triangles are as small
 //! as pixels.
 //!
+//! # What stands
+//! Hardware leaves out instances of many by itself (`instance_culling`). Where the processor draws, it leaves out groups of
+//! neighbors before it draws: it would test each instance twice as a device, which takes longer than what is saved.
+//!
 //! # Shadows
 //! Shadow maps of solids are made for a camera, in some ten milliseconds: too long for every frame. A map is therefore kept
 //! while the camera moves. It stays right wherever it reaches, because shadows do not depend on the eye; only how fine its
@@ -44,6 +48,7 @@ use crate::culling::CullingView;
 use crate::error::GpuError;
 use crate::frame::{FrameGroup, FrameTextures};
 use crate::geometry::GpuGeometry;
+use crate::instance_culling::{CulledInstances, InstanceCuller};
 use crate::layouts::Layouts;
 use crate::live::drapes::DrapeView;
 use crate::live::encode::Encoder;
@@ -134,6 +139,8 @@ pub struct LiveRenderer {
     format: LiveFormat,
     layouts: Arc<Layouts>,
     colors: Pipelines,
+    /// What leaves out instances of the scenes that are loaded; `None` where the processor does.
+    culler: Option<Arc<InstanceCuller>>,
     encoder: Option<Encoder>,
     moving: MovingPipelines,
     targets: Option<LiveTargets>,
@@ -163,6 +170,7 @@ struct LoadedScene {
     frame: FrameGroup,
     materials: GpuMaterials,
     geometry: GpuGeometry,
+    culled: Option<CulledInstances>,
     plan: Plan,
     patches: PatchStore,
 }
@@ -236,12 +244,14 @@ impl LiveRenderer {
             Ok((Arc::new(layouts), colors, encoder))
         });
         let (layouts, colors, encoder) = made?;
+        let culler = if gpu.is_software { None } else { InstanceCuller::open(&gpu) };
         format.shade_pixels = colors.shade_pixels(&gpu);
         Ok(Self {
             gpu,
             format,
             layouts,
             colors,
+            culler,
             encoder,
             moving: MovingPipelines::default(),
             targets: None,
@@ -254,6 +264,18 @@ impl LiveRenderer {
     /// Lets `timer`, which is of the same device, time the passes of the frames that follow.
     pub fn set_timer(&mut self, timer: Option<Arc<PassTimer>>) {
         self.timer = timer;
+    }
+
+    /// Lets the device leave out instances of the scenes that are loaded from now on, also where the processor draws, and returns
+    /// whether it can; otherwise the processor leaves out groups of them.
+    pub fn cull_on_device(&mut self) -> bool {
+        self.culler = self.culler.take().or_else(|| InstanceCuller::open(&self.gpu));
+        self.culler.is_some()
+    }
+
+    /// Lets the processor leave out groups of the instances of the scenes that are loaded from now on.
+    pub fn cull_on_processor(&mut self) {
+        self.culler = None;
     }
 
     /// How many pipelines it has made.
@@ -279,7 +301,7 @@ impl LiveRenderer {
 
     /// A loader that prepares scenes for this renderer on other threads.
     pub fn loader(&self) -> LiveLoader {
-        LiveLoader::new(&self.gpu, &self.layouts, &self.colors, &self.shadow_drawer)
+        LiveLoader::new(self)
     }
 
     /// Shows a scene that a loader of this renderer has prepared.
@@ -414,6 +436,9 @@ impl LiveRenderer {
                 self.colors.make(gpu, [PipelineKey::PATCH_LINES]);
             }
             let shown = targets.linear.as_ref().unwrap_or(target);
+            if let Some(culled) = &scene.culled {
+                culled.record(gpu, encoder, (camera, self.timer.as_deref()));
+            }
             let views = PassViews {
                 stage: PassStage::Whole,
                 label: "frame",
@@ -521,7 +546,10 @@ impl LoadedScene {
             drawn.add(self.patches.draw_lines(pass, lines));
         }
         let calls = self.plan.seen(camera);
-        drawn.calls += calls.len() as u32;
+        drawn.calls += (calls.len() + self.plan.culled.len()) as u32;
+        if let Some(culled) = &self.culled {
+            pass.draw_seen(&self.geometry, (&self.plan.culled, culled), parts);
+        }
         pass.draw(&self.geometry, &calls, parts);
         drawn
     }

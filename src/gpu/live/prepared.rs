@@ -10,10 +10,11 @@ use crate::error::GpuError;
 use crate::frame::{FrameGroup, FrameTextures};
 use crate::geometry::GpuGeometry;
 use crate::ground::row_bits;
+use crate::instance_culling::{InstanceCuller, InstanceCulling};
 use crate::layouts::Layouts;
 use crate::live::ground_map::EditedMap;
 use crate::live::patches::PatchStore;
-use crate::live::{LiveShadows, LoadedScene};
+use crate::live::{LiveRenderer, LiveShadows, LoadedScene};
 use crate::materials::{GpuMaterials, TexturePlaces, TextureScope};
 use crate::memory::Loader;
 use crate::parts::ShaderParts;
@@ -36,6 +37,7 @@ pub struct LiveLoader {
     layouts: Arc<Layouts>,
     colors: Pipelines,
     shadow_drawer: SharedShadowDrawer,
+    culler: Option<Arc<InstanceCuller>>,
 }
 
 /// What draws shadow maps, made at first use; the renderer and its loaders share it.
@@ -62,14 +64,15 @@ pub struct PreparedShadows {
 pub struct PreparedWindows(pub(super) WindowTexture);
 
 impl LiveLoader {
-    pub(super) fn new(
-        gpu: &Gpu,
-        layouts: &Arc<Layouts>,
-        colors: &Pipelines,
-        shadow_drawer: &SharedShadowDrawer,
-    ) -> Self {
-        let (layouts, shadow_drawer) = (Arc::clone(layouts), Arc::clone(shadow_drawer));
-        Self { gpu: gpu.clone(), layouts, colors: colors.clone(), shadow_drawer }
+    pub(super) fn new(renderer: &LiveRenderer) -> Self {
+        let LiveRenderer { gpu, layouts, colors, culler, shadow_drawer, .. } = renderer;
+        Self {
+            gpu: gpu.clone(),
+            layouts: Arc::clone(layouts),
+            colors: colors.clone(),
+            shadow_drawer: Arc::clone(shadow_drawer),
+            culler: culler.clone(),
+        }
     }
 
     /// Brings a list to the device as [`LiveRenderer::load`](super::LiveRenderer::load) does, and waits until it is there.
@@ -78,16 +81,22 @@ impl LiveLoader {
     /// See [`GpuError`].
     pub fn prepare(&self, list: &DrawList, shadows: &LiveShadows) -> Result<PreparedScene, GpuError> {
         list.check()?;
-        let Self { gpu, layouts, colors, .. } = self;
+        let Self { gpu, layouts, colors, culler, .. } = self;
         gpu.guarded("loading the scene", || {
             let places = TexturePlaces::new(list, TextureScope::All, &gpu.limits);
-            let plan = Plan::of_solids(list, &places);
+            let culling = match culler {
+                Some(_) => InstanceCulling::of(gpu, list.items.len()),
+                None => InstanceCulling::Processor,
+            };
+            let plan = Plan::of_solids(list, &places, culling);
             let patches = PatchStore::new(list, &places);
             let loader = Loader::new(gpu);
             let LiveShadows(shadows) = shadows;
             let shadow_textures = ShadowTextures::upload(&loader, shadows)?;
             let textures = FrameTextures::upload(&loader, list.ground.as_deref(), shadow_textures)?;
             let has_shadows = shadows.maps().map(|map| map.is_some());
+            let geometry = GpuGeometry::upload(&loader, list, &plan, None)?;
+            let culled = culler.as_ref().map(|culler| culler.load(&loader, &plan, geometry.instances()));
             let scene = LoadedScene {
                 map: EditedMap::new(list.ground.clone()),
                 lighting: list.lighting,
@@ -97,7 +106,8 @@ impl LiveLoader {
                 frame: FrameGroup::new(&loader, layouts, &textures)?,
                 textures,
                 materials: GpuMaterials::upload(&loader, layouts, list, &places)?,
-                geometry: GpuGeometry::upload(&loader, list, &plan, None)?,
+                geometry,
+                culled: culled.transpose()?.flatten(),
                 plan,
                 patches,
             };

@@ -1,8 +1,9 @@
 //! The draw calls of shadow casters: the ground and solids where a picture's buffers hold them.
 
+use crate::draw_call::DrawShape;
 use crate::materials::{ArrayId, TexturePlaces};
 use crate::pipeline_key::VertexSource;
-use crate::plan::{DrawShape, HIDDEN_TRIANGLES, Plan};
+use crate::plan::{HIDDEN_TRIANGLES, Plan};
 use sandtable_draw::list::{DepthLayer, DrawItem, DrawList};
 use sandtable_draw::material::AlphaMode;
 

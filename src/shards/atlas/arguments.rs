@@ -10,6 +10,7 @@ use crate::planned_dataset::PlannedWord;
 use sandtable_description::document::paper_mm;
 use sandtable_description::words::PaperName;
 use sandtable_geom::rect::Rect;
+use sandtable_render::backend_name::BackendName;
 use sandtable_scene::paper_sheet::PaperSheet;
 use sandtable_scene::planned_pictures::{ElevationNeed, NearGround, PlannedCameras, PlannedPictures};
 use sandtable_scene::scene_file::{OpenSceneError, open_scene_for};
@@ -23,13 +24,20 @@ pub fn pixel_m(scale: f64, dpi: f64) -> f64 {
 }
 
 /// Opens the scene at `path` for sheets whose pixels are `pixel_m` meters wide: a large elevation model has as many samples as
-/// they show, as in any picture.
+/// they show, as in any picture of that renderer.
 ///
 /// # Errors
 /// See [`OpenSceneError`].
-pub fn atlas_scene(path: &Path, allowed: &[PathBuf], pixel_m: f64) -> Result<SceneModel, OpenSceneError> {
-    let pictures =
-        PlannedPictures { cameras: PlannedCameras::Plans(pixel_m), size: None, near: NearGround::default() };
+pub fn atlas_scene(
+    path: &Path,
+    allowed: &[PathBuf],
+    (pixel_m, backend): (f64, BackendName),
+) -> Result<SceneModel, OpenSceneError> {
+    let near = match backend {
+        BackendName::Cpu => NearGround::Nested,
+        BackendName::Gpu => NearGround::Whole,
+    };
+    let pictures = PlannedPictures { cameras: PlannedCameras::Plans(pixel_m), size: None, near };
     open_scene_for(path, allowed, None, ElevationNeed::Pictures(&pictures), &|_| ())
 }
 
@@ -50,6 +58,9 @@ pub struct AtlasArguments {
     pub portrait: bool,
     /// Pixels per inch, 10 to 10000.
     pub dpi: f64,
+    /// What draws each sheet. It is not written where it is the processor.
+    #[serde(default, skip_serializing_if = "PlannedWord::is_default")]
+    pub backend: PlannedWord<BackendName>,
 }
 
 impl AtlasArguments {
@@ -68,7 +79,7 @@ impl AtlasArguments {
     /// It cannot be opened.
     pub fn open(&self, folder: &Path) -> Result<SceneModel, ShardError> {
         let allowed: Vec<PathBuf> = self.allow.iter().map(|allowed| folder.join(allowed)).collect();
-        Ok(atlas_scene(&folder.join(&self.scene), &allowed, pixel_m(self.scale, self.dpi))?)
+        Ok(atlas_scene(&folder.join(&self.scene), &allowed, (pixel_m(self.scale, self.dpi), self.backend.0))?)
     }
 
     /// The paper of each sheet.

@@ -17,5 +17,6 @@ pub mod gather;
 pub mod index;
 pub mod items;
 pub mod plan;
+pub(crate) mod renderer;
 mod sheet_grid;
 pub mod work;

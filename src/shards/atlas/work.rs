@@ -21,13 +21,14 @@ pub struct AtlasScene {
     /// What the scene file states: sheets add to it.
     furniture: FurnitureTable,
     subtitle: Option<String>,
+    backend: RenderBackend,
 }
 
 impl AtlasScene {
-    /// The scene of an atlas.
-    pub fn new(scene: SceneModel) -> Self {
+    /// The scene of an atlas whose sheets `backend` draws.
+    pub fn new(scene: SceneModel, backend: RenderBackend) -> Self {
         let (furniture, subtitle) = (scene.furniture.clone(), scene.subtitle.clone());
-        Self { scene, furniture, subtitle }
+        Self { scene, furniture, subtitle, backend }
     }
 
     /// A sheet, as the bytes of a PNG.
@@ -46,7 +47,7 @@ impl AtlasScene {
         let scene = &self.scene;
         let to_map = scene.lattice.map_extent().min - scene.lattice.extent().min;
         let view = arguments.view(&shard.name, Rect { min: rect.min - to_map, max: rect.max - to_map });
-        let drawn = draw_view(scene, &view, PictureSize::of(scene, &view), RenderBackend::Cpu, &|_| ())?;
+        let drawn = draw_view(scene, &view, PictureSize::of(scene, &view), self.backend, &|_| ())?;
         let sheet = compose_view(scene, drawn, &|_| ()).sheet;
         let description = picture_description(scene, &view);
         Ok(sheet_png(sheet, view.dpi(), (scene.title.as_deref(), &description)))

@@ -43,7 +43,7 @@ fn every_command_has_help_to_read() {
         (&["plan"], &["heights", "viewsheds", "atlas", "tiles"]),
         (&["plan", "heights"], &["--points", "--above", "--shards", "<FILE>", "--output <PLAN>"]),
         (&["plan", "viewsheds"], &["--points", "--range", "--observer-height", "--flat"]),
-        (&["plan", "atlas"], &["--scale", "--paper", "--portrait", "--dpi", "<SCENE>"]),
+        (&["plan", "atlas"], &["--scale", "--paper", "--portrait", "--dpi", "--backend", "<SCENE>"]),
         (&["plan", "tiles"], &["--max-zoom", "--encoding", "terrain-rgb", "terrarium", "ellipsoid"]),
         (&["work"], &["--shard", "--shards <A..B>", "Exit codes"]),
         (&["gather"], &["--output", "--json", "Exit codes"]),

@@ -9,7 +9,7 @@ use crate::cli::{bytes_of, run_in};
 use crate::common::scratch::Scratch;
 
 /// A scene of the demo's ground alone, with a layout.
-fn scene(layout: &str) -> Scratch {
+pub fn scene(layout: &str) -> Scratch {
     let scratch = Scratch::new();
     scratch.write("dem.tif", bytes_of("assets/jacksboro/dem.tif"));
     let text = format!(
@@ -20,14 +20,14 @@ fn scene(layout: &str) -> Scratch {
 }
 
 /// Plans an atlas and returns its shards.
-fn planned(scratch: &Scratch, arguments: &[&str]) -> Vec<Value> {
+pub fn planned(scratch: &Scratch, arguments: &[&str]) -> Vec<Value> {
     let plan = [&["plan", "atlas", "scene.toml", "-o", "plan"], arguments].concat();
     assert_eq!(run_in(scratch.folder(), &plan).code, 0);
     let lines = fs::read_to_string(scratch.at("plan/shards.jsonl")).expect("written");
     lines.lines().map(|line| serde_json::from_str(line).expect("a shard")).collect()
 }
 
-fn picture(scratch: &Scratch, id: usize) -> RgbImage {
+pub fn picture(scratch: &Scratch, id: usize) -> RgbImage {
     image::open(scratch.at(&format!("plan/shards/{id:06}.png"))).expect("a picture").to_rgb8()
 }
 

@@ -2,16 +2,17 @@
 
 use std::error::Error;
 
+use crate::picture::Rendering;
+use crate::{OtherRenderer, RenderBackend};
 use sandtable_base::message::choice::{Choice, ChoiceWord, word};
 use sandtable_draw::list::DrawList;
-use sandtable_render::picture::Rendering;
-use sandtable_render::{OtherRenderer, RenderBackend};
 use sandtable_view::camera::Camera;
 
 /// A renderer by its word.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BackendName {
     /// The processor.
+    #[default]
     Cpu,
     /// A graphics adapter.
     Gpu,
