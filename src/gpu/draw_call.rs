@@ -9,6 +9,19 @@ use crate::pipeline_key::{DepthRule, PipelineKey, VertexSource};
 use sandtable_draw::list::{DepthLayer, DrawList, MeshId};
 use sandtable_draw::material::AlphaMode;
 
+/// The most triangles that are not shown which a call draws between those that are: they cost a device less than another call costs
+/// the processor.
+pub const HIDDEN_TRIANGLES: u64 = 1024;
+
+/// A call that may draw what follows it, too.
+pub trait JoinedCall: Clone {
+    /// What it draws.
+    fn shape(&self) -> &DrawShape;
+
+    /// Adds `next` to this call if one call draws both, this one first.
+    fn join(&mut self, next: &Self) -> bool;
+}
+
 /// The shape that one call draws.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DrawShape {
@@ -44,9 +57,14 @@ impl DrawCall {
         let parts = if is_colored { self.parts.in_picture(picture) } else { self.parts };
         PipelineKey { source, rule, two_sided, masked, textured: array != ArrayId::NONE, parts }
     }
+}
 
-    /// Adds `next` to this call if one call draws both, this one first.
-    pub fn join(&mut self, next: &Self) -> bool {
+impl JoinedCall for DrawCall {
+    fn shape(&self) -> &DrawShape {
+        &self.shape
+    }
+
+    fn join(&mut self, next: &Self) -> bool {
         let is_alike = (self.rule, self.two_sided, self.masked) == (next.rule, next.two_sided, next.masked);
         let array = self.array.max(next.array);
         let shares_array = [self.array, next.array].iter().all(|&own| own == array || own == ArrayId::NONE);
@@ -111,6 +129,28 @@ pub fn color_call(
         masked: matches!(material.alpha, AlphaMode::Mask(_)),
         group,
     }
+}
+
+/// Those of `calls` that are shown, in order; few others between them do not part two that one call draws.
+pub fn shown_calls<'a, C: JoinedCall + 'a>(calls: impl Iterator<Item = (&'a C, bool)>) -> Vec<C> {
+    let mut shown: Vec<C> = Vec::new();
+    // The last of them with others that follow it.
+    let mut bridge: Option<C> = None;
+    for (call, is_shown) in calls {
+        if is_shown {
+            let over = bridge.take().and_then(|mut over| over.join(call).then_some(over));
+            match (shown.last_mut(), over) {
+                (Some(last), Some(over)) => *last = over,
+                _ => shown.push(call.clone()),
+            }
+            bridge = shown.last().cloned();
+        } else if let (Some(last), Some(over)) = (shown.last(), &mut bridge) {
+            let is_bridged =
+                over.join(call) && over.shape().triangles() - last.shape().triangles() <= HIDDEN_TRIANGLES;
+            bridge = bridge.filter(|_| is_bridged);
+        }
+    }
+    shown
 }
 
 /// Adds a call; calls of different groups stay apart.

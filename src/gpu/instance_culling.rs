@@ -21,9 +21,11 @@ use glam::Vec3;
 use wgpu::wgt::DrawIndexedIndirectArgs;
 
 use crate::adapter::Gpu;
+use crate::compute::compute_pipelines;
 use crate::culling::LEAST_PX;
 use crate::draw_call::DrawShape;
 use crate::error::GpuError;
+use crate::layouts::group_layout;
 use crate::memory::{Loader, bind};
 use crate::pass_timer::PassTimer;
 use crate::plan::Plan;
@@ -119,41 +121,16 @@ impl InstanceCuller {
     }
 
     fn new(gpu: &Gpu) -> Self {
-        let label = Some("culling of instances");
+        let label = "culling of instances";
         let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
         let storage = |read_only| buffer(wgpu::BufferBindingType::Storage { read_only });
         let (read, written) = (storage(true), storage(false));
         let bindings =
             [buffer(wgpu::BufferBindingType::Uniform), read, read, read, written, written, written];
-        let entry = |(binding, ty)| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty,
-            count: None,
-        };
-        let entries: Vec<_> = (0..).zip(bindings).map(entry).collect();
-        let layout = gpu
-            .device
-            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries });
-        let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label,
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let source = wgpu::ShaderSource::Wgsl(SHADER.into());
-        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor { label, source });
+        let layout = group_layout(gpu, label, &bindings.map(|ty| (wgpu::ShaderStages::COMPUTE, ty)));
         let constants = [("words", (size_of::<Instance>() / size_of::<u32>()) as f64)];
-        let pipeline = |entry_point, constants| {
-            gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label,
-                layout: Some(&pipeline_layout),
-                module: &module,
-                entry_point: Some(entry_point),
-                compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
-                cache: None,
-            })
-        };
-        let (count, place) = (pipeline("count_seen", &constants[..]), pipeline("place_seen", &constants[..]));
+        let entries = ["count_seen", "place_seen"];
+        let [count, place] = compute_pipelines(gpu, (label, SHADER), &layout, &constants, entries);
         Self { layout, count, place }
     }
 

@@ -74,3 +74,16 @@ pub fn group_layout(
     let descriptor = wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries };
     gpu.device.create_bind_group_layout(&descriptor)
 }
+
+/// A layout of pipelines that bind these groups.
+pub fn pipeline_layout(
+    gpu: &Gpu,
+    label: &'static str,
+    groups: &[Option<&wgpu::BindGroupLayout>],
+) -> wgpu::PipelineLayout {
+    gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(label),
+        bind_group_layouts: groups,
+        immediate_size: 0,
+    })
+}

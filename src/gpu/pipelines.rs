@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::adapter::{Gpu, GpuApi};
 use crate::draped_vertex::DrapedVertex;
 use crate::formats::DEPTH;
-use crate::layouts::Layouts;
+use crate::layouts::{Layouts, pipeline_layout};
 use crate::merged_vertex::MergedVertex;
 use crate::pipeline_key::{DepthRule, PipelineKey, VertexSource};
 use crate::uniforms::Instance;
@@ -120,11 +120,7 @@ pub struct Pipelines {
 
 impl Pipelines {
     pub fn new(gpu: &Gpu, layouts: &Layouts, shader: &wgpu::ShaderModule, target: PassTarget) -> Self {
-        let layout = |label, bind_group_layouts: &[Option<&wgpu::BindGroupLayout>]| {
-            let descriptor =
-                wgpu::PipelineLayoutDescriptor { label: Some(label), bind_group_layouts, immediate_size: 0 };
-            gpu.device.create_pipeline_layout(&descriptor)
-        };
+        let layout = |label, groups: &[_]| pipeline_layout(gpu, label, groups);
         Self {
             target,
             shader: shader.clone(),

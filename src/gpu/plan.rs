@@ -23,7 +23,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use crate::culling::{CullingView, GroupId, ItemCells, ItemGroup, mesh_bounds, placed_bounds};
-use crate::draw_call::{DrawCall, DrawShape, color_call, push};
+use crate::draw_call::{DrawCall, DrawShape, JoinedCall, color_call, push, shown_calls};
 use crate::instance_culling::InstanceCulling;
 use crate::materials::{ArrayId, TexturePlaces};
 use crate::parts::ShaderParts;
@@ -36,10 +36,6 @@ use sandtable_view::camera::Camera;
 /// The most triangles that one merged buffer holds: 72 MiB at the most, where no two triangles share a corner. Larger
 /// buffers save few calls, and some drivers cannot hold them.
 pub const MERGED_TRIANGLES: u32 = 1 << 19;
-
-/// The most triangles of neighbors out of view that a call draws between those in view: they cost a device less than another
-/// call costs the processor.
-pub const HIDDEN_TRIANGLES: u64 = 1024;
 
 /// The fewest instances of a run that the device culls: fewer are drawn, or left out, for less than a call that may be empty.
 const LONG_RUN: usize = 64;
@@ -151,23 +147,7 @@ impl Plan {
         let view = CullingView::new(camera);
         let is_seen: Vec<bool> = self.groups.iter().map(|group| view.shows(group)).collect();
         let shows = |call: &DrawCall| call.group.is_none_or(|GroupId(group)| is_seen[group as usize]);
-        let mut calls: Vec<DrawCall> = Vec::new();
-        // The last of them with the hidden ones that follow it.
-        let mut bridge: Option<DrawCall> = None;
-        for call in &self.color {
-            if shows(call) {
-                let over = bridge.take().and_then(|mut over| over.join(call).then_some(over));
-                match (calls.last_mut(), over) {
-                    (Some(last), Some(over)) => *last = over,
-                    _ => calls.push(call.clone()),
-                }
-                bridge = calls.last().cloned();
-            } else if let (Some(last), Some(over)) = (calls.last(), &mut bridge) {
-                let is_bridged =
-                    over.join(call) && over.shape.triangles() - last.shape.triangles() <= HIDDEN_TRIANGLES;
-                bridge = bridge.filter(|_| is_bridged);
-            }
-        }
+        let mut calls = shown_calls(self.color.iter().map(|call| (call, shows(call))));
         let transparent = self.transparent_in(camera, |call| view.shows(&call.place));
         for call in transparent {
             if calls.last_mut().is_none_or(|last| !last.join(call)) {
@@ -325,6 +305,7 @@ mod tests {
     use glam::Mat4;
 
     use super::*;
+    use crate::draw_call::HIDDEN_TRIANGLES;
     use crate::materials::TextureScope;
     use sandtable_draw::color::Srgba;
     use sandtable_draw::list::{DrawMesh, DrawVertex, FeatureId};

@@ -1,9 +1,9 @@
 //! The draw calls of shadow casters: the ground and solids where a picture's buffers hold them.
 
-use crate::draw_call::DrawShape;
+use crate::draw_call::{DrawShape, JoinedCall, shown_calls};
 use crate::materials::{ArrayId, TexturePlaces};
 use crate::pipeline_key::VertexSource;
-use crate::plan::{HIDDEN_TRIANGLES, Plan};
+use crate::plan::Plan;
 use sandtable_draw::list::{DepthLayer, DrawItem, DrawList};
 use sandtable_draw::material::AlphaMode;
 
@@ -46,8 +46,13 @@ impl CasterCall {
         let array = if masked { places.array_of(item.material) } else { ArrayId::NONE };
         Some(Self { key: CasterKey { source, on_ground, masked }, array, shape })
     }
+}
 
-    /// Adds `next` if one call draws both, this one first.
+impl JoinedCall for CasterCall {
+    fn shape(&self) -> &DrawShape {
+        &self.shape
+    }
+
     fn join(&mut self, next: &Self) -> bool {
         (self.key, self.array) == (next.key, next.array) && self.shape.extend(&next.shape)
     }
@@ -83,24 +88,7 @@ impl PlanCasters {
 
     /// The calls for the ground and those solids that are on a level; few others between them do not part two calls.
     pub fn on_level(&self, is_on: impl Fn(usize) -> bool) -> Vec<CasterCall> {
-        let mut calls: Vec<CasterCall> = Vec::new();
-        // The last of them with others that follow it.
-        let mut bridge: Option<CasterCall> = None;
-        for (item, call) in &self.0 {
-            if call.key.on_ground || is_on(*item) {
-                let over = bridge.take().and_then(|mut over| over.join(call).then_some(over));
-                match (calls.last_mut(), over) {
-                    (Some(last), Some(over)) => *last = over,
-                    _ => calls.push(call.clone()),
-                }
-                bridge = calls.last().cloned();
-            } else if let (Some(last), Some(over)) = (calls.last(), &mut bridge) {
-                let is_bridged =
-                    over.join(call) && over.shape.triangles() - last.shape.triangles() <= HIDDEN_TRIANGLES;
-                bridge = bridge.filter(|_| is_bridged);
-            }
-        }
-        calls
+        shown_calls(self.0.iter().map(|(item, call)| (call, call.key.on_ground || is_on(*item))))
     }
 }
 

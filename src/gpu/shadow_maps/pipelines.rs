@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::adapter::Gpu;
-use crate::layouts::{Layouts, group_layout};
+use crate::compute::compute_pipelines;
+use crate::layouts::{Layouts, group_layout, pipeline_layout};
 use crate::pipeline_key::VertexSource;
 use crate::pipelines::{MERGED_BUFFERS, PLACED_BUFFERS, options};
 use crate::shadow::{TABLE_FORMAT, TEXEL_FORMAT};
@@ -57,7 +58,6 @@ pub struct ShadowPipelines {
 
 impl ShadowPipelines {
     pub fn new(gpu: &Gpu, layouts: &Layouts) -> Self {
-        let device = &gpu.device;
         let (fragment, compute) = (wgpu::ShaderStages::FRAGMENT, wgpu::ShaderStages::COMPUTE);
         let storage = |read_only| buffer(wgpu::BufferBindingType::Storage { read_only }, None);
         let constants = buffer(wgpu::BufferBindingType::Uniform, Some(size_of::<LevelConstants>() as u64));
@@ -81,32 +81,21 @@ impl ShadowPipelines {
         ];
         let drawn = group_layout(gpu, "drawing of shadows", &drawn);
         let finished = group_layout(gpu, "finishing of shadows", &finished);
-        let layout = |label, bind_group_layouts: &[Option<&wgpu::BindGroupLayout>]| {
-            let descriptor =
-                wgpu::PipelineLayoutDescriptor { label: Some(label), bind_group_layouts, immediate_size: 0 };
-            device.create_pipeline_layout(&descriptor)
-        };
-        let module = |label, text: &'static str| {
-            let source = wgpu::ShaderSource::Wgsl(text.into());
-            device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source })
-        };
-        let finishing = module("finishing of shadows", FINISH_SHADER);
-        let finish_layout = layout("finishing of shadows", &[Some(&finished)]);
-        let finish = |entry: &'static str| {
-            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(entry),
-                layout: Some(&finish_layout),
-                module: &finishing,
-                entry_point: Some(entry),
-                compilation_options: Default::default(),
-                cache: None,
-            })
-        };
+        let label = "drawing of shadows";
+        let source = wgpu::ShaderSource::Wgsl(DRAW_SHADER.into());
+        let descriptor = wgpu::ShaderModuleDescriptor { label: Some(label), source };
+        let [finish_page, finish_table] = compute_pipelines(
+            gpu,
+            ("finishing of shadows", FINISH_SHADER),
+            &finished,
+            &[],
+            ["finish_page", "finish_table"],
+        );
         Self {
-            finish_page: finish("finish_page"),
-            finish_table: finish("finish_table"),
-            shader: module("drawing of shadows", DRAW_SHADER),
-            layout: layout("drawing of shadows", &[Some(&drawn), Some(&layouts.materials)]),
+            finish_page,
+            finish_table,
+            shader: gpu.device.create_shader_module(descriptor),
+            layout: pipeline_layout(gpu, label, &[Some(&drawn), Some(&layouts.materials)]),
             drawn,
             finished,
             by_key: BTreeMap::new(),
