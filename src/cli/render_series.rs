@@ -19,13 +19,12 @@ use sandtable_files::fingerprint::fingerprint;
 use sandtable_files::output_files::OutputFiles;
 use sandtable_files::png::encode_png;
 use sandtable_render::RenderBackend;
-use sandtable_render::backend_name::BackendName;
-use sandtable_scene::planned_pictures::{ElevationNeed, NearGround, PlannedCameras, PlannedPictures};
+use sandtable_scene::planned_pictures::{ElevationNeed, PlannedCameras, PlannedPictures};
 use sandtable_scene::scene_file::{open_scene_for, phases};
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::scene_view::SceneView;
 use sandtable_sheet::in_order::PicturesInOrder;
-use sandtable_sheet::picture::{ComposedView, PictureSize};
+use sandtable_sheet::picture::{ComposedView, PictureSize, near_ground};
 use sandtable_sheet::picture_buffers::PictureBuffers;
 use sandtable_sheet::picture_statistics::PictureStatistics;
 use sandtable_sheet::sheet_file::{picture_description, write_sheet};
@@ -287,10 +286,7 @@ fn planned_pictures(arguments: &RenderArguments) -> PlannedPictures {
         Some(name) => PlannedCameras::Named(name.clone()),
         None => PlannedCameras::First,
     };
-    let near = match arguments.backend {
-        BackendName::Cpu => NearGround::Nested,
-        BackendName::Gpu => NearGround::Whole,
-    };
+    let near = near_ground(arguments.backend);
     PlannedPictures { cameras, size: arguments.size.map(|size| (size.width, size.height)), near }
 }
 

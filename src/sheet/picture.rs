@@ -12,10 +12,12 @@ use sandtable_draw::pixels::Pixels;
 use sandtable_picture::nested::build_nested_draw_list;
 use sandtable_picture::nested_ground::{NestedGround, NestedHeights, nested_grounds};
 use sandtable_picture::{ViewDraw, build_draw_list, camera};
+use sandtable_render::backend_name::BackendName;
 use sandtable_render::drawn_rows::DrawnRows;
 use sandtable_render::picture::Rendering;
 use sandtable_render::{RenderBackend, RenderError, render_counted};
 use sandtable_scene::framing::shaped_page::page_size;
+use sandtable_scene::planned_pictures::NearGround;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::scene_view::{SceneView, ViewAim};
 use sandtable_view::camera::{Camera, CameraError};
@@ -39,6 +41,14 @@ impl PictureSize {
         };
         let (width, height) = page_size(scene, view, picture_size);
         Self { width, height }
+    }
+}
+
+/// How pictures of a renderer show ground near the eye: adapters draw no nested grounds.
+pub fn near_ground(backend: BackendName) -> NearGround {
+    match backend {
+        BackendName::Cpu => NearGround::Nested,
+        BackendName::Gpu => NearGround::Whole,
     }
 }
 

@@ -14,8 +14,9 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::cpu::clip::{MOST_CORNERS, Outline, clipped};
+use crate::cpu::pattern::SamplePattern;
 use crate::cpu::plane::TrianglePlanes;
-use crate::cpu::raster::{PixelWindow, SubpixelBox, SubpixelPoint, doubled_area, snapped};
+use crate::cpu::raster::{PixelWindow, SubpixelBox, SubpixelPoint, doubled_area, sample_places, snapped};
 use crate::cpu::screen::{Projection, Screen};
 use sandtable_draw::list::{DRAPE_TOLERANCE, DepthLayer, DrawItem, DrawList, DrawMesh};
 use sandtable_draw::material::AlphaMode;
@@ -126,16 +127,26 @@ struct ItemSetup<'a> {
 }
 
 impl<'a> GeometrySource<'a> {
-    /// The source of a checked list whose pixels have samples in these places. `None` where the list draws more triangles than
+    /// The source of a checked list whose pixels have the samples of `pattern`. `None` where the list draws more triangles than
     /// ids can number (2^32).
-    pub fn new(list: &'a DrawList, screen: &'a Screen, samples: Vec<SubpixelPoint>) -> Option<Self> {
+    pub fn new<const N: usize>(
+        list: &'a DrawList,
+        screen: &'a Screen,
+        pattern: &SamplePattern<N>,
+    ) -> Option<Self> {
         let mut total = 0;
         let ends = list.items.iter().map(|item| {
             total += item.triangles.len() as u64;
             total
         });
         let ends: Vec<u64> = ends.collect();
-        (total < u64::from(u32::MAX) - CHUNK).then_some(Self { list, screen, ends, total, samples })
+        (total < u64::from(u32::MAX) - CHUNK).then_some(Self {
+            list,
+            screen,
+            ends,
+            total,
+            samples: sample_places(pattern),
+        })
     }
 
     /// The screen.
@@ -306,9 +317,8 @@ impl<'a> ItemSetup<'a> {
     }
 
     fn add_triangle(&self, chunk: &mut FaceChunk, triangle: u32, id: FaceId) {
-        let Some(SeenTriangle { offsets, points, outline, snapped, .. }) = self.seen(triangle) else {
-            return;
-        };
+        let Some(seen) = self.seen(triangle) else { return };
+        let SeenTriangle { offsets, points, ref outline, .. } = seen;
         let nearness = || offsets.map(|offset| self.screen.nearness(self.screen.depth_from_eye(offset)));
         let planes = match self.screen.is_parallel {
             false => TrianglePlanes::from_corners(points),
@@ -319,7 +329,7 @@ impl<'a> ItemSetup<'a> {
             return;
         }
         let known = chunk.pieces.len();
-        self.push_pieces(&mut chunk.pieces, &snapped, planes.faces_eye, id);
+        self.push_pieces(&mut chunk.pieces, &seen, planes.faces_eye, id);
         if chunk.pieces.len() == known {
             return;
         }
@@ -328,7 +338,7 @@ impl<'a> ItemSetup<'a> {
             DepthLayer::Ground | DepthLayer::Solid => 0.0,
         };
         let range = match self.screen.is_parallel {
-            false => nearness_range(&outline, self.screen.near),
+            false => nearness_range(outline, self.screen.near),
             true => nearness().map(|corner| corner as f32).into_iter().fold([f32::MAX, f32::MIN], extended),
         };
         let reach = (1.0 + tolerance) as f32;
@@ -336,18 +346,13 @@ impl<'a> ItemSetup<'a> {
     }
 
     /// The outline as a fan of triangles that may touch a pixel that is drawn.
-    fn push_pieces(
-        &self,
-        pieces: &mut Vec<FacePiece>,
-        outline: &SnappedOutline,
-        faces_eye: bool,
-        face: FaceId,
-    ) {
-        let [a, rest @ ..] = outline.corners() else { return };
+    fn push_pieces(&self, pieces: &mut Vec<FacePiece>, seen: &SeenTriangle, faces_eye: bool, face: FaceId) {
+        let [a, rest @ ..] = seen.snapped.corners() else { return };
+        let is_whole = rest.len() == 2;
         for pair in rest.windows(2) {
             let (a, b, c) = (*a, pair[0], pair[1]);
             let corners = if faces_eye { [a, c, b] } else { [a, b, c] };
-            let window = PixelWindow::around(&corners, self.screen.size);
+            let window = if is_whole { seen.window } else { PixelWindow::around(&corners, self.screen.size) };
             let is_drawn = window.from[1] < self.drawn.end && self.drawn.start < window.to[1];
             if is_drawn && doubled_area(&corners) > 0 && !window.is_empty() {
                 pieces.push(FacePiece { corners, window, face, alpha: self.alpha });

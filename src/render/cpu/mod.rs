@@ -55,7 +55,6 @@ use rayon::prelude::*;
 use crate::cpu::band::{BandRows, TilesLeft, draw_band};
 use crate::cpu::geometry::GeometrySource;
 use crate::cpu::pattern::{EIGHT, FOUR, ONE, SamplePattern};
-use crate::cpu::raster::{SubpixelPoint, sample_places};
 use crate::cpu::screen::Screen;
 use crate::cpu::shade::Shader;
 use crate::cpu::strips::RowStrips;
@@ -137,22 +136,27 @@ pub fn render_counted(
 ) -> Result<Rendering, CpuRenderError> {
     list.check()?;
     check_memory(bytes_of(list, camera), "the picture", "draw a smaller one")?;
+    let most_taps = quality.anisotropy.clamp(1, 16);
+    match quality.samples {
+        SampleCount::One => render_samples(list, camera, (&ONE, most_taps), drawn),
+        SampleCount::Four => render_samples(list, camera, (&FOUR, most_taps), drawn),
+        SampleCount::Eight => render_samples(list, camera, (&EIGHT, most_taps), drawn),
+    }
+}
+
+/// The picture of a checked list with these samples and so many readings of a texture at the most.
+fn render_samples<const N: usize>(
+    list: &DrawList,
+    camera: &Camera,
+    (pattern, most_taps): (&SamplePattern<N>, u32),
+    drawn: &DrawnRows,
+) -> Result<Rendering, CpuRenderError> {
     let screen = Screen::new(camera);
-    let samples = match quality.samples {
-        SampleCount::One => sample_places(&ONE),
-        SampleCount::Four => sample_places(&FOUR),
-        SampleCount::Eight => sample_places(&EIGHT),
-    };
-    let source = source(list, &screen, samples)?;
+    let source = source(list, &screen, pattern)?;
     // Before there are faces: what a map is made of takes as much memory as they do.
     let shadows = Shadows::new(list, camera)?;
-    let shader = Shader::new(list, &screen, &shadows, quality.anisotropy.clamp(1, 16));
-    let strips = RowStrips::new(&source);
-    Ok(match quality.samples {
-        SampleCount::One => draw(&source, &strips, &shader, &ONE, DrawnAs::Colors(drawn)),
-        SampleCount::Four => draw(&source, &strips, &shader, &FOUR, DrawnAs::Colors(drawn)),
-        SampleCount::Eight => draw(&source, &strips, &shader, &EIGHT, DrawnAs::Colors(drawn)),
-    })
+    let shader = Shader::new(list, &screen, &shadows, most_taps);
+    Ok(draw(&source, &RowStrips::new(&source), &shader, pattern, DrawnAs::Colors(drawn)))
 }
 
 /// About how much memory the picture of a list takes but for its shadow maps, which ask for their own: see the module.
@@ -174,18 +178,18 @@ fn bytes_of(list: &DrawList, camera: &Camera) -> u64 {
 pub fn render_buffers(list: &DrawList, camera: &Camera) -> Result<Rendering, CpuRenderError> {
     list.check()?;
     let screen = Screen::new(camera);
-    let source = source(list, &screen, sample_places(&EIGHT))?;
+    let source = source(list, &screen, &EIGHT)?;
     let shadows = Shadows::default();
     let shader = Shader::new(list, &screen, &shadows, RenderQuality::default().anisotropy);
     Ok(draw(&source, &RowStrips::new(&source), &shader, &EIGHT, DrawnAs::Shapes))
 }
 
-fn source<'a>(
+fn source<'a, const N: usize>(
     list: &'a DrawList,
     screen: &'a Screen,
-    samples: Vec<SubpixelPoint>,
+    pattern: &SamplePattern<N>,
 ) -> Result<GeometrySource<'a>, CpuRenderError> {
-    let source = GeometrySource::new(list, screen, samples);
+    let source = GeometrySource::new(list, screen, pattern);
     source.ok_or_else(|| CpuRenderError::TooManyTriangles(list.triangle_count()))
 }
 
@@ -289,7 +293,7 @@ mod tests {
         let list = confetti();
         let camera = Camera::new(Vec3::ZERO, Vec3::Y, 0.9, (150, 330), (0.5, 1000.0)).expect("sound");
         let (screen, shadows) = (Screen::new(&camera), Shadows::default());
-        let source = GeometrySource::new(&list, &screen, sample_places(&FOUR)).expect("few triangles");
+        let source = GeometrySource::new(&list, &screen, &FOUR).expect("few triangles");
         let shader = Shader::new(&list, &screen, &shadows, 8);
         let drawn = |strips: &RowStrips| {
             draw(&source, strips, &shader, &FOUR, DrawnAs::Colors(&DrawnRows::default()))

@@ -199,9 +199,8 @@ impl<'a> Shader<'a> {
                 albedo *= ground.grain(point, map_hit);
             }
             let color = match (material.normals, material.albedo) {
-                (NormalSource::Ground, albedo_source) => {
-                    let is_map = albedo_source == Albedo::GroundMap;
-                    let unlit = if is_map { ground.unlit_share(point) } else { 0.0 };
+                (NormalSource::Ground, _) => {
+                    let unlit = if shows_map(material) { ground.unlit_share(point) } else { 0.0 };
                     if unlit < 1.0 {
                         let received = self.received(hit, ShadowReceiver::Ground, true);
                         let form = self.ground.as_ref().unwrap_or(ground).form(hit.world.truncate());

@@ -12,10 +12,11 @@ use sandtable_description::words::PaperName;
 use sandtable_geom::rect::Rect;
 use sandtable_render::backend_name::BackendName;
 use sandtable_scene::paper_sheet::PaperSheet;
-use sandtable_scene::planned_pictures::{ElevationNeed, NearGround, PlannedCameras, PlannedPictures};
+use sandtable_scene::planned_pictures::{ElevationNeed, PlannedCameras, PlannedPictures};
 use sandtable_scene::scene_file::{OpenSceneError, open_scene_for};
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_scene::scene_view::{ParallelView, SceneView, ViewAim};
+use sandtable_sheet::picture::near_ground;
 use sandtable_view::camera::INCH_M;
 
 /// The width of a pixel of a sheet at the scale 1:`scale` on the ground, meters.
@@ -33,10 +34,7 @@ pub fn atlas_scene(
     allowed: &[PathBuf],
     (pixel_m, backend): (f64, BackendName),
 ) -> Result<SceneModel, OpenSceneError> {
-    let near = match backend {
-        BackendName::Cpu => NearGround::Nested,
-        BackendName::Gpu => NearGround::Whole,
-    };
+    let near = near_ground(backend);
     let pictures = PlannedPictures { cameras: PlannedCameras::Plans(pixel_m), size: None, near };
     open_scene_for(path, allowed, None, ElevationNeed::Pictures(&pictures), &|_| ())
 }
