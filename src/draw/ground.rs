@@ -481,21 +481,10 @@ mod tests {
         let map = GroundMap {
             origin: Vec2::new(-30.0, 70.0),
             cell: Vec2::new(2.0, 5.0),
-            z_per_m: 1.0,
             columns: 3,
             rows: 2,
             posts: vec![GroundPost::default(); 6],
-            ramp: ColorRamp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop"),
-            contours: None,
-            imagery: None,
-            cover: None,
-            halvings: 0,
-            is_curved: false,
-            form_level: 0,
-            z_factor: 1.0,
-            shade_gain: ReliefShading::GAIN,
-            detail: ReliefShading::DETAIL,
-            has_grain: false,
+            ..GroundMap::level()
         };
         let fault = |map: GroundMap| map.check().expect_err("unsound").to_string();
         assert_eq!(map.check(), Ok(()));

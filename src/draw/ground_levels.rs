@@ -165,10 +165,6 @@ fn smoothed([before, own, after]: [&GroundPost; 3]) -> GroundPost {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::color::Srgba;
-    use crate::ground::ColorRamp;
-    use crate::lighting::ReliefShading;
-    use glam::Vec2;
 
     fn posts(size: PostCount, height: impl Fn(u32, u32) -> f32) -> Vec<GroundPost> {
         let post = |index: u32| GroundPost {
@@ -226,23 +222,10 @@ mod tests {
             let size = PostCount { columns: size.0, rows: size.1 };
             let columns = size.columns as usize;
             let map = GroundMap {
-                origin: Vec2::ZERO,
-                cell: Vec2::ONE,
-                z_per_m: 1.0,
                 columns: size.columns,
                 rows: size.rows,
                 posts: posts(size, height),
-                ramp: ColorRamp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop"),
-                contours: None,
-                imagery: None,
-                cover: None,
-                halvings: 0,
-                is_curved: false,
-                form_level: 0,
-                z_factor: 1.0,
-                shade_gain: ReliefShading::GAIN,
-                detail: ReliefShading::DETAIL,
-                has_grain: false,
+                ..GroundMap::level()
             };
             for (number, step_by_step) in (1..).zip(coarser_levels(&map)) {
                 let at_once = level(size, number, |row| map.posts[row * columns..][..columns].to_vec());

@@ -71,7 +71,6 @@ fn color(map: &GroundMap, at: Vec2, step: Vec2) -> Srgba {
 mod tests {
     use super::*;
     use sandtable_draw::ground::{ColorRamp, Contours, GroundPost};
-    use sandtable_draw::lighting::ReliefShading;
 
     /// Ground that rises eastward, 10 m a post of 20 m, colored dark below and light above.
     fn map(contours: Option<Contours>) -> GroundMap {
@@ -79,21 +78,12 @@ mod tests {
         GroundMap {
             origin: Vec2::new(100.0, 50.0),
             cell: Vec2::new(20.0, 40.0),
-            z_per_m: 1.0,
             columns: 5,
             rows: 3,
             posts: (0..15).map(post).collect(),
             ramp: ColorRamp::new(vec![(0.0, Srgba::opaque(0, 0, 0)), (40.0, Srgba::WHITE)]).expect("rising"),
             contours,
-            imagery: None,
-            cover: None,
-            halvings: 0,
-            is_curved: false,
-            form_level: 0,
-            z_factor: 1.0,
-            shade_gain: ReliefShading::GAIN,
-            detail: ReliefShading::DETAIL,
-            has_grain: false,
+            ..GroundMap::level()
         }
     }
 

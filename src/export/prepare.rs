@@ -100,11 +100,10 @@ fn prepared_mesh(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_draw::lighting::ReliefShading;
     use std::sync::Arc;
 
     use glam::{Mat4, Vec2};
-    use sandtable_draw::ground::{ColorRamp, GroundMap, GroundPost};
+    use sandtable_draw::ground::{GroundMap, GroundPost};
     use sandtable_draw::list::{DrawVertex, FeatureId};
     use sandtable_draw::material::Material;
     use sandtable_mesh::sink::MeshSink;
@@ -127,23 +126,11 @@ mod tests {
             ..GroundPost::default()
         };
         let map = GroundMap {
-            origin: Vec2::ZERO,
             cell: Vec2::splat(10.0),
-            z_per_m: 1.0,
             columns: 3,
             rows: 3,
             posts: (0..9).map(post).collect(),
-            ramp: ColorRamp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop"),
-            contours: None,
-            imagery: None,
-            cover: None,
-            halvings: 0,
-            is_curved: false,
-            form_level: 0,
-            z_factor: 1.0,
-            shade_gain: ReliefShading::GAIN,
-            detail: ReliefShading::DETAIL,
-            has_grain: false,
+            ..GroundMap::level()
         };
         let mut list = DrawList { ground: Some(Arc::new(map)), ..DrawList::default() };
         let ground =

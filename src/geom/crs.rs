@@ -21,6 +21,9 @@ use crate::wkt::{self, WktSystem};
 /// The southernmost and the northernmost latitude of UTM.
 pub const UTM_LATITUDES_DEG: (f64, f64) = (-80.0, 84.0);
 
+/// Meters of a degree of latitude, and of one of longitude on the equator, within one per cent.
+pub const DEGREE_M: f64 = 111_320.0;
+
 /// The longest text that is parsed, in bytes; real WKT has a tenth of it.
 const LONGEST_TEXT: usize = 65_536;
 
@@ -256,6 +259,11 @@ impl Crs {
     /// Meters in one unit of its coordinates; 1 for a geographic system, whose unit is the degree.
     pub fn meters_per_unit(&self) -> f64 {
         if self.is_geographic() { 1.0 } else { self.inner.proj.to_meter() }
+    }
+
+    /// Meters northward in one unit of its coordinates, for degrees nearly: see [`DEGREE_M`].
+    pub fn meters_northward_per_unit(&self) -> f64 {
+        if self.is_geographic() { DEGREE_M } else { self.meters_per_unit() }
     }
 
     /// Whether coordinates are eastings and northings in meters.

@@ -10,17 +10,13 @@ use sandtable_raster::outliers::{OutlierKind, Outliers, outliers};
 use sandtable_raster::raster::Raster;
 use sandtable_raster::undeclared::undeclared_nodata;
 
-/// Meters of a degree of latitude.
-const M_PER_DEGREE: f64 = 111_320.0;
-
 /// Finds spikes, pits and unmarked voids.
 pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     let snapshot = context.scene.heights.snapshot();
     let raster = snapshot.source();
     let spacing = raster.spacing().max_element();
     let cell_m = match &raster.crs {
-        Some(crs) if crs.is_geographic() => spacing * M_PER_DEGREE,
-        Some(crs) => spacing * crs.meters_per_unit(),
+        Some(crs) => spacing * crs.meters_northward_per_unit(),
         None => spacing,
     };
     let span = context.document.terrain.dem.span().unwrap_or_default();

@@ -13,6 +13,8 @@ macro_rules! numbers {
     ($($number:ident: $bytes:literal),*) => {
         impl ByteOrder {$(
             /// The number that these bytes state.
+            // Files hold millions of them.
+            #[inline]
             pub fn $number(self, bytes: [u8; $bytes]) -> $number {
                 match self {
                     Self::Little => $number::from_le_bytes(bytes),

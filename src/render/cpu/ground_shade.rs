@@ -368,21 +368,11 @@ mod tests {
         GroundMap {
             origin: Vec2::new(-30.0, 70.0),
             cell: Vec2::new(2.0, 5.0),
-            z_per_m: 1.0,
             columns,
             rows,
             posts: (0..columns * rows).map(post).collect(),
             ramp: ColorRamp::new(stops.to_vec()).expect("rising"),
-            contours: None,
-            imagery: None,
-            cover: None,
-            halvings: 0,
-            is_curved: false,
-            form_level: 0,
-            z_factor: 1.0,
-            shade_gain: ReliefShading::GAIN,
-            detail: ReliefShading::DETAIL,
-            has_grain: false,
+            ..GroundMap::level()
         }
     }
 

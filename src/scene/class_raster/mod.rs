@@ -54,9 +54,6 @@ const BESIDE: f64 = 8.0;
 /// Cells that are read at a time.
 const BAND_CELLS: u32 = 1 << 22;
 
-/// Of latitude, nearly.
-const METERS_PER_DEGREE: f64 = 111_320.0;
-
 /// The windows over a raster from which [`ClassRaster::sampled_legend`] takes its values, in each direction, and their side in
 /// cells.
 const SAMPLED: (u32, u32) = (5, 128);
@@ -262,7 +259,7 @@ impl ClassRaster {
     /// The side of a cell from row to row, meters.
     fn cell_m(&self) -> f64 {
         let side = self.windows.metadata().map_from_grid.matrix2.y_axis.length();
-        side * if self.crs.is_geographic() { METERS_PER_DEGREE } else { self.crs.meters_per_unit() }
+        side * self.crs.meters_northward_per_unit()
     }
 
     fn unknown(&self, UnknownClass(value): UnknownClass) -> ClassRasterError {

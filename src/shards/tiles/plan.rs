@@ -13,10 +13,8 @@ use crate::tiles::tiling::{TileAddress, TileScheme};
 use crate::tiles::{colors, meshes};
 use sandtable_base::limits::PLAN_SHARDS;
 use sandtable_dem::formats::height_encoding::HeightEncoding;
+use sandtable_geom::crs::DEGREE_M;
 use sandtable_geom::rect::Rect;
-
-/// Meters of a degree along a meridian, about.
-const DEGREE_M: f64 = 111_320.0;
 
 /// The request for a pyramid of tiles.
 #[derive(Clone, Copy, Debug)]
