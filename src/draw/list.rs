@@ -10,6 +10,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use glam::{Mat4, Vec2};
+use rayon::prelude::*;
 
 use crate::color::Srgba;
 use crate::ground::{GroundMap, GroundMapError};
@@ -245,7 +246,7 @@ impl DrawList {
         };
         let lacks_texture =
             |material: &Material| material.texture.is_some_and(|id| id.0 as usize >= self.textures.len());
-        if let Some(mesh) = self.meshes.iter().position(lacks_vertex) {
+        if let Some(mesh) = self.meshes.par_iter().position_first(lacks_vertex) {
             return Err(DrawListError::MissingVertex(mesh));
         }
         if let Some(material) = self.materials.iter().position(lacks_texture) {

@@ -1,6 +1,10 @@
-//! Finds the rectangles that meet another one, among many: an R-tree of `rstar`, bulk-loaded.
+//! Finds the rectangles that meet another one, among many: R-trees of `rstar`, bulk-loaded.
+//!
+//! Many rectangles are divided into strips along X, each a tree of its own: threads make them side by side, and a window meets
+//! few of them.
 
 use glam::DVec2;
+use rayon::prelude::*;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree, RTreeObject, SelectionFunction};
 
@@ -10,10 +14,16 @@ use crate::rect::Rect;
 /// A rectangle with its position in the list that a tree was made of.
 type NumberedRect = GeomWithData<Rectangle<[f64; 2]>, usize>;
 
-/// Rectangles in a tree.
+/// The rectangles of a strip: loading them takes a thread a millisecond or so.
+const STRIP: usize = 4096;
+
+/// The most strips: every one of them is looked at for every window.
+const MOST_STRIPS: usize = 64;
+
+/// Rectangles in trees.
 #[derive(Clone, Debug)]
 pub struct RectTree {
-    tree: RTree<NumberedRect>,
+    strips: Vec<RTree<NumberedRect>>,
 }
 
 impl RectTree {
@@ -24,19 +34,29 @@ impl RectTree {
             let corners = (rect.min.to_array(), rect.max.to_array());
             GeomWithData::new(Rectangle::from_corners(corners.0, corners.1), index)
         };
-        Self { tree: RTree::bulk_load(entries.map(entry).collect()) }
+        let mut entries: Vec<NumberedRect> = entries.map(entry).collect();
+        let strip = STRIP.max(entries.len().div_ceil(MOST_STRIPS));
+        if entries.len() <= strip {
+            return Self { strips: vec![RTree::bulk_load(entries)] };
+        }
+        let doubled_middle = |entry: &NumberedRect| entry.geom().lower()[0] + entry.geom().upper()[0];
+        entries.par_sort_unstable_by(|a, b| doubled_middle(a).total_cmp(&doubled_middle(b)));
+        Self { strips: entries.par_chunks(strip).map(|strip| RTree::bulk_load(strip.to_vec())).collect() }
     }
 
     /// The rectangles that meet `window`, each once, in an order of no meaning.
     pub fn meeting(&self, window: &Rect) -> impl Iterator<Item = usize> + '_ {
         let envelope = AABB::from_corners(window.min.to_array(), window.max.to_array());
-        self.tree.locate_in_envelope_intersecting(&envelope).map(|entry| entry.data)
+        let near = move |strip| RTree::locate_in_envelope_intersecting(strip, &envelope);
+        self.strips.iter().flat_map(near).map(|entry| entry.data)
     }
 
     /// The rectangles that meet a convex counter-clockwise polygon, each once, in an order of no meaning: of a slanted one far
     /// fewer than meet the rectangle around it.
     pub fn meeting_convex(&self, polygon: &[DVec2]) -> impl Iterator<Item = usize> + use<'_> {
-        self.tree.locate_with_selection_function(NearConvex::new(polygon)).map(|entry| entry.data)
+        let near = NearConvex::new(polygon);
+        let near = move |strip| RTree::locate_with_selection_function(strip, near.clone());
+        self.strips.iter().flat_map(near).map(|entry| entry.data)
     }
 
     /// The rectangles that meet `window`, in ascending order.
@@ -48,6 +68,7 @@ impl RectTree {
 }
 
 /// Selects the rectangles that meet a convex polygon.
+#[derive(Clone)]
 struct NearConvex {
     bounds: Rect,
     /// For each side the direction in which the polygon lies of it, and how far in that direction the side is.
@@ -119,6 +140,23 @@ mod tests {
             assert!(expected.iter().all(|index| found.contains(index)), "{quarter}");
             // Those that it touches at a corner may be found as well; the rectangle around it meets all ten thousand.
             assert!(found.len() <= 2 * expected.len(), "{} for {}", found.len(), expected.len());
+        }
+    }
+
+    #[test]
+    fn in_many_strips_as_much_is_found_as_in_one() {
+        let rects: Vec<Rect> = (0..3 * STRIP as u32 + 1)
+            .map(|index| {
+                let min = DVec2::new(f64::from(index * 7919 % 1009), f64::from(index * 104_729 % 997));
+                Rect { min, max: min + DVec2::new(f64::from(index % 40), f64::from(index % 9)) }
+            })
+            .collect();
+        let tree = RectTree::new(&rects);
+        assert_eq!(tree.strips.len(), 4);
+        for corner in [0.0, 300.0, 700.0] {
+            let window = Rect { min: DVec2::splat(corner), max: DVec2::splat(corner + 200.0) };
+            let expected: Vec<usize> = (0..rects.len()).filter(|&index| rects[index].meets(&window)).collect();
+            assert_eq!(tree.meeting_in_order(&window), expected);
         }
     }
 

@@ -7,14 +7,14 @@
 use std::collections::BTreeMap;
 
 use glam::Vec3;
-use rayon::prelude::*;
 
 use crate::add_mesh;
 use crate::detail::Viewer;
 use crate::lake_tint::large_lakes;
 use crate::line_scale::LineScale;
 use crate::markings::faded;
-use crate::symbols::{DrapedSymbol, PORTION, RibbonShow, Symbols, symbols};
+use crate::portions::in_portions;
+use crate::symbols::{DrapedSymbol, RibbonShow, Symbols, symbols};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh, FeatureId, MaterialId};
 use sandtable_draw::material::{AlphaMode, Material, NormalSource};
@@ -115,11 +115,7 @@ pub(super) fn add(
         }
         draped
     };
-    let mut meshes: Vec<DrapedRibbon> = Vec::with_capacity(scene.ribbons.len());
-    for portion in scene.ribbons.chunks(PORTION) {
-        let made: Vec<DrapedRibbon> = portion.par_iter().map(draped_ribbon).collect();
-        meshes.extend(made.into_iter().map(DrapedRibbon::packed));
-    }
+    let meshes = in_portions(&scene.ribbons, |ribbon| Some(draped_ribbon(ribbon)), DrapedRibbon::packed);
     let (mut shores, mut rivers, mut roads) = (Vec::new(), Vec::new(), Vec::new());
     let (raised, draped): (Vec<_>, Vec<_>) = draped.into_iter().partition(|draped| draped.is_raised);
     for draped in draped {

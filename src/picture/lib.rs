@@ -26,6 +26,7 @@ mod nested_surface;
 mod overlay;
 pub mod panorama;
 pub mod placed_text;
+mod portions;
 mod post_tint;
 pub mod recut;
 pub mod setting;
@@ -173,15 +174,39 @@ fn listed(
     let camera = viewer.camera();
     let to_sun = scene.sunlight.to_sun(camera);
     let level = camera.map_or(0, |camera| ground::map_level(scene, camera));
-    let map = match purpose {
-        ListPurpose::Picture => scene.map(GroundMapKey { level, to_sun }, || progress("lighting terrain")),
-        ListPurpose::Shapes | ListPurpose::Relief => Arc::new(GroundMap::level()),
-    };
     let lighting = match camera {
         Some(camera) => lighting(scene, camera, to_sun),
         None => Lighting { to_sun, ..Lighting::default() },
     };
-    let mut list = DrawList { ground: Some(map), lighting, ..DrawList::default() };
+    let key = GroundMapKey { level, to_sun };
+    let is_lit = purpose == ListPurpose::Picture;
+    if is_lit && !scene.has_map(key) {
+        progress("lighting terrain");
+        // The map and the features need these: neither is to wait for the other to make them.
+        scene.ground();
+        scene.water();
+    }
+    let mut map = None;
+    let mut listed = rayon::in_place_scope(|scope| {
+        if is_lit {
+            scope.spawn(|_| map = Some(scene.map(key, || ())));
+        }
+        shaped(DrawList { lighting, ..DrawList::default() }, scene, displayed, viewer, purpose, progress)
+    });
+    listed.list.ground = Some(map.unwrap_or_else(|| Arc::new(GroundMap::level())));
+    listed
+}
+
+/// The list with all that is drawn, whose ground is not lit.
+fn shaped(
+    mut list: DrawList,
+    scene: &SceneModel,
+    displayed: &DisplayedTerrain,
+    viewer: Viewer<'_>,
+    purpose: ListPurpose,
+    progress: &dyn Fn(&'static str),
+) -> ListedScene {
+    let camera = viewer.camera();
     let setting = camera.map(|camera| PictureSetting::new(camera, scene.bounds));
     let walls = ground::add(&mut list, scene, displayed);
     let ground_triangles = list.triangle_count();

@@ -19,6 +19,7 @@ use rayon::prelude::*;
 
 use crate::line_scale::LineScale;
 use crate::line_view::{self, LineView};
+use crate::portions::in_portions;
 use sandtable_draw::list::{DrawMesh, FeatureId};
 use sandtable_earthworks::alignment::{Alignment, Support, Width};
 use sandtable_geom::polyline::Polyline;
@@ -58,10 +59,6 @@ const DASH_PX: [f64; 2] = [7.0, 4.0];
 
 /// How many times as wide as it is a line is drawn where nothing but a symbol is left of it.
 const ALL_SYMBOL: f64 = 2.5;
-
-/// Lines of which threads make symbols before these are kept: enough that no thread waits, and few beside all lines of a
-/// city.
-pub(super) const PORTION: usize = 1024;
 
 /// Sides of a round end.
 const CAP_SIDES: u32 = 4;
@@ -259,13 +256,8 @@ pub(super) fn planned_with<'a, T: Send>(
         let deck = symbol.deck.as_ref().filter(|deck| view.shows_apart(deck));
         make(PlannedSymbol { symbol, casing, fill: strokes(SymbolPart::Fill), deck })
     };
-    let mut kept = Vec::new();
-    for portion in seen.chunks(PORTION) {
-        let narrow = portion.par_iter().filter(|(_, seen)| !seen.runs.is_empty());
-        let made: Vec<T> = narrow.map(plan).collect();
-        kept.extend(made.into_iter().map(&keep));
-    }
-    (kept, shows)
+    let narrow = |line: &(&'a LineSymbol, SeenLine)| (!line.1.runs.is_empty()).then(|| plan(line));
+    (in_portions(&seen, narrow, keep), shows)
 }
 
 /// A vertex of a line in view.

@@ -39,8 +39,8 @@ pub fn crossings(
         plan.convex_parts().into_iter().map(move |outline| ConvexPiece { outline, ribbon })
     };
     let pieces: Vec<ConvexPiece> = ribbons.par_iter().enumerate().flat_map_iter(pieces_of).collect();
-    let rects: Vec<Rect> = pieces.iter().map(|piece| polygon::bounds(&piece.outline)).collect();
-    let (tree, joined) = (RectTree::new(&rects), Joined::new(nodes));
+    let rects: Vec<Rect> = pieces.par_iter().map(|piece| polygon::bounds(&piece.outline)).collect();
+    let (tree, joined) = rayon::join(|| RectTree::new(&rects), || Joined::new(nodes));
     let shared = |one: &ConvexPiece| {
         let mut found = Vec::new();
         for other in tree.meeting_in_order(&polygon::bounds(&one.outline)) {

@@ -87,6 +87,9 @@ pub struct JunctionNode {
     pub rank: u8,
 }
 
+/// The places of meetings that a thread looks at in one go.
+const MEETINGS: usize = 256;
+
 /// What leaves a node along one street.
 #[derive(Clone, Copy, Debug)]
 struct Arm {
@@ -101,21 +104,28 @@ struct Arm {
 pub fn connect(streets: &[&Street]) -> StreetNetwork {
     let streets = Streets(streets);
     let mut arms: Vec<(VertexKey, Arm)> =
-        (0..streets.0.len()).flat_map(|street| streets.arms(street)).collect();
+        (0..streets.0.len()).into_par_iter().flat_map_iter(|street| streets.arms(street)).collect();
     arms.par_sort_unstable_by_key(|&(place, arm)| (place, arm.street, arm.vertex, arm.next));
+    let meetings: Vec<&[(VertexKey, Arm)]> = arms.chunk_by(|(place, _), (other, _)| place == other).collect();
+    let joined = |meetings: &[&[(VertexKey, Arm)]]| {
+        let mut joined = JoinedArms::default();
+        for meeting in meetings {
+            let meeting: Vec<Arm> = meeting.iter().map(|&(_, arm)| arm).collect();
+            if !matches!(meeting[..], [_] | [_, _]) || !is_bend(&meeting) {
+                streets.groups(meeting).iter().for_each(|group| joined.join(streets, group));
+            }
+        }
+        joined
+    };
+    let joined: Vec<JoinedArms> = meetings.par_chunks(MEETINGS).map(joined).collect();
     let mut network = StreetNetwork {
         continuations: vec![Continuations::default(); streets.0.len()],
         links: Vec::new(),
         nodes: Vec::new(),
     };
-    for meeting in arms.chunk_by(|(place, _), (other, _)| place == other) {
-        let meeting: Vec<Arm> = meeting.iter().map(|&(_, arm)| arm).collect();
-        if matches!(meeting[..], [_] | [_, _]) && is_bend(&meeting) {
-            continue;
-        }
-        for group in streets.groups(meeting) {
-            network.join(streets, &group);
-        }
+    for JoinedArms { links, nodes } in joined {
+        links.into_iter().for_each(|link| network.link(streets, link));
+        network.nodes.extend(nodes);
     }
     network
 }
@@ -125,19 +135,27 @@ fn is_bend(arms: &[Arm]) -> bool {
     arms.iter().all(|arm| arm.street == arms[0].street && arm.vertex == arms[0].vertex)
 }
 
-impl StreetNetwork {
+/// What comes of the arms that meet at some places.
+#[derive(Default)]
+struct JoinedArms {
+    /// The pairs that continue each other.
+    links: Vec<[Arm; 2]>,
+    nodes: Vec<JunctionNode>,
+}
+
+impl JoinedArms {
     /// Joins the arms that meet at one place.
     fn join(&mut self, streets: Streets<'_>, arms: &[Arm]) {
         let best = streets.best(arms);
         let (better, lesser): (Vec<Arm>, Vec<Arm>) = arms.iter().partition(|arm| streets.rank(arm) == best);
         match arms {
-            &[a, b] if streets.go_on([a, b]) => self.link(streets, [a, b]),
+            &[a, b] if streets.go_on([a, b]) => self.links.push([a, b]),
             _ if is_bend(arms) => {}
             _ => {
                 let (above, below) = match better[..] {
                     _ if is_bend(&better) && better.len() == 2 => (None, Some(arms)),
                     [a, b] if streets.go_on([a, b]) => {
-                        self.link(streets, [a, b]);
+                        self.links.push([a, b]);
                         (None, Some(arms))
                     }
                     // A better road that ends among lesser ones takes them in.
@@ -148,18 +166,6 @@ impl StreetNetwork {
                 below.into_iter().for_each(|arms| self.add_node(streets, arms, streets.best(&lesser)));
             }
         }
-    }
-
-    fn link(&mut self, streets: Streets<'_>, [a, b]: [Arm; 2]) {
-        for (arm, other) in [(a, b), (b, a)] {
-            let ends = &mut self.continuations[arm.street];
-            let beyond = Some(streets.0[other.street].points()[other.next]);
-            match arm.end().end {
-                0 => ends.before = beyond,
-                _ => ends.after = beyond,
-            }
-        }
-        self.links.push([a.end(), b.end()]);
     }
 
     fn add_node(&mut self, streets: Streets<'_>, arms: &[Arm], rank: u8) {
@@ -173,6 +179,20 @@ impl StreetNetwork {
         if !outline.is_empty() {
             self.nodes.push(JunctionNode { outline, street: widest.street, rank });
         }
+    }
+}
+
+impl StreetNetwork {
+    fn link(&mut self, streets: Streets<'_>, [a, b]: [Arm; 2]) {
+        for (arm, other) in [(a, b), (b, a)] {
+            let ends = &mut self.continuations[arm.street];
+            let beyond = Some(streets.0[other.street].points()[other.next]);
+            match arm.end().end {
+                0 => ends.before = beyond,
+                _ => ends.after = beyond,
+            }
+        }
+        self.links.push([a.end(), b.end()]);
     }
 }
 

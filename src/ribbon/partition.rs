@@ -34,10 +34,13 @@ const PLANS: usize = 64;
 pub fn apart<'a>(plans: impl IntoIterator<Item = &'a PlanMesh> + Clone) -> Vec<PlanMesh> {
     let covering = Covering::new(plans.clone());
     let rests: Vec<Rest> = covering.each(|clip, triangle| covering.rest(triangle, clip));
-    let mut rests = rests.into_iter();
-    let with_rests = |plan: &'a PlanMesh| (plan, rests.by_ref().take(plan.triangles.len()).collect());
-    let each: Vec<(&PlanMesh, Vec<Rest>)> = plans.into_iter().map(with_rests).collect();
-    each.into_par_iter().with_min_len(PLANS).map(|(plan, rests)| left_of(plan, rests)).collect()
+    let mut later = &rests[..];
+    let with_rests = |plan: &'a PlanMesh| (plan, later.split_off(..plan.triangles.len()).unwrap_or_default());
+    let each: Vec<(&PlanMesh, &[Rest])> = plans.into_iter().map(with_rests).collect();
+    let left = || each.into_par_iter().with_min_len(PLANS).map(|(plan, rests)| left_of(plan, rests)).collect();
+    let (left, ()) = rayon::join(left, || drop(covering));
+    rests.into_par_iter().with_min_len(CHUNK).for_each(drop);
+    left
 }
 
 /// The area in square meters that more than one triangle of `plans` covers, counted once for every pair: 0 but for
@@ -70,7 +73,7 @@ enum Rest {
 }
 
 /// What is left of a plan, given what is left of each of its triangles.
-fn left_of(plan: &PlanMesh, rests: Vec<Rest>) -> PlanMesh {
+fn left_of(plan: &PlanMesh, rests: &[Rest]) -> PlanMesh {
     let mut left = PlanMesh::default();
     let mut kept: BTreeMap<VertexId, VertexId> = BTreeMap::new();
     for ((&ids, triangle), rest) in plan.triangles.iter().zip(plan.corners()).zip(rests) {

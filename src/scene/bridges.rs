@@ -12,6 +12,8 @@
 
 use std::collections::BTreeSet;
 
+use rayon::prelude::*;
+
 use crate::builder::SceneBuilder;
 use crate::feature::{FeatureKind, described};
 use crate::feature_meshes::{Coat, Solid};
@@ -33,7 +35,7 @@ use sandtable_geom::polyline::{VertexKey, vertex_key};
 use sandtable_geom::profile::Profile;
 use sandtable_geom::rect::Rect;
 use sandtable_ribbon::texture::RibbonSurface;
-use sandtable_structure::bridge::{self, Across, BridgeOptions, magnified};
+use sandtable_structure::bridge::{self, Across, BridgeOptions, BridgeSolids, magnified};
 use sandtable_structure::deck::DeckSection;
 use sandtable_structure::deck_profile::ClearancePoint;
 use sandtable_structure::tunnel::Portal;
@@ -88,7 +90,18 @@ pub fn build(
         .filter(|span| span.street.alignment.support == Support::Tunnel)
         .flat_map(|span| span.street.alignment.line.ends().map(vertex_key))
         .collect();
-    let mut bridges: Vec<PlannedBridge<'_>> = Vec::new();
+    let support = |chain: &SpanChain| spans[chain.links[0].line].street.alignment.support;
+    let planned: Vec<Vec<PlannedBridge<'_>>> = chains
+        .par_iter()
+        .zip(&runs)
+        .map(|(chain, run)| match run {
+            Some(run) if support(chain) == Support::Bridge => {
+                let (spans, site, mouths) = (&spans, &site, &mouths);
+                BuiltChain { spans, chain, run, site, mouths }.planned(&extent).collect()
+            }
+            _ => Vec::new(),
+        })
+        .collect();
     for (chain, run) in chains.iter().zip(&runs) {
         let Some(run) = run else {
             let span = &spans[chain.links[0].line];
@@ -98,20 +111,20 @@ pub fn build(
             collected.findings.add(FindingCode::LeftOut, span.place.span.clone(), message);
             continue;
         };
-        let built = BuiltChain { spans: &spans, chain, run, site: &site, mouths: &mouths };
-        match spans[chain.links[0].line].street.alignment.support {
-            Support::Bridge => bridges.extend(built.planned(&extent)),
-            Support::Tunnel => built.tunnel(&extent, roads, collected),
-            Support::Ground => {}
+        if support(chain) == Support::Tunnel {
+            let built = BuiltChain { spans: &spans, chain, run, site: &site, mouths: &mouths };
+            built.tunnel(&extent, roads, collected);
         }
     }
+    let bridges: Vec<PlannedBridge<'_>> = planned.into_iter().flatten().collect();
     collected.decks = bridges.iter().flat_map(|planned| bridge::deck(&planned.sections)).collect();
     let decks = Deck::new(&collected.decks).map_err(|error| document.error_at(0..0, error))?;
-    for planned in bridges {
-        if let Some(road) = spans[planned.link.line].road {
-            roads[road].deck = Some(planned.deck_line());
+    let built: Vec<BuiltBridge<'_>> = bridges.into_par_iter().map(|planned| planned.build(&decks)).collect();
+    for built in built {
+        if let Some(road) = spans[built.planned.link.line].road {
+            roads[road].deck = Some(built.planned.deck_line());
         }
-        planned.build(&decks, collected);
+        built.add(collected);
     }
     Ok(())
 }
@@ -160,7 +173,7 @@ struct PlannedBridge<'a> {
     sections: Vec<DeckSection>,
 }
 
-impl PlannedBridge<'_> {
+impl<'a> PlannedBridge<'a> {
     /// Its deck, for the symbol of its road.
     fn deck_line(&self) -> DeckLine {
         let street = &self.chain.spans[self.link.line].street;
@@ -172,20 +185,34 @@ impl PlannedBridge<'_> {
     }
 
     /// Builds it as it is drawn.
-    fn build(mut self, decks: &Deck, collected: &mut SceneBuilder) {
-        let (street, site) = (&self.chain.spans[self.link.line].street, self.chain.site);
+    fn build(mut self, decks: &Deck) -> BuiltBridge<'a> {
+        let site = self.chain.site;
         bridge::end_parapets(&mut self.sections, self.alignment.width.widest_m(), decks);
         for section in &mut self.sections {
             section.edges_m = section.edges_m.map(|edge_m| site.scale.world_z(edge_m));
         }
-        let built = bridge::build(&self.alignment, &self.sections, &self.options, &|at| site.ground_z(at));
-        let span = &self.chain.spans[self.link.line];
+        let solids = bridge::build(&self.alignment, &self.sections, &self.options, &|at| site.ground_z(at));
+        BuiltBridge { planned: self, solids }
+    }
+}
+
+/// A bridge as it is drawn.
+struct BuiltBridge<'a> {
+    planned: PlannedBridge<'a>,
+    solids: BridgeSolids,
+}
+
+impl BuiltBridge<'_> {
+    /// Adds it and its row of the report.
+    fn add(self, collected: &mut SceneBuilder) {
+        let Self { planned: PlannedBridge { chain, link, .. }, solids } = self;
+        let (span, level) = (&chain.spans[link.line], chain.level(link));
+        let street = &span.street;
         let feature = collected.add(FeatureKind::Bridge, span.name.clone(), span.place.clone());
         let coat = Coat::Surface(street.surface);
-        collected.solids.push(Solid { mesh: built.carriageway, coat, feature });
-        collected.solids.push(Solid { mesh: built.body, coat: Coat::Painted, feature });
-        let level = self.chain.level(self.link);
-        self.chain.report(self.link, Some(built.piers), None, level.steepest(0.0), collected);
+        collected.solids.push(Solid { mesh: solids.carriageway, coat, feature });
+        collected.solids.push(Solid { mesh: solids.body, coat: Coat::Painted, feature });
+        chain.report(link, Some(solids.piers), None, level.steepest(0.0), collected);
         let (line, surface) = (street.alignment.line.clone(), street.surface);
         collected.bridge_profiles.push(BridgeProfile {
             feature,

@@ -31,6 +31,7 @@ use crate::models;
 use crate::overlays;
 use crate::placed_sight;
 use crate::planned_pictures::ElevationNeed;
+use crate::read_ahead::ReadAhead;
 use crate::relief_strength;
 use crate::roads::network;
 use crate::scene_model::SceneModel;
@@ -129,12 +130,16 @@ pub fn build_with(
         ElevationNeed::Pictures(_) if !document.analyses.is_empty() => ElevationNeed::AllThatFit,
         need => need,
     };
-    let loaded = ground::load(document, assets, need)?;
+    let mut ahead = ReadAhead::default();
+    let loaded = rayon::in_place_scope(|scope| {
+        scope.spawn(|_| ahead = ReadAhead::of(document, assets));
+        ground::load(document, assets, need)
+    })?;
     let (crs, stated_crs, mut lattice) = (loaded.crs, loaded.stated_crs, loaded.lattice);
     let frame = WorldFrame::new(document, &crs, &stated_crs, lattice.map_extent());
 
     progress("laying features");
-    let sources = Sources::new(&frame, assets);
+    let sources = Sources::with(&frame, assets, ahead);
     let mut collected = SceneBuilder::new(loaded.findings);
     let shaped = shape(document, &sources, &mut lattice, &mut collected);
     // What is wrong so far keeps the scene from being built; what follows is done to tell what else is.
@@ -191,8 +196,12 @@ pub fn build_with(
         .for_each(|error| collected.findings.push(error));
     let overlaps = reaches.iter().map(|reach| reach.overlap(&lattice.extent())).collect();
     views::find_buried(document, &cameras, scale.ground(&lattice), &mut collected.findings);
-    let heights =
-        height_service(document, loaded.source, crs.clone(), Arc::clone(&lattice), &collected.decks)?;
+    let read = sources.into_read();
+    let (heights, ()) = rayon::join(
+        || height_service(document, loaded.source, crs.clone(), Arc::clone(&lattice), &collected.decks),
+        || drop(read),
+    );
+    let heights = heights?;
     let surroundings = Surroundings::new(document);
     let sunlight = match surroundings.land_cover {
         true => sunlight.over(relief_strength::fall(&lattice)),

@@ -1,5 +1,7 @@
 //! The output of the passes over a document: features with their ids, ribbons, solids, findings and reports.
 
+use rayon::prelude::*;
+
 use crate::attributes::DefaultCounts;
 use crate::build_errors::BuildErrorSink;
 use crate::feature::{FeatureKind, SceneFeature};
@@ -20,6 +22,9 @@ use sandtable_ribbon::partition;
 use sandtable_ribbon::plan::PlanMesh;
 use sandtable_ribbon::texture::RibbonSurface;
 use sandtable_terrain::triangle_surface::SurfaceTriangle;
+
+/// The plans of ribbons that a thread keeps in one go.
+const PLANS: usize = 64;
 
 /// The features of a scene so far, with their meshes, findings and reports.
 pub struct SceneBuilder {
@@ -122,11 +127,12 @@ impl SceneBuilder {
         self.ribbons.sort_by_key(order);
         let from_above: Vec<&PlanMesh> = self.ribbons.iter().rev().map(|ribbon| &ribbon.plan).collect();
         let parts = partition::apart(from_above.iter().copied());
-        for (ribbon, plan) in self.ribbons.iter_mut().rev().zip(parts) {
+        let whole = self.ribbons.par_iter_mut().rev().with_min_len(PLANS);
+        whole.zip(parts).for_each(|(ribbon, plan)| {
             ribbon.plan = plan;
             ribbon.plan.vertices.shrink_to_fit();
             ribbon.plan.triangles.shrink_to_fit();
-        }
+        });
         self.ribbons.retain(|ribbon| !ribbon.plan.triangles.is_empty());
     }
 }

@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 
 use glam::{DVec2, Vec3};
+use rayon::prelude::*;
 
 use crate::attributes::{Attributes, PROMINENCE, written};
 use crate::exact_ground::ExactGround;
@@ -49,8 +50,8 @@ pub(super) fn labels(
         });
         attributes.with_prominence(prominence_m)
     };
-    let mut features: Vec<RankedFeature> =
-        features.into_iter().map(|attributes| RankedFeature::new(table, known(attributes))).collect();
+    let ranked = |attributes: Attributes| RankedFeature::new(table, known(attributes));
+    let mut features: Vec<RankedFeature> = features.into_par_iter().map(ranked).collect();
     // Stable: the file's order decides in the end.
     features.sort_by(|a, b| a.rank.total_cmp(&b.rank).then(b.size.total_cmp(&a.size)));
     let most = table.most as usize;

@@ -27,6 +27,11 @@ impl SceneModel {
             ground_map(self, key)
         })
     }
+
+    /// Whether [`SceneModel::map`] has the map of a key already.
+    pub fn has_map(&self, key: GroundMapKey) -> bool {
+        self.maps.has(key)
+    }
 }
 
 /// The height, slope and light at a level of the posts; 0 is all of them, each further level every second post of the one

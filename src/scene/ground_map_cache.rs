@@ -36,6 +36,12 @@ impl GroundMapCache {
         }
     }
 
+    /// Whether the map that was made last is that of a key.
+    pub(super) fn has(&self, key: GroundMapKey) -> bool {
+        let last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        last.as_ref().is_some_and(|(of, _)| *of == key)
+    }
+
     /// Whether no map has been made.
     pub(super) fn is_empty(&self) -> bool {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).is_none()

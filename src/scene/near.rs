@@ -1,6 +1,7 @@
 //! Leaves out features that do not come near the ground.
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use crate::attributes::Attributes;
 use crate::scene_findings::{FeatureTable, SceneFindings};
@@ -13,6 +14,9 @@ use sandtable_ribbon::plan::{PlanMesh, PlanVertex};
 /// Vertices nearer to each other than this have no direction worth a joint, in meters.
 pub const MERGE_M: f64 = 0.01;
 
+/// The lines that a thread looks at in one go.
+const LINES: usize = 64;
+
 /// The lines of `table` of which some part lies within `reach_m` of the ground's `extent`, with their attributes; the
 /// others, and those that are a single point, are found.
 pub fn lines(
@@ -22,16 +26,15 @@ pub fn lines(
     table: &FeatureTable<'_>,
     findings: &mut SceneFindings,
 ) -> Vec<(Attributes, Polyline)> {
-    let (count, mut points) = (lines.len(), 0);
-    let near: Vec<_> = lines
-        .into_iter()
-        .filter_map(|Sourced { attributes, shape, .. }| {
-            let reach = Rect::around(shape.iter().copied()).grown(reach_m);
-            let line = Polyline::new(shape, MERGE_M);
-            points += usize::from(line.is_none() && reach.meets(extent));
-            Some((attributes, line.filter(|_| reach.meets(extent))?))
-        })
-        .collect();
+    let count = lines.len();
+    let made = |Sourced { attributes, shape, .. }: Sourced<Vec<DVec2>>| {
+        let is_near = Rect::around(shape.iter().copied()).grown(reach_m).meets(extent);
+        is_near.then(|| (attributes, Polyline::new(shape, MERGE_M)))
+    };
+    let made: Vec<(Attributes, Option<Polyline>)> =
+        lines.into_par_iter().with_min_len(LINES).filter_map(made).collect();
+    let points = made.iter().filter(|(_, line)| line.is_none()).count();
+    let near: Vec<_> = made.into_iter().filter_map(|(attributes, line)| Some((attributes, line?))).collect();
     findings.left_out(count - near.len() - points, table, "off the elevation model");
     findings.without_extent(points, table, "all of their points are one place");
     near

@@ -41,6 +41,32 @@ pub struct SourceReach {
     boxes: Vec<Rect>,
 }
 
+/// The places of the vertices of one shape.
+pub struct ShapeReach {
+    /// The first ones, as they are written.
+    written: Vec<DVec2>,
+    /// All of them in world coordinates.
+    world: Vec<DVec2>,
+    around: Rect,
+}
+
+impl Default for ShapeReach {
+    fn default() -> Self {
+        Self { written: Vec::new(), world: Vec::new(), around: Rect::EMPTY }
+    }
+}
+
+impl ShapeReach {
+    /// Adds a vertex, as it is written and in world coordinates.
+    pub fn add(&mut self, written: DVec2, world: DVec2) {
+        if self.written.len() < SAMPLED {
+            self.written.push(written);
+        }
+        self.world.push(world);
+        self.around = self.around.with(world);
+    }
+}
+
 /// The extent to which a source lies off the ground.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SourceOverlap {
@@ -67,16 +93,17 @@ impl SourceReach {
         Self { span, file, crs, written, path, step: 1, vertices: 0, boxes }
     }
 
-    /// Begins the next shape.
-    pub fn begin_shape(&mut self) {
-        self.boxes.push(Rect::around([]));
+    /// Adds the next shape.
+    pub fn add_shape(&mut self, shape: &ShapeReach) {
+        let wanted = SAMPLED - self.written.len();
+        self.written.extend(shape.written.iter().take(wanted));
+        for &world in &shape.world {
+            self.add(world);
+        }
+        self.boxes.push(shape.around);
     }
 
-    /// Adds a vertex of the shape, as it is written and in world coordinates.
-    pub fn add(&mut self, written: DVec2, world: DVec2) {
-        if self.written.len() < SAMPLED {
-            self.written.push(written);
-        }
+    fn add(&mut self, world: DVec2) {
         if self.vertices.is_multiple_of(self.step) {
             self.path.push(world);
         }
@@ -88,9 +115,6 @@ impl SourceReach {
                 index % 2 == 1
             });
             self.step *= 2;
-        }
-        if let Some(last) = self.boxes.last_mut() {
-            *last = last.with(world);
         }
     }
 

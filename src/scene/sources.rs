@@ -6,13 +6,16 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use crate::assets::Assets;
 use crate::attributes::Attributes;
 use crate::class_raster::{ClassRaster, ClassRasterError};
+use crate::layer_key::{LayerKey, layer_key};
+use crate::read_ahead::ReadAhead;
 use crate::scene_findings::SceneFindings;
 use crate::source_filter::{filter_of, values_of};
-use crate::source_reach::SourceReach;
+use crate::source_reach::{ShapeReach, SourceReach};
 use crate::world_frame::WorldFrame;
 use sandtable_base::limits::{ASSET_BYTES, RING_CROSSINGS};
 use sandtable_base::message::suggest::quoted;
@@ -25,13 +28,10 @@ use sandtable_geom::crs::{Crs, CrsError};
 use sandtable_geom::self_crossing::count_crossings;
 use sandtable_vector::cityjson::CityModel;
 use sandtable_vector::error::{VectorError, did_you_mean, list};
-use sandtable_vector::feature::{Geometry, Polygon, VectorLayer};
+use sandtable_vector::feature::{Feature, Geometry, Polygon, VectorLayer};
 use sandtable_vector::filter::Filter;
 use sandtable_vector::hints::VectorHints;
 use sandtable_vector::read::{self, LayeredFile, VectorFile};
-
-/// A file's name, and the layer, the system and the columns stated for it.
-type LayerKey = (String, Option<String>, Option<String>, Vec<(String, String)>);
 
 /// Reads vector files, each once.
 pub struct Sources<'a> {
@@ -42,6 +42,8 @@ pub struct Sources<'a> {
     layers: RefCell<BTreeMap<LayerKey, Arc<VectorLayer>>>,
     /// Files that take longer to read than a layer of them to make, by name.
     layered: RefCell<BTreeMap<String, LayeredFile>>,
+    /// Layers of these that were made before they were needed.
+    ahead: RefCell<BTreeMap<LayerKey, VectorLayer>>,
     /// The surfaces of CityJSON files.
     city_models: RefCell<BTreeMap<LayerKey, Arc<CityModel>>>,
     /// The files that are rasters of land cover: what is taken of them is what lies on the ground, which may be nothing.
@@ -75,15 +77,48 @@ pub struct Sourced<T> {
     pub crossings: usize,
 }
 
+/// The features of a file that a thread looks at in one go: enough against a hand-over of a microsecond.
+const FEATURES: usize = 256;
+
+/// The shapes that a thread places in one go.
+const SHAPES: usize = 32;
+
+/// The crossings up to which polygons are counted side by side; of one that has more, what is left for the scene decides.
+const FEW_CROSSINGS: usize = 64;
+
+/// The shapes of some features of a file, in its order.
+struct PickedShapes<T> {
+    shapes: Vec<Sourced<T>>,
+    /// How many features match and have another shape, by kind.
+    of_other_shape: BTreeMap<&'static str, usize>,
+}
+
+impl<T> PickedShapes<T> {
+    /// Adds the shapes of a feature whose geometry is of a kind.
+    fn add(&mut self, attributes: &Attributes, kind: &'static str, shapes: Vec<T>) {
+        if shapes.is_empty() {
+            *self.of_other_shape.entry(kind).or_default() += 1;
+        }
+        let sourced = |shape| Sourced { attributes: attributes.clone(), shape, crossings: 0 };
+        self.shapes.extend(shapes.into_iter().map(sourced));
+    }
+}
+
 impl<'a> Sources<'a> {
     /// Sources that read through `assets` and place through `frame`.
     pub fn new(frame: &'a WorldFrame<'a>, assets: &'a Assets) -> Self {
+        Self::with(frame, assets, ReadAhead::default())
+    }
+
+    /// As [`Self::new`], with what was read of the document's files before.
+    pub fn with(frame: &'a WorldFrame<'a>, assets: &'a Assets, ahead: ReadAhead) -> Self {
         let crossings_left = Cell::new(RING_CROSSINGS.count());
         Self {
             frame,
             assets,
             layers: RefCell::default(),
-            layered: RefCell::default(),
+            layered: RefCell::new(ahead.files),
+            ahead: RefCell::new(ahead.layers),
             city_models: RefCell::default(),
             class_rasters: RefCell::default(),
             overridden: RefCell::default(),
@@ -91,6 +126,11 @@ impl<'a> Sources<'a> {
             reaches: RefCell::default(),
             reading: RefCell::default(),
         }
+    }
+
+    /// What was read of the files, for a thread to drop while others work: a city has millions of allocations.
+    pub fn into_read(self) -> impl Send {
+        (self.layers.into_inner(), self.layered.into_inner())
     }
 
     /// The lines of a source.
@@ -141,20 +181,26 @@ impl<'a> Sources<'a> {
             Geometry::Points(_) => Vec::new(),
         })?;
         let placed = self.place_all(source, polygons, placed_polygon)?;
-        let counted = |polygon: Sourced<Polygon>| {
-            let crossings = self.crossings(source, &polygon)?;
+        let few = |polygon: &Sourced<Polygon>| count_crossings(rings(&polygon.shape), FEW_CROSSINGS);
+        let few: Vec<Option<usize>> = placed.par_iter().map(few).collect();
+        let counted = |(polygon, few): (Sourced<Polygon>, Option<usize>)| {
+            let crossings = self.crossings(source, &polygon, few)?;
             Ok(Sourced { crossings, ..polygon })
         };
-        placed.into_iter().map(counted).collect()
+        placed.into_iter().zip(few).map(counted).collect()
     }
 
-    /// How often a polygon crosses itself. One that would take too long to resolve is refused, before anything is spent on
-    /// it.
-    fn crossings(&self, source: &FeatureSource, polygon: &Sourced<Polygon>) -> Result<usize, Diagnostic> {
-        let Polygon { exterior, holes } = &polygon.shape;
-        let rings = std::iter::once(exterior).chain(holes).map(Vec::as_slice);
+    /// How often a polygon crosses itself: `few` where that is no more than [`FEW_CROSSINGS`]. One that would take too long to
+    /// resolve is refused, before anything is spent on it.
+    fn crossings(
+        &self,
+        source: &FeatureSource,
+        polygon: &Sourced<Polygon>,
+        few: Option<usize>,
+    ) -> Result<usize, Diagnostic> {
         let left = self.crossings_left.get();
-        match count_crossings(rings, left) {
+        let few = few.filter(|_| left >= FEW_CROSSINGS);
+        match few.or_else(|| count_crossings(rings(&polygon.shape), left)) {
             Some(crossings) => {
                 self.crossings_left.set(left - crossings);
                 Ok(crossings)
@@ -168,7 +214,7 @@ impl<'a> Sources<'a> {
                 };
                 let message = format!(
                     "{name} of {} vertices crosses itself too often: the polygons of a scene are resolved where they cross themselves up to {RING_CROSSINGS} times in all",
-                    exterior.len()
+                    polygon.shape.exterior.len()
                 );
                 let help = format!(
                     "mend it, for example with: ogr2ogr -makevalid out.geojson IN; or {RING_CROSSINGS:#}"
@@ -231,8 +277,11 @@ impl<'a> Sources<'a> {
     fn shapes<T>(
         &self,
         source: &FeatureSource,
-        pick: impl Fn(&Geometry) -> Vec<T>,
-    ) -> Result<(Crs, Vec<Sourced<T>>), Diagnostic> {
+        pick: impl Fn(&Geometry) -> Vec<T> + Sync,
+    ) -> Result<(Crs, Vec<Sourced<T>>), Diagnostic>
+    where
+        T: Send,
+    {
         if let Some(points) = &source.points {
             let crs = source.crs.as_ref().unwrap_or(&self.frame.points_crs);
             let line: Result<Vec<DVec2>, _> = points.iter().map(|point| point.in_system(crs)).collect();
@@ -250,18 +299,25 @@ impl<'a> Sources<'a> {
             Some(Selection::Holding(condition)) => attributes.holds(condition),
             _ => true,
         };
-        let (mut shapes, mut of_other_shape) = (Vec::new(), BTreeMap::<&str, usize>::new());
-        let matching = filter
-            .select(&layer)
-            .map(|(index, feature)| (Attributes::new(Arc::clone(&layer), index), feature))
-            .filter(|(attributes, _)| holds(attributes));
-        for (attributes, feature) in matching {
-            let picked = pick(&feature.geometry);
-            if picked.is_empty() {
-                *of_other_shape.entry(feature.geometry.kind()).or_default() += 1;
+        let picked_of = |(portion, features): (usize, &[Feature])| {
+            let mut picked = PickedShapes { shapes: Vec::new(), of_other_shape: BTreeMap::new() };
+            let matching = features.iter().enumerate().filter(|(_, feature)| filter.matches(feature));
+            for (index, feature) in matching {
+                let attributes = Attributes::new(Arc::clone(&layer), portion * FEATURES + index);
+                if holds(&attributes) {
+                    picked.add(&attributes, feature.geometry.kind(), pick(&feature.geometry));
+                }
             }
-            let sourced = |shape| Sourced { attributes: attributes.clone(), shape, crossings: 0 };
-            shapes.extend(picked.into_iter().map(sourced));
+            picked
+        };
+        let portions: Vec<PickedShapes<T>> =
+            layer.features.par_chunks(FEATURES).enumerate().map(picked_of).collect();
+        let (mut shapes, mut of_other_shape) = (Vec::new(), BTreeMap::<&str, usize>::new());
+        for picked in portions {
+            shapes.extend(picked.shapes);
+            for (kind, count) in picked.of_other_shape {
+                *of_other_shape.entry(kind).or_default() += count;
+            }
         }
         if shapes.is_empty() && !self.class_rasters.borrow().contains(file.as_str()) {
             return Err(self.nothing_found(source, file, &filter, &layer));
@@ -351,7 +407,10 @@ impl<'a> Sources<'a> {
         let columns = &key.3;
         let hints =
             VectorHints { crs: stated, overridden: &overridden, layer: name, columns, companions: &found };
-        let read = self.read(file, &hints)?;
+        let read = match self.ahead.borrow_mut().remove(&key) {
+            Some(layer) => Ok(VectorFile { layer, model: None }),
+            None => self.read(file, &hints)?,
+        };
         companions.check().map_err(|error| self.frame.document.error(file, error))?;
         let VectorFile { layer, model } = read.map_err(|error| self.unread(file, source, error))?;
         if let Some(model) = model {
@@ -498,32 +557,38 @@ impl<'a> Sources<'a> {
     }
 
     /// Transforms every shape to world coordinates.
-    fn place_all<T, U>(
+    fn place_all<T: Send, U: Send>(
         &self,
         source: &FeatureSource,
         (from, shapes): (Crs, Vec<Sourced<T>>),
-        transform: impl Fn(T, &dyn Fn(DVec2) -> Result<DVec2, CrsError>) -> Result<U, CrsError>,
+        transform: impl Fn(T, &dyn Fn(DVec2) -> Result<DVec2, CrsError>) -> Result<U, CrsError> + Sync,
     ) -> Result<Vec<Sourced<U>>, Diagnostic> {
-        let file = source.file.as_ref().map(|file| file.to_string());
-        let reach = RefCell::new(SourceReach::new(source.span(), file, from.clone()));
-        let place = |at: DVec2| {
-            let world = self.frame.world(&from, at)?;
-            reach.borrow_mut().add(at, world);
-            Ok(world)
+        let (frame, file) = (self.frame, source.file.as_ref().map(|file| file.to_string()));
+        let placed = |Sourced { attributes, shape, crossings }: Sourced<T>| {
+            let reach = RefCell::new(ShapeReach::default());
+            let place = |at: DVec2| {
+                let world = frame.world(&from, at)?;
+                reach.borrow_mut().add(at, world);
+                Ok(world)
+            };
+            let shape = transform(shape, &place)?;
+            Ok((Sourced { attributes, shape, crossings }, reach.into_inner()))
         };
-        let placed = shapes
-            .into_iter()
-            .map(|Sourced { attributes, shape, crossings }| {
-                reach.borrow_mut().begin_shape();
-                transform(shape, &place).map(|shape| Sourced { attributes, shape, crossings })
-            })
-            .collect::<Result<_, _>>()
-            .map_err(|error| self.frame.document.error_at(source.span(), error))?;
+        // Of several errors the first is reported: all shapes are placed before one is looked for.
+        let placed: Vec<Result<_, CrsError>> =
+            shapes.into_par_iter().with_min_len(SHAPES).map(placed).collect();
+        let mut reach = SourceReach::new(source.span(), file, from.clone());
+        let mut sourced = Vec::with_capacity(placed.len());
+        for placed in placed {
+            let (shape, of_shape) = placed.map_err(|error| frame.document.error_at(source.span(), error))?;
+            reach.add_shape(&of_shape);
+            sourced.push(shape);
+        }
         // Of a raster the part around the ground is read: that it reaches beyond says nothing.
         if !self.is_class_raster(source) {
-            self.reaches.borrow_mut().insert(source.span().start, reach.into_inner());
+            self.reaches.borrow_mut().insert(source.span().start, reach);
         }
-        Ok(placed)
+        Ok(sourced)
     }
 
     /// Measures the places of those features of a file that were not placed as lines, polygons or points, which are not
@@ -536,12 +601,13 @@ impl<'a> Sources<'a> {
         let file = source.file.as_ref().map(|file| file.to_string());
         let mut reach = SourceReach::new(source.span(), file, crs.clone());
         for shape in &shapes {
-            reach.begin_shape();
+            let mut of_shape = ShapeReach::default();
             for &at in shape.vertices() {
                 if let Ok(world) = self.frame.world(&crs, at) {
-                    reach.add(at, world);
+                    of_shape.add(at, world);
                 }
             }
+            reach.add_shape(&of_shape);
         }
         self.reaches.borrow_mut().insert(source.span().start, reach);
         Ok(())
@@ -563,14 +629,9 @@ fn placed_polygon(
     Ok(Polygon { exterior: ring(polygon.exterior)?, holes })
 }
 
-fn layer_key(file: &Stated<String>, source: &FeatureSource) -> LayerKey {
-    let columns = source.columns.iter().flat_map(|columns| columns.iter());
-    (
-        file.to_string(),
-        source.layer.as_ref().map(|name| name.to_string()),
-        source.crs.as_ref().map(|crs| crs.name().to_owned()),
-        columns.map(|(role, name)| (role.clone(), name.clone())).collect(),
-    )
+/// The outer ring and the holes of a polygon.
+fn rings(polygon: &Polygon) -> impl Iterator<Item = &[DVec2]> {
+    polygon.rings().map(Vec::as_slice)
 }
 
 /// A line as an outer ring, without repeating its first vertex; `None` where fewer than three remain.

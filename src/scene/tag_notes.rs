@@ -55,6 +55,19 @@ impl TagNotes {
         }
     }
 
+    /// Counts what was counted of later features as well.
+    pub fn append(&mut self, later: Self) {
+        for (key, TaggedFeatures { count, texts }) in later.counts {
+            let features = self.counts.entry(key).or_default();
+            features.count += count;
+            for text in texts {
+                if features.texts.len() <= MOST_TEXTS && !features.texts.contains(&text) {
+                    features.texts.push(text);
+                }
+            }
+        }
+    }
+
     /// The number within `limits` that the first of some properties means that means one; counts what is guessed at, and
     /// what is passed over.
     pub fn number(

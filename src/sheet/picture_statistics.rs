@@ -1,6 +1,8 @@
 //! Statistics of a picture before furniture covers it, for scripts: how much of it is ground, and how light.
 
-use sandtable_draw::color::lightness;
+use rayon::prelude::*;
+
+use sandtable_draw::color::{Srgba, lightness};
 use sandtable_draw::list::FeatureId;
 use sandtable_render::picture::Rendering;
 
@@ -31,16 +33,28 @@ pub struct Lightness {
 /// Steps of lightness that are told apart: a hundredth of L*.
 const STEPS: usize = 10_001;
 
+/// The pixels that a thread measures in one go, with a histogram of their own.
+const PORTION: usize = 1 << 16;
+
 impl PictureStatistics {
     /// Measures a picture.
     pub fn new(picture: &Rendering) -> Self {
         let count = picture.features.len().max(1) as f64;
-        let filled = picture.features.iter().filter(|&&feature| feature != FeatureId::NONE).count();
-        let mut histogram = vec![0u64; STEPS];
-        let pixels = picture.pixels.data().iter().zip(&picture.features);
-        for (color, _) in pixels.filter(|&(_, &feature)| feature == FeatureId::GROUND) {
-            histogram[(lightness(color.linear()) * 100.0).round() as usize] += 1;
-        }
+        let filled = picture.features.par_iter().filter(|&&feature| feature != FeatureId::NONE).count();
+        let of_ground = |(colors, features): (&[Srgba], &[FeatureId])| {
+            let mut histogram = vec![0u64; STEPS];
+            let pixels = colors.iter().zip(features);
+            for (color, _) in pixels.filter(|&(_, &feature)| feature == FeatureId::GROUND) {
+                histogram[(lightness(color.linear()) * 100.0).round() as usize] += 1;
+            }
+            histogram
+        };
+        let sum = |mut histogram: Vec<u64>, other: Vec<u64>| {
+            histogram.iter_mut().zip(other).for_each(|(count, more)| *count += more);
+            histogram
+        };
+        let portions = picture.pixels.data().par_chunks(PORTION).zip(picture.features.par_chunks(PORTION));
+        let histogram = portions.map(of_ground).reduce_with(sum).unwrap_or_default();
         let ground: u64 = histogram.iter().sum();
         Self {
             filled: filled as f64 / count,
@@ -79,7 +93,6 @@ impl Lightness {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_draw::color::Srgba;
     use sandtable_draw::pixels::Pixels;
 
     #[test]

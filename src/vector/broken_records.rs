@@ -26,6 +26,14 @@ impl BrokenRecords {
         self.first.get_or_insert(error);
     }
 
+    /// Adds those of a later part of the file.
+    pub fn append(&mut self, later: Self) {
+        self.count += later.count;
+        self.texts.extend(later.texts);
+        self.texts.truncate(MOST_TEXTS);
+        self.first = self.first.take().or(later.first);
+    }
+
     pub fn count(&self) -> usize {
         self.count
     }

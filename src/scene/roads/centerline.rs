@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
-use crate::attributes::Attributes;
+use crate::attributes::{Attributes, DefaultCounts};
 use crate::builder::SceneBuilder;
 use crate::feature::FeatureKind;
 use crate::meant_number::Meaning;
@@ -29,6 +30,9 @@ use sandtable_ribbon::texture::{RibbonSurface, texture_length_m};
 
 /// How far from the ground a centerline may run whose road still reaches it, in meters.
 const REACH_M: f64 = 1000.0;
+
+/// The roads of which a thread reads the keys in one go.
+const ROADS: usize = 64;
 
 /// A road, or the part of one that has one support.
 #[derive(Clone, Debug)]
@@ -66,9 +70,11 @@ pub fn collect(
         let widths_m = lines.first().and_then(|line| near::widths_m(road.widths.as_deref(), &line.shape));
         let named =
             FeatureTable { kind: FeatureKind::Road, name: road.name.as_deref(), source: &road.source };
-        for (attributes, line) in near::lines(lines, extent, REACH_M, &named, &mut collected.findings) {
-            let mut centerline = centerline(road, attributes, line, collected);
-            centerline.table = table;
+        let near = near::lines(lines, extent, REACH_M, &named, &mut collected.findings);
+        let read = |(attributes, line)| ReadRoad::new((table, road), attributes, line);
+        let read: Vec<ReadRoad> = near.into_par_iter().with_min_len(ROADS).map(read).collect();
+        for read in read {
+            let mut centerline = read.add(road, collected);
             if road.profile == ProfileMode::Own {
                 centerline.own_levels = own_levels(&centerline, sources);
                 without_levels += usize::from(centerline.own_levels.is_none());
@@ -117,41 +123,47 @@ impl Centerline {
     }
 }
 
-/// A road line with what its table says of it; the first table's.
-fn centerline(
-    road: &RoadTable,
-    attributes: Attributes,
-    line: Polyline,
-    collected: &mut SceneBuilder,
-) -> Centerline {
-    let word = attributes.value_or_default(&road.surface);
-    let surface = surface(word, attributes.value_or_default(&road.markings));
-    let width_m = attributes.number(&road.width, &mut collected.default_counts);
-    let shoulder_m = attributes.number(&road.shoulder, &mut collected.default_counts);
-    let support = support(road, &attributes);
-    let street = Street {
-        alignment: Alignment { support, ..Alignment::on_ground(line, width_m) },
-        width_m,
-        options: StrokeOptions {
-            join: road.join,
-            miter_limit: road.miter_limit,
-            ..StrokeOptions::of(surface, width_m)
-        },
-        level: level(road, &attributes, support, &mut collected.tag_notes),
-        surface,
-    };
-    Centerline {
-        street,
-        shoulder_m,
-        deck: None,
-        feature: collected.add(
-            FeatureKind::Road,
-            attributes.name(road.name.as_deref()),
-            attributes.origin(&road.source),
-        ),
-        table: 0,
-        attributes,
-        own_levels: None,
+/// A road line with what its table says of it, before it is a feature.
+struct ReadRoad {
+    centerline: Centerline,
+    default_counts: DefaultCounts,
+    tag_notes: TagNotes,
+}
+
+impl ReadRoad {
+    /// Evaluates what a table, the document's `table`-th, says of a road line.
+    fn new((table, road): (usize, &RoadTable), attributes: Attributes, line: Polyline) -> Self {
+        let (mut default_counts, mut tag_notes) = (DefaultCounts::new(), TagNotes::default());
+        let word = attributes.value_or_default(&road.surface);
+        let surface = surface(word, attributes.value_or_default(&road.markings));
+        let width_m = attributes.number(&road.width, &mut default_counts);
+        let shoulder_m = attributes.number(&road.shoulder, &mut default_counts);
+        let support = support(road, &attributes);
+        let street = Street {
+            alignment: Alignment { support, ..Alignment::on_ground(line, width_m) },
+            width_m,
+            options: StrokeOptions {
+                join: road.join,
+                miter_limit: road.miter_limit,
+                ..StrokeOptions::of(surface, width_m)
+            },
+            level: level(road, &attributes, support, &mut tag_notes),
+            surface,
+        };
+        let (deck, feature, own_levels) = (None, FeatureId::NONE, None);
+        let centerline = Centerline { street, shoulder_m, deck, feature, table, attributes, own_levels };
+        Self { centerline, default_counts, tag_notes }
+    }
+
+    /// Makes it a feature.
+    fn add(self, road: &RoadTable, collected: &mut SceneBuilder) -> Centerline {
+        for (key, count) in self.default_counts {
+            *collected.default_counts.entry(key).or_default() += count;
+        }
+        collected.tag_notes.append(self.tag_notes);
+        let attributes = &self.centerline.attributes;
+        let (name, origin) = (attributes.name(road.name.as_deref()), attributes.origin(&road.source));
+        Centerline { feature: collected.add(FeatureKind::Road, name, origin), ..self.centerline }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Overpasses: places where bridges pass over other lines.
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use sandtable_geom::leg_tree::{LegTree, LineLeg};
 use sandtable_geom::polyline::Polyline;
@@ -38,13 +39,13 @@ pub fn find(upper: &[&Street], lower: &[&Street]) -> Vec<Overpass> {
             .collect()
     };
     let below = LegTree::new(legs(lower));
-    let mut found = Vec::new();
-    for above in legs(upper) {
+    let crossed = |above: &LineLeg| -> Vec<Overpass> {
         let over = upper[above.line];
-        let near = below.near(&above).into_iter().map(|index| &below.legs()[index]);
+        let near = below.near(above).into_iter().map(|index| &below.legs()[index]);
         let lower_legs = near.filter(|leg| lower[leg.line].level < over.level);
-        found.extend(lower_legs.filter_map(|leg| cross(over, &above, lower[leg.line], leg)));
-    }
+        lower_legs.filter_map(|leg| cross(over, above, lower[leg.line], leg)).collect()
+    };
+    let mut found: Vec<Overpass> = legs(upper).par_iter().flat_map_iter(crossed).collect();
     found.sort_by(|a, b| {
         a.upper.cmp(&b.upper).then(a.upper_m.total_cmp(&b.upper_m)).then(a.lower.cmp(&b.lower))
     });

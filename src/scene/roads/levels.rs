@@ -7,6 +7,7 @@
 use std::collections::BTreeMap;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use crate::roads::centerline::Centerline;
 use crate::roads::chains::{ChainEnd, SpanChain};
@@ -98,7 +99,7 @@ pub fn settle(
     site: &Site<'_>,
 ) -> Vec<Option<ChainRun>> {
     let below = Below::new(spans, chains, roads, site);
-    let samples: Vec<Vec<ClearancePoint>> = chains.iter().map(|chain| sampled(chain, spans, site)).collect();
+    let samples: Vec<Vec<ClearancePoint>> = chains.par_iter().map(|chain| sampled(chain, spans, site)).collect();
     let meetings = meetings(&samples, &below);
     let mut order: Vec<usize> = (0..chains.len()).collect();
     order.sort_by_key(|&chain| {

@@ -31,20 +31,22 @@ const JUNCTION_TEXTURE_M: f64 = 15.0;
 /// Triangles of a junction smaller than this are what clipping left at a corner, in square meters.
 const NOTHING_M2: f64 = 1e-6;
 
+/// The streets whose joints a thread makes in one go.
+const STREETS: usize = 64;
+
 /// The surfaces of joints by the rank of their pavement, from the least.
 const JOINTS: [RibbonSurface; 3] =
     [RibbonSurface::TrackJunction, RibbonSurface::GravelJunction, RibbonSurface::AsphaltJunction];
 
 /// Lays the roads that the ground carries on it.
 pub fn lay(all: &[Centerline], extent: &Rect, collected: &mut SceneBuilder) {
-    collected
-        .symbols
-        .extend(all.iter().filter_map(|road| LineSymbol::of(&road.street, road.deck.as_ref(), road.feature)));
+    let symbol = |road: &Centerline| LineSymbol::of(&road.street, road.deck.as_ref(), road.feature);
+    collected.symbols.par_extend(all.par_iter().filter_map(symbol));
     let with_shoulders =
         |road: &Centerline| road.street.with_more(2.0 * road.shoulder_m, RibbonSurface::Shoulder);
-    let shouldered = all.iter().filter(|road| road.shoulder_m > 0.0);
-    let shoulders: Vec<Street> = shouldered.clone().map(with_shoulders).collect();
-    lay_strips(&shouldered.zip(&shoulders).collect::<Vec<_>>(), extent, collected);
+    let shouldered: Vec<&Centerline> = all.iter().filter(|road| road.shoulder_m > 0.0).collect();
+    let shoulders: Vec<Street> = shouldered.par_iter().map(|road| with_shoulders(road)).collect();
+    lay_strips(&shouldered.into_iter().zip(&shoulders).collect::<Vec<_>>(), extent, collected);
     let carriageways: Vec<_> = all.iter().map(|road| (road, &road.street)).collect();
     lay_strips(&carriageways, extent, collected);
 }
@@ -93,26 +95,27 @@ fn joints(
     network: &StreetNetwork,
     extent: &Rect,
 ) -> Vec<BTreeMap<u8, PlanMesh>> {
-    let mut joints: Vec<BTreeMap<u8, Clipped<'_>>> = Vec::new();
-    joints.resize_with(streets.len(), BTreeMap::new);
-    let mut add = |street: usize, rank: u8, outline: &[DVec2]| {
-        let empty = || Clipped { plan: PlanMesh::default(), extent };
-        write_convex(outline, joints[street].entry(rank).or_insert_with(empty));
-    };
-    for node in &network.nodes {
-        add(node.street, node.rank, &node.outline);
-    }
     // One road goes through a lesser one, or one of another level, that it crosses without a vertex.
     let class = |street: usize| (streets[street].surface.rank(), streets[street].level);
-    for crossing in crossings(ribbons, |one, other| class(one) == class(other), &network.nodes) {
+    let crossings = crossings(ribbons, |one, other| class(one) == class(other), &network.nodes);
+    let mut outlines: Vec<Vec<(u8, &[DVec2])>> = vec![Vec::new(); streets.len()];
+    for node in &network.nodes {
+        outlines[node.street].push((node.rank, &node.outline));
+    }
+    for crossing in &crossings {
         let [one, other] = crossing.ribbons;
         let wider = if streets[other].width_m > streets[one].width_m { other } else { one };
-        add(wider, streets[wider].surface.rank(), &crossing.outline);
+        outlines[wider].push((streets[wider].surface.rank(), &crossing.outline));
     }
-    let plans = |joints: BTreeMap<u8, Clipped<'_>>| {
+    let plans = |outlines: Vec<(u8, &[DVec2])>| {
+        let mut joints: BTreeMap<u8, Clipped<'_>> = BTreeMap::new();
+        for (rank, outline) in outlines {
+            let empty = || Clipped { plan: PlanMesh::default(), extent };
+            write_convex(outline, joints.entry(rank).or_insert_with(empty));
+        }
         joints.into_iter().map(|(rank, joint)| (rank, joint.plan)).collect()
     };
-    joints.into_iter().map(plans).collect()
+    outlines.into_par_iter().with_min_len(STREETS).map(plans).collect()
 }
 
 fn write_convex(outline: &[DVec2], sink: &mut impl MeshSink<PlanVertex>) {

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use rayon::prelude::*;
+
 use crate::builder::SceneBuilder;
 use crate::feature::FeatureKind;
 use crate::feature_origin::FeatureOrigin;
@@ -78,9 +80,10 @@ pub fn collect(
     extent: &Rect,
     collected: &mut SceneBuilder,
 ) -> Result<Vec<RoadSpan>, Diagnostic> {
+    let so_far = &*collected;
     let span =
-        |(index, road)| Some(RoadSpan { road: Some(index), ..road_span(document, road, extent, collected)? });
-    let mut all: Vec<RoadSpan> = roads.iter().enumerate().filter_map(span).collect();
+        |(index, road)| Some(RoadSpan { road: Some(index), ..road_span(document, road, extent, so_far)? });
+    let mut all: Vec<RoadSpan> = roads.par_iter().enumerate().filter_map(span).collect();
     all.extend(table_spans(document, sources, extent, collected)?);
     find_continuations(&mut all, roads);
     Ok(all)

@@ -87,6 +87,12 @@ pub(super) struct OsmData {
     bytes: usize,
 }
 
+/// The bytes that a text takes, with two handles and an entry of the map.
+fn text_bytes(text: &str) -> usize {
+    const HANDLES: usize = 64;
+    text.len() + HANDLES
+}
+
 impl OsmNode {
     pub fn degrees(self) -> (f64, f64) {
         (f64::from(self.longitude) / UNITS_PER_DEGREE, f64::from(self.latitude) / UNITS_PER_DEGREE)
@@ -97,12 +103,10 @@ impl OsmNode {
 impl OsmData {
     /// Returns the index of a text, which is added where it is new.
     pub fn text(&mut self, text: &str) -> Result<TextId, OsmMemoryExceeded> {
-        /// Bytes that a text takes beyond its own: two handles and an entry of the map.
-        const TEXT_BYTES: usize = 64;
         if let Some(&known) = self.text_ids.get(text) {
             return Ok(known);
         }
-        self.charge(text.len() + TEXT_BYTES)?;
+        self.charge(text_bytes(text))?;
         let id = TextId(self.texts.len() as u32);
         let text: Arc<str> = text.into();
         self.texts.push(Arc::clone(&text));
@@ -131,6 +135,28 @@ impl OsmData {
         let content = size_of_val(&*relation.members) + size_of_val(&*relation.tags);
         self.charge(size_of::<OsmRelation>() + 2 * ALLOCATION_BYTES + content)?;
         self.relations.push(relation);
+        Ok(())
+    }
+
+    /// Adds all that the next block of the same file holds: blocks mark nothing as deleted, and have no encoding of their own.
+    pub fn append(&mut self, block: Self) -> Result<(), OsmMemoryExceeded> {
+        let Self { mut nodes, mut tagged_nodes, mut ways, mut relations, .. } = block;
+        let texts: usize = block.texts.iter().map(|text| text_bytes(text)).sum();
+        self.charge(block.bytes - texts)?;
+        let ids = block.texts.iter().map(|text| self.text(text)).collect::<Result<Vec<_>, _>>()?;
+        let renumber = |tags: &mut OsmTags| {
+            for id in tags.iter_mut().flat_map(|(key, value)| [key, value]) {
+                *id = ids[id.0 as usize];
+            }
+        };
+        tagged_nodes.iter_mut().for_each(|(_, tags)| renumber(tags));
+        ways.iter_mut().for_each(|way| renumber(&mut way.tags));
+        relations.iter_mut().for_each(|relation| renumber(&mut relation.tags));
+        self.nodes.append(&mut nodes);
+        self.tagged_nodes.append(&mut tagged_nodes);
+        self.ways.append(&mut ways);
+        self.relations.append(&mut relations);
+        self.broken.append(block.broken);
         Ok(())
     }
 

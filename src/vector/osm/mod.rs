@@ -28,6 +28,8 @@ mod pbf;
 mod protobuf;
 mod xml;
 
+use rayon::prelude::*;
+
 use crate::builder::{FeatureParts, LayerBuilder, position};
 use crate::error::{VectorError, shorten};
 use crate::feature::{Properties, VectorLayer};
@@ -194,14 +196,19 @@ impl OsmLayer {
         }
     }
 
-    fn add_lines(self, data: &OsmData, layer: &mut LayerBuilder) {
+    fn add_lines<'a>(self, data: &'a OsmData, layer: &mut LayerBuilder) {
         let (mut cut, mut outside) = (RecordTally::new(), RecordTally::new());
-        for way in data.ways.iter().filter(|way| self.holds(data, &way.tags) && !is_area(data, way)) {
-            let place = || named_place(data, "way", way.id, &way.tags);
+        let line = |way: &'a OsmWay| {
             let mut parts = FeatureParts::default();
             let OsmRuns { runs, is_whole } = data.runs(&way.refs);
             let lines = runs.into_iter().filter(|run| is_whole || run.len() > 1);
             lines.for_each(|run| parts.add_line(run));
+            (way, parts, is_whole, properties(data, &way.tags, "osm_id", way.id))
+        };
+        let is_line = |way: &&OsmWay| self.holds(data, &way.tags) && !is_area(data, way);
+        let lines: Vec<_> = data.ways.par_iter().filter(is_line).map(line).collect();
+        for (way, parts, is_whole, properties) in lines {
+            let place = || named_place(data, "way", way.id, &way.tags);
             if !is_whole && parts.is_empty() {
                 outside.add(place);
                 continue;
@@ -209,7 +216,7 @@ impl OsmLayer {
             if !is_whole {
                 cut.add(place);
             }
-            layer.add_at(parts, properties(data, &way.tags, "osm_id", way.id), place);
+            layer.add_at(parts, properties, place);
         }
         if let Some(text) = cut.text("way that leaves the extract", "ways that leave the extract") {
             layer.note(format!("{text}: only the parts within it are there, and each is a line of its own"));
@@ -221,7 +228,7 @@ impl OsmLayer {
         );
     }
 
-    fn add_areas(self, data: &OsmData, layer: &mut LayerBuilder) -> Result<(), VectorError> {
+    fn add_areas<'a>(self, data: &'a OsmData, layer: &mut LayerBuilder) -> Result<(), VectorError> {
         let mut assembler = AreaAssembler::new(data);
         let (mut open, mut cut) = (RecordTally::new(), RecordTally::new());
         let is_area_relation = |relation: &&OsmRelation| {
@@ -243,19 +250,23 @@ impl OsmLayer {
                 None => open.add(place),
             }
         }
-        for way in data.ways.iter().filter(|way| self.holds(data, &way.tags) && is_area(data, way)) {
-            if assembler.replaces(way) {
-                continue;
-            }
+        let outline = |way: &'a OsmWay| {
+            (way, data.positions(&way.refs), properties(data, &way.tags, "osm_way_id", way.id))
+        };
+        let is_own_area = |way: &&OsmWay| {
+            self.holds(data, &way.tags) && is_area(data, way) && !assembler.replaces(way)
+        };
+        let outlines: Vec<_> = data.ways.par_iter().filter(is_own_area).map(outline).collect();
+        for (way, ring, properties) in outlines {
             let place = || named_place(data, "way", way.id, &way.tags);
             // An outline with a gap encloses something else.
-            let Some(ring) = data.positions(&way.refs) else {
+            let Some(ring) = ring else {
                 cut.add(place);
                 continue;
             };
             let mut parts = FeatureParts::default();
             parts.add_polygon([ring]);
-            layer.add_at(parts, properties(data, &way.tags, "osm_way_id", way.id), place);
+            layer.add_at(parts, properties, place);
         }
         layer.note_omitted(
             &open,

@@ -1,0 +1,95 @@
+//! OpenStreetMap extracts that are read, and layers that are made of them, while the elevation is read.
+//!
+//! Only files on the disk whose names say that they are extracts are read: of others more may be read than is taken of them.
+//! What cannot be read is left out, so that [`Sources`](crate::sources::Sources) reads it again and reports the error where
+//! the scene file names it.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use crate::assets::Assets;
+use crate::layer_key::{LayerKey, layer_key};
+use sandtable_description::document::Document;
+use sandtable_description::feature_source::FeatureSource;
+use sandtable_remote::address::is_address;
+use sandtable_vector::feature::VectorLayer;
+use sandtable_vector::hints::VectorHints;
+use sandtable_vector::read::LayeredFile;
+
+/// Files that were read, with the layers that a document takes of them.
+#[derive(Default)]
+pub struct ReadAhead {
+    /// By name.
+    pub(super) files: BTreeMap<String, LayeredFile>,
+    /// The layers of these.
+    pub(super) layers: BTreeMap<LayerKey, VectorLayer>,
+}
+
+/// The layers that a document takes of one file.
+type WantedLayers<'a> = BTreeMap<LayerKey, Cow<'a, FeatureSource>>;
+
+impl ReadAhead {
+    /// Reads the extracts that the tables of a document name.
+    pub fn of(document: &Document, assets: &Assets) -> Self {
+        let files: Vec<(String, WantedLayers<'_>)> = extracts(document, assets).into_iter().collect();
+        let read: Vec<Self> = files.into_par_iter().filter_map(|(name, wanted)| read(&name, &wanted, assets)).collect();
+        let mut all = Self::default();
+        for Self { files, layers } in read {
+            all.files.extend(files);
+            all.layers.extend(layers);
+        }
+        all
+    }
+}
+
+/// The extracts that a document names.
+fn extracts<'a>(document: &'a Document, assets: &Assets) -> BTreeMap<String, WantedLayers<'a>> {
+    let mut files: BTreeMap<String, WantedLayers<'_>> = BTreeMap::new();
+    for source in sources(document) {
+        let Some(file) = source.file.as_ref().filter(|file| is_extract(file)) else { continue };
+        if assets.given().layer(file).is_none() {
+            let (name, key) = (file.to_string(), layer_key(file, &source));
+            files.entry(name).or_default().entry(key).or_insert(source);
+        }
+    }
+    files
+}
+
+/// The sources of the tables that shape the ground, lie on it or name what does.
+fn sources(document: &Document) -> impl Iterator<Item = Cow<'_, FeatureSource>> {
+    let water = document.rivers.iter().map(|table| &table.source);
+    let water = water.chain(document.coasts.iter().map(|table| &table.source));
+    let water = water.chain(document.lakes.iter().map(|table| &table.source));
+    let ways = document.roads.iter().map(|table| &table.source);
+    let ways = ways.chain(document.bridges.iter().map(|table| &table.source));
+    let ways = ways.chain(document.fences.iter().map(|table| &table.source));
+    let areas = document.areas.iter().map(|table| &table.source);
+    let areas = areas.chain(document.buildings.iter().map(|table| &table.source));
+    let labels = document.labels.iter().filter_map(|table| table.source());
+    water.chain(ways).chain(areas).map(Cow::Borrowed).chain(labels.map(Cow::Owned))
+}
+
+/// Whether a name is that of an OpenStreetMap extract on the disk.
+fn is_extract(name: &str) -> bool {
+    let name = name.to_ascii_lowercase();
+    [".osm", ".pbf"].iter().any(|extension| name.ends_with(extension)) && !is_address(&name)
+}
+
+/// Reads a file and makes the layers that are wanted of it; `None` where it cannot be read.
+fn read(name: &str, wanted: &WantedLayers<'_>, assets: &Assets) -> Option<ReadAhead> {
+    let bytes = assets.read(name).ok()?;
+    let (_, first) = wanted.first_key_value()?;
+    let file = LayeredFile::read(name, &bytes, &hints(first))?.ok()?;
+    let wanted: Vec<(&LayerKey, &FeatureSource)> = wanted.iter().map(|(key, source)| (key, &**source)).collect();
+    let layer = |(key, source): (&LayerKey, &FeatureSource)| Some((key.clone(), file.layer(&hints(source)).ok()?));
+    let layers = wanted.into_par_iter().filter_map(layer).collect();
+    Some(ReadAhead { files: BTreeMap::from([(name.to_owned(), file)]), layers })
+}
+
+/// What a source states of its file, of which an extract has no companions and states no system.
+fn hints(source: &FeatureSource) -> VectorHints<'_> {
+    let layer = source.layer.as_ref().map(|name| name.as_str());
+    VectorHints { crs: source.crs.as_ref(), layer, ..VectorHints::default() }
+}
