@@ -10,20 +10,21 @@ const KEPT: usize = 240;
 pub struct FrameTime {
     /// Refining the ground and cutting its draped features.
     pub update_ms: f32,
-    /// Handing over what changed.
+    /// Handing over what changed, while the next frame is made.
     pub upload_ms: f32,
-    /// Recording and presenting the picture; without a window, waiting until the one before is drawn.
+    /// Recording, sending and presenting the picture, while the next frame is made; without a window, with waiting until the one
+    /// before is drawn.
     pub draw_ms: f32,
     /// Laying out the panels and the labels.
     pub panels_ms: f32,
-    /// Waiting until the frame before is sent, where the adapter is a processor.
+    /// Waiting until the frame before is handed over and sent, and for the window's surface.
     pub wait_ms: f32,
 }
 
 impl FrameTime {
-    /// All of it.
+    /// The time from frame to frame: what the thread that draws does meanwhile counts as far as it is waited for.
     pub fn total_ms(&self) -> f32 {
-        self.update_ms + self.upload_ms + self.draw_ms + self.panels_ms + self.wait_ms
+        self.panels_ms + self.update_ms + self.wait_ms
     }
 }
 
@@ -99,7 +100,7 @@ mod tests {
     fn only_the_last_seconds_count() {
         let mut times = FrameTimes::default();
         for frame in 0..1_000u16 {
-            times.add(FrameTime { draw_ms: f32::from(frame), ..FrameTime::default() }, FrameLoad::default());
+            times.add(FrameTime { wait_ms: f32::from(frame), ..FrameTime::default() }, FrameLoad::default());
         }
         assert_eq!(times.times().count(), KEPT);
         assert_eq!(times.percentile_ms(0.0, FrameTime::total_ms), 760.0);

@@ -5,8 +5,10 @@ use std::sync::Arc;
 use winit::event_loop::ActiveEventLoop;
 use winit::window::Window;
 
+use crate::app::ViewerApp;
 use crate::error::ViewerError;
-use crate::frame_graphics::{FrameGraphics, PaintedPanels, PanelTarget};
+use crate::frame_drawer::{DrawnFrame, LaidFrame, PanelTarget};
+use crate::frame_graphics::FrameGraphics;
 use sandtable_gpu::adapter::Gpu;
 
 /// How often in turn a surface may fail to fit its window before that is an error: more than a second of frames.
@@ -24,10 +26,10 @@ pub struct WindowGraphics {
     failed_configurations: u32,
 }
 
-/// The outcome of presenting a frame.
+/// Whether a frame is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FramePresented {
-    /// It is on the screen.
+    /// It is shown on the screen.
     Yes,
     /// Nothing can be seen now; the next event tries again.
     Hidden,
@@ -74,16 +76,19 @@ impl WindowGraphics {
         Ok(Self { window, instance, frames, surface, configuration, failed_configurations: 0 })
     }
 
-    /// Follows the window's size; of a minimized window, whose size is 0, it keeps the last.
-    pub fn resize(&mut self, (width, height): (u32, u32)) {
+    /// Follows the window's size; of a minimized window, whose size is 0, it keeps the last. Returns the frame that it had to
+    /// wait for.
+    pub fn resize(&mut self, (width, height): (u32, u32), app: &mut ViewerApp) -> Option<DrawnFrame> {
         if width == 0 || height == 0 {
-            return;
+            return None;
         }
         let longest = self.frames.longest_side();
         self.configuration.width = width.min(longest);
         self.configuration.height = height.min(longest);
         // What fails now is done by the next frame; so is what was sent.
-        let _ = self.frames.finish_sending().and_then(|()| self.configure());
+        let drawn = self.frames.finish(app).ok()?;
+        let _ = self.configure();
+        drawn
     }
 
     /// Whether a frame is of the size that the panels are laid out for.
@@ -112,50 +117,35 @@ impl WindowGraphics {
         }
     }
 
-    /// Paints the panels on the surface, after the commands of `before`, and presents it.
-    ///
-    /// # Errors
-    /// [`ViewerError::Adapter`] where the surface cannot be made anew.
-    pub fn present(
-        &mut self,
-        mut before: wgpu::CommandEncoder,
-        mut panels: PaintedPanels,
-    ) -> Result<FramePresented, ViewerError> {
-        self.frames.take_textures(&panels);
-        let presented = self.paint(&mut before, &panels);
-        self.frames.free_textures(&mut panels);
-        let (presented, frame, commands) = presented?;
-        let commands = commands.into_iter().chain([before.finish()]).collect();
-        if frame.is_some() {
+    /// Draws a frame, presents it on `surface`, where it is seen, and returns while that is done.
+    pub fn present(&mut self, app: &mut ViewerApp, frame: LaidFrame, surface: Option<wgpu::SurfaceTexture>) {
+        let size = (self.configuration.width, self.configuration.height);
+        let target = surface.as_ref().map(|surface| {
+            let view = surface.texture.create_view(&wgpu::TextureViewDescriptor::default());
+            PanelTarget { view, size }
+        });
+        if surface.is_some() {
             self.window.pre_present_notify();
         }
         let present = |gpu: &Gpu, _| {
-            frame.into_iter().for_each(|frame| gpu.queue().present(frame));
+            surface.into_iter().for_each(|surface| gpu.queue().present(surface));
             Ok(())
         };
-        self.frames.send(commands, Box::new(present))?;
-        Ok(presented)
+        self.frames.draw(app, frame, (target, Box::new(present)));
     }
 
-    #[allow(clippy::type_complexity, reason = "the three parts of a frame that is on its way")]
-    fn paint(
-        &mut self,
-        encoder: &mut wgpu::CommandEncoder,
-        panels: &PaintedPanels,
-    ) -> Result<(FramePresented, Option<wgpu::SurfaceTexture>, Vec<wgpu::CommandBuffer>), ViewerError> {
+    /// Waits for the texture of the surface that the next frame is shown on; there is none where nothing is seen. The frame
+    /// before is to be finished.
+    ///
+    /// # Errors
+    /// [`ViewerError::Adapter`] where the surface cannot be made anew.
+    pub fn acquire(&mut self) -> Result<(FramePresented, Option<wgpu::SurfaceTexture>), ViewerError> {
         use wgpu::CurrentSurfaceTexture as Current;
-        let (frame, presented) = match self.surface.get_current_texture() {
-            Current::Success(frame) if self.fits(&frame) => (frame, FramePresented::Yes),
-            Current::Success(frame) | Current::Suboptimal(frame) => {
-                drop(frame);
-                self.configure()?;
-                return Ok((FramePresented::Again, None, Vec::new()));
-            }
-            Current::Timeout | Current::Occluded => return Ok((FramePresented::Hidden, None, Vec::new())),
-            Current::Outdated | Current::Validation => {
-                self.configure()?;
-                return Ok((FramePresented::Again, None, Vec::new()));
-            }
+        match self.surface.get_current_texture() {
+            Current::Success(frame) if self.fits(&frame) => return Ok((FramePresented::Yes, Some(frame))),
+            Current::Success(frame) | Current::Suboptimal(frame) => drop(frame),
+            Current::Timeout | Current::Occluded => return Ok((FramePresented::Hidden, None)),
+            Current::Outdated | Current::Validation => {}
             Current::Lost => {
                 let surface = self.instance.create_surface(Arc::clone(&self.window));
                 let failed = |error: wgpu::CreateSurfaceError| ViewerError::Adapter {
@@ -163,13 +153,9 @@ impl WindowGraphics {
                     cause: error.to_string(),
                 };
                 self.surface = surface.map_err(failed)?;
-                self.configure()?;
-                return Ok((FramePresented::Again, None, Vec::new()));
             }
-        };
-        let size = (self.configuration.width, self.configuration.height);
-        let view = frame.texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let commands = self.frames.paint(encoder, panels, PanelTarget { view: &view, size });
-        Ok((presented, Some(frame), commands))
+        }
+        self.configure()?;
+        Ok((FramePresented::Again, None))
     }
 }

@@ -8,7 +8,8 @@
 //!   │                         │                                   pictures; reaching: nested spheres; paging: terrain on
 //!   │                         │                                   disk; disk_answers: its heights; analyzing: what a user
 //!   │                         │                                   tries; all of them: worker
-//!   └─────► graphics ◄── changes of the ground, camera         wgpu: the surface, the scene, the panels over it
+//!   └─────► graphics ◄── changes of the ground, camera         wgpu: the surface, the scene, the panels over it, drawn on a
+//!                                                              thread while the next frame is made
 //! ```
 //!
 //! `app` is all of the window but its surface: `show` draws panels and takes input, `advance` moves the camera and asks the
@@ -30,8 +31,9 @@ mod drawn_size;
 pub mod error;
 mod finer_ground;
 mod following;
+mod frame_drawer;
 mod frame_graphics;
-mod frame_sending;
+mod frame_thread;
 mod frame_times;
 mod ghost;
 mod graphics;

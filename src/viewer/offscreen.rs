@@ -12,8 +12,8 @@ use egui::{Context, Pos2, RawInput, Rect};
 
 use crate::app::{ViewerApp, ViewerStage, WindowRequest};
 use crate::error::ViewerError;
-use crate::frame_graphics::{FrameGraphics, PaintedPanels, PanelTarget, RecordedFrame};
-use crate::frame_times::FrameTime;
+use crate::frame_drawer::{AfterSending, PanelTarget};
+use crate::frame_graphics::{FrameGraphics, MadeFrame};
 use crate::picture_paint::blended_format;
 use crate::scene_graphics::milliseconds;
 use crate::script_run::{FRAME_S, ScriptRun};
@@ -53,7 +53,7 @@ pub fn run(options: &ViewerOptions, size: (u32, u32), script: &Path) -> Result<(
     let mut view =
         OffscreenView { app, script, context, frames, timer, target, before: Arc::default(), shown: 0 };
     while !view.draw()? {}
-    view.frames.finish_sending()?;
+    view.finish()?;
     if view.app.stage() == ViewerStage::Failed {
         return Err(ViewerError::File(view.app.failure_text().to_owned()));
     }
@@ -80,8 +80,7 @@ struct OffscreenView {
 /// The texture that frames are drawn on.
 struct FrameTarget {
     texture: wgpu::Texture,
-    view: wgpu::TextureView,
-    size: (u32, u32),
+    panels: PanelTarget,
 }
 
 impl FrameTarget {
@@ -101,7 +100,7 @@ impl FrameTarget {
             view_formats: &[],
         });
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        Ok(Self { texture, view, size })
+        Ok(Self { texture, panels: PanelTarget { view, size } })
     }
 }
 
@@ -112,50 +111,37 @@ impl OffscreenView {
         self.script.note_begin(begun);
         self.script.step(&mut self.app);
         let input = self.input();
-        let RecordedFrame { encoder, drawn, requests, panels, .. } =
-            self.frames.record(&self.context, &mut self.app, input)?;
-        let painting = Instant::now();
-        self.submit(encoder, panels)?;
-        let draw_ms = milliseconds(painting);
-        let own_ms = milliseconds(begun) - drawn.map_or(0.0, |(time, _)| time.wait_ms);
-        if let Some((time, load)) = drawn {
-            let time = FrameTime { draw_ms: time.draw_ms + draw_ms, ..time };
-            self.app.frames.add(time, load);
-            self.frames.note_time(time.total_ms());
-            self.script.note_frame(time, load);
-            self.script.note_pipelines(self.frames.pipelines());
-        } else {
+        let MadeFrame { frame, before, requests, .. } =
+            self.frames.make(&self.context, &mut self.app, input)?;
+        let own_ms = milliseconds(begun) - frame.time.wait_ms;
+        self.script.note_frame(&frame, before.as_ref(), own_ms);
+        let has_scene = frame.scene.is_some();
+        let drawn = (Some(self.target.panels.clone()), self.after_sending());
+        self.frames.draw(&mut self.app, frame, drawn);
+        if !has_scene {
             thread::sleep(REST);
         }
         if let Some(timer) = &self.timer {
             timer.take().iter().for_each(|passes| self.script.note_passes(passes));
         }
-        self.script.note_window(own_ms);
         self.shown += 1;
         self.carry_out(requests)
     }
 
-    /// Paints the panels, and sends a frame to the adapter, which is then to have drawn the frame before.
-    fn submit(
-        &mut self,
-        mut encoder: wgpu::CommandEncoder,
-        mut panels: PaintedPanels,
-    ) -> Result<(), ViewerError> {
-        self.frames.take_textures(&panels);
-        let target = PanelTarget { view: &self.target.view, size: self.target.size };
-        let commands = self.frames.paint(&mut encoder, &panels, target);
-        self.frames.free_textures(&mut panels);
-        if let Some(timer) = &self.timer {
-            timer.finish(&mut encoder);
-        }
-        let commands = commands.into_iter().chain([encoder.finish()]).collect();
-        let (timer, before) = (self.timer.clone(), Arc::clone(&self.before));
-        let after = move |gpu: &Gpu, sent| {
-            timer.iter().for_each(|timer| timer.request());
+    /// Waits until the adapter has drawn the frame before, once one is sent.
+    fn after_sending(&self) -> AfterSending {
+        let before = Arc::clone(&self.before);
+        Box::new(move |gpu: &Gpu, sent| {
             let before = before.lock().unwrap_or_else(PoisonError::into_inner).replace(sent);
             before.map_or(Ok(()), |before| wait_for(gpu, before))
-        };
-        self.frames.send(commands, Box::new(after))
+        })
+    }
+
+    /// Waits until the frame that was begun last is sent.
+    fn finish(&mut self) -> Result<(), ViewerError> {
+        let drawn = self.frames.finish(&mut self.app)?;
+        drawn.iter().for_each(|drawn| self.script.note_drawn(drawn));
+        Ok(())
     }
 
     /// Carries out what the app and the script want of a window; returns whether it is to close.
@@ -168,7 +154,7 @@ impl OffscreenView {
                     self.target = FrameTarget::new(&self.frames, (width, height))?;
                 }
                 WindowRequest::Picture(path) => {
-                    self.frames.finish_sending()?;
+                    self.finish()?;
                     self.write(&path)?;
                 }
                 WindowRequest::Close => is_over = true,
@@ -188,7 +174,7 @@ impl OffscreenView {
 
     /// What a frame's panels take in: its size and its time.
     fn input(&self) -> RawInput {
-        let (width, height) = self.target.size;
+        let (width, height) = self.target.panels.size;
         RawInput {
             screen_rect: Some(Rect::from_min_size(Pos2::ZERO, egui::vec2(width as f32, height as f32))),
             max_texture_side: Some(self.frames.longest_side() as usize),

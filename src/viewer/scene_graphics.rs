@@ -6,7 +6,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::frame_graphics::FrameGraphics;
+use crate::frame_drawer::FrameDrawer;
 use crate::frame_times::{FrameLoad, FrameTime};
 use crate::opened::SceneFrame;
 use crate::picture_paint::PictureFit;
@@ -62,13 +62,13 @@ impl SceneGraphics {
         self.renderer.loader()
     }
 
-    /// Records the picture of a frame; returns what it took and what it showed.
+    /// Hands over what changed for a frame and records its picture; returns what these took and what is shown.
     ///
     /// # Errors
     /// See [`GpuError`].
     pub fn draw(
         &mut self,
-        graphics: &mut FrameGraphics,
+        drawer: &mut FrameDrawer,
         encoder: &mut wgpu::CommandEncoder,
         frame: &mut SceneFrame,
         options: &LiveOptions,
@@ -92,16 +92,11 @@ impl SceneGraphics {
         let drawing = Instant::now();
         let size = frame.drawn;
         let fit = if size == frame.camera.size() { PictureFit::Whole } else { PictureFit::Stretched };
-        let view = self.target(graphics, size, fit);
+        let view = self.target(drawer, size, fit);
         let detail = if fit == PictureFit::Whole { LiveDetail::Whole } else { LiveDetail::Moving };
         let options = LiveOptions { detail, ..*options };
         let drawn = self.renderer.draw(encoder, &view, size, &frame.camera.resized(size), &options)?;
-        let time = FrameTime {
-            update_ms: frame.update_ms,
-            upload_ms,
-            draw_ms: milliseconds(drawing),
-            ..FrameTime::default()
-        };
+        let time = FrameTime { upload_ms, draw_ms: milliseconds(drawing), ..FrameTime::default() };
         let load = FrameLoad {
             ground_triangles: frame.statistics.triangles,
             patches: frame.statistics.patches,
@@ -115,18 +110,13 @@ impl SceneGraphics {
         Ok((time, load))
     }
 
-    fn target(
-        &mut self,
-        graphics: &mut FrameGraphics,
-        size: (u32, u32),
-        fit: PictureFit,
-    ) -> wgpu::TextureView {
+    fn target(&mut self, drawer: &mut FrameDrawer, size: (u32, u32), fit: PictureFit) -> wgpu::TextureView {
         if let Some(picture) =
             self.picture.as_ref().filter(|picture| (picture.size, picture.fit) == (size, fit))
         {
             return picture.view.clone();
         }
-        let texture = graphics.gpu().device().create_texture(&wgpu::TextureDescriptor {
+        let texture = drawer.gpu().device().create_texture(&wgpu::TextureDescriptor {
             label: Some("picture of the scene"),
             size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
             mip_level_count: 1,
@@ -139,7 +129,7 @@ impl SceneGraphics {
         let seen_as = |format| {
             texture.create_view(&wgpu::TextureViewDescriptor { format: Some(format), ..Default::default() })
         };
-        graphics.show_picture(&seen_as(self.format), fit);
+        drawer.show_picture(&seen_as(self.format), fit);
         let view = seen_as(self.drawn);
         self.picture = Some(ScenePicture { view: view.clone(), size, fit });
         view

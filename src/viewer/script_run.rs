@@ -10,7 +10,8 @@ use serde_json::{Value, json};
 use crate::app::{ViewerApp, ViewerStage, WindowRequest};
 use crate::commands::ViewCommand;
 use crate::error::ViewerError;
-use crate::frame_times::{FrameLoad, FrameTime, percentile};
+use crate::frame_drawer::{DrawnFrame, LaidFrame};
+use crate::frame_times::{FrameTime, percentile};
 use crate::script::{ScriptCommand, parse_script};
 use sandtable_draw::list::FeatureId;
 use sandtable_editing::edit::{EarthworkDraft, SceneEdit};
@@ -62,7 +63,7 @@ pub struct ScriptRun {
 struct LongestFrame {
     /// From the begin of a frame to the begin of the next.
     gap_ms: f32,
-    /// What the window's thread did in a frame, but for waiting for the surface.
+    /// What the window's thread did in a frame, but for waiting for the one before and for the surface.
     own_ms: f32,
 }
 
@@ -124,24 +125,14 @@ impl ScriptRun {
         }
     }
 
-    /// Notes that a frame was shown, with a scene or without, for which the window's thread worked so long.
-    pub fn note_window(&mut self, own_ms: f32) {
+    /// Notes a frame that is made, for which the window's thread worked so long, and the one before, which is drawn.
+    pub fn note_frame(&mut self, made: &LaidFrame, before: Option<&DrawnFrame>, own_ms: f32) {
         self.first_window_s.get_or_insert(self.started.elapsed().as_secs_f64());
+        before.into_iter().for_each(|before| self.note_drawn(before));
+        self.frames += u32::from(made.scene.is_some());
         if self.begun.is_some() {
             self.longest.iter_mut().for_each(|longest| longest.own_ms = longest.own_ms.max(own_ms));
         }
-    }
-
-    /// Notes a frame of the scene.
-    pub fn note_frame(&mut self, time: FrameTime, load: FrameLoad) {
-        self.first_picture_s.get_or_insert(self.started.elapsed().as_secs_f64());
-        self.frames += 1;
-        self.times.push(time);
-        self.calls.push(load.calls as f32);
-        self.drawn_triangles.push(load.drawn_triangles as f32);
-        self.side_shares.push(load.side_share());
-        self.triangles = load.ground_triangles;
-        self.bytes += load.bytes;
     }
 
     /// Notes the times of the passes of a frame; of one without a scene, which has its panels alone, none.
@@ -155,9 +146,17 @@ impl ScriptRun {
         self.device.push(passes.iter().map(|pass| pass.ms).sum());
     }
 
-    /// Notes how many pipelines there are.
-    pub fn note_pipelines(&mut self, count: usize) {
-        self.pipelines = count;
+    /// Notes a frame that is drawn and sent.
+    pub fn note_drawn(&mut self, drawn: &DrawnFrame) {
+        let Some((time, load)) = drawn.scene else { return };
+        self.first_picture_s.get_or_insert(self.started.elapsed().as_secs_f64());
+        self.times.push(time);
+        self.calls.push(load.calls as f32);
+        self.drawn_triangles.push(load.drawn_triangles as f32);
+        self.side_shares.push(load.side_share());
+        self.triangles = load.ground_triangles;
+        self.bytes += load.bytes;
+        self.pipelines = drawn.pipelines;
     }
 
     /// Carries out what is due before the next frame.

@@ -16,7 +16,7 @@ use winit::window::{Fullscreen, Window, WindowId};
 
 use crate::app::{ViewerApp, WindowRequest};
 use crate::error::ViewerError;
-use crate::frame_graphics::RecordedFrame;
+use crate::frame_graphics::MadeFrame;
 use crate::graphics::{FramePresented, WindowGraphics};
 use crate::scene_graphics::milliseconds;
 use crate::script_run::{FRAME_S, ScriptRun};
@@ -74,6 +74,7 @@ pub fn run(options: &ViewerOptions) -> Result<(), ViewerError> {
         window.app.keep_step(FRAME_S);
     }
     event_loop.run_app(&mut window).map_err(no_display)?;
+    window.finish();
     if let Some(script) = window.script.as_ref().filter(|_| options.reports) {
         script.print_report(&window.app.adapter);
     }
@@ -149,7 +150,7 @@ impl ApplicationHandler<WindowNews> for ViewerWindow {
             return;
         }
         match ShownWindow::open(event_loop, &self.context, &self.proxy) {
-            Ok(mut shown) => {
+            Ok(shown) => {
                 self.app.adapter = shown.graphics.frames.name();
                 shown.graphics.frames.open_scene(&mut self.app);
                 shown.window.request_redraw();
@@ -182,7 +183,10 @@ impl ApplicationHandler<WindowNews> for ViewerWindow {
         let response = shown.input.on_window_event(&shown.window, &event);
         match event {
             WindowEvent::CloseRequested => self.app.ask_to_close(),
-            WindowEvent::Resized(size) => shown.graphics.resize((size.width, size.height)),
+            WindowEvent::Resized(size) => {
+                let drawn = shown.graphics.resize((size.width, size.height), &mut self.app);
+                self.script.iter_mut().zip(&drawn).for_each(|(script, drawn)| script.note_drawn(drawn));
+            }
             WindowEvent::RedrawRequested => {
                 self.due = None;
                 if let Err(error) = self.draw(event_loop) {
@@ -213,6 +217,17 @@ impl ApplicationHandler<WindowNews> for ViewerWindow {
 }
 
 impl ViewerWindow {
+    /// Waits for the last frame.
+    fn finish(&mut self) {
+        let Some(shown) = &mut self.shown else { return };
+        match shown.graphics.frames.finish(&mut self.app) {
+            Ok(drawn) => {
+                self.script.iter_mut().zip(&drawn).for_each(|(script, drawn)| script.note_drawn(drawn))
+            }
+            Err(error) => _ = self.failure.get_or_insert(error),
+        }
+    }
+
     fn fail(&mut self, event_loop: &ActiveEventLoop, error: ViewerError) {
         self.failure.get_or_insert(error);
         event_loop.exit();
@@ -239,23 +254,17 @@ impl ViewerWindow {
             self.context.request_repaint();
         }
         let input = shown.input.take_egui_input(&shown.window);
-        let RecordedFrame { encoder, drawn, requests, platform, panels } =
-            shown.graphics.frames.record(&self.context, &mut self.app, input)?;
+        let MadeFrame { mut frame, before, requests, platform } =
+            shown.graphics.frames.make(&self.context, &mut self.app, input)?;
         shown.input.handle_platform_output(&shown.window, platform);
-        let presenting = Instant::now();
-        let own_ms = milliseconds(begun) - drawn.map_or(0.0, |(time, _)| time.wait_ms);
-        let presented = shown.graphics.present(encoder, panels)?;
-        if let Some((mut time, load)) = drawn {
-            time.draw_ms += milliseconds(presenting);
-            self.app.frames.add(time, load);
-            shown.graphics.frames.note_time(time.total_ms());
-            if let Some(script) = &mut self.script {
-                script.note_frame(time, load);
-            }
-        }
+        let acquiring = Instant::now();
+        let (presented, surface) = shown.graphics.acquire()?;
+        frame.time.wait_ms += milliseconds(acquiring);
+        let own_ms = milliseconds(begun) - frame.time.wait_ms;
         if let Some(script) = &mut self.script {
-            script.note_window(own_ms);
+            script.note_frame(&frame, before.as_ref(), own_ms);
         }
+        shown.graphics.present(&mut self.app, frame, surface);
         for request in requests {
             match request {
                 WindowRequest::Title(title) => shown.window.set_title(&title),

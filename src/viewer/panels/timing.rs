@@ -9,14 +9,20 @@ const HEIGHT: f32 = 70.0;
 /// What the graph's top means at least: two frames of a screen with sixty a second.
 const LEAST_TOP_MS: f32 = 33.3;
 
-/// The parts of a frame, from the bottom of the graph up.
+/// A part of a frame by its name.
 type FramePart = (&'static str, Color32, fn(&FrameTime) -> f32);
 
-const PARTS: [FramePart; 4] = [
+/// The parts of which a frame consists, from the bottom of the graph up.
+const PARTS: [FramePart; 3] = [
     ("update", Color32::from_rgb(88, 166, 92), |time| time.update_ms),
+    ("panels", Color32::from_rgb(150, 120, 180), |time| time.panels_ms),
+    ("wait", Color32::from_rgb(120, 120, 120), |time| time.wait_ms),
+];
+
+/// The parts of its drawing, while the next frame is made.
+const MEANWHILE: [FramePart; 2] = [
     ("upload", Color32::from_rgb(224, 160, 48), |time| time.upload_ms),
     ("draw", Color32::from_rgb(74, 130, 200), |time| time.draw_ms),
-    ("panels", Color32::from_rgb(150, 120, 180), |time| time.panels_ms),
 ];
 
 /// Draws the graph, its legend with medians, and what the last frame showed.
@@ -42,7 +48,7 @@ pub fn timing_panel(ui: &mut Ui, frames: &FrameTimes) {
     }
     ui.label(summary);
     ui.horizontal_wrapped(|ui| {
-        for (name, color, part) in PARTS {
+        for (name, color, part) in PARTS.into_iter().chain(MEANWHILE) {
             ui.colored_label(color, format!("{name} {:.1} ms", frames.percentile_ms(0.5, part)));
         }
     });
@@ -69,14 +75,14 @@ mod tests {
         let mut frames = FrameTimes::default();
         for _ in 0..10 {
             let time =
-                FrameTime { update_ms: 1.0, upload_ms: 2.0, draw_ms: 4.0, panels_ms: 0.5, wait_ms: 0.0 };
+                FrameTime { update_ms: 1.0, upload_ms: 2.0, draw_ms: 4.0, panels_ms: 0.5, wait_ms: 5.5 };
             frames.add(time, FrameLoad { ground_triangles: 321, bytes: 4_200, ..FrameLoad::default() });
         }
         let harness = Harness::new_ui(|ui| timing_panel(ui, &frames));
-        for part in ["update 1.0 ms", "upload 2.0 ms", "draw 4.0 ms", "panels 0.5 ms"] {
+        for part in ["update 1.0 ms", "panels 0.5 ms", "wait 5.5 ms", "upload 2.0 ms", "draw 4.0 ms"] {
             harness.get_by_label(part);
         }
-        harness.get_by_label("7.5 ms a frame, 99 % within 7.5 ms");
+        harness.get_by_label("7.0 ms a frame, 99 % within 7.0 ms");
         harness.get_by_label_contains("321 triangles of ground");
         harness.get_by_label("0 patches changed, 4.2 kB sent");
     }
