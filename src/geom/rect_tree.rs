@@ -18,7 +18,7 @@ type NumberedRect = GeomWithData<Rectangle<[f64; 2]>, usize>;
 const STRIP: usize = 4096;
 
 /// The most strips: every one of them is looked at for every window.
-const MOST_STRIPS: usize = 64;
+const MOST_STRIPS: usize = 16;
 
 /// Rectangles in trees.
 #[derive(Clone, Debug)]
@@ -53,10 +53,12 @@ impl RectTree {
 
     /// The rectangles that meet a convex counter-clockwise polygon, each once, in an order of no meaning: of a slanted one far
     /// fewer than meet the rectangle around it.
-    pub fn meeting_convex(&self, polygon: &[DVec2]) -> impl Iterator<Item = usize> + use<'_> {
-        let near = NearConvex::new(polygon);
-        let near = move |strip| RTree::locate_with_selection_function(strip, near.clone());
-        self.strips.iter().flat_map(near).map(|entry| entry.data)
+    pub fn meeting_convex(&self, polygon: &[DVec2]) -> Vec<usize> {
+        let (near, mut found) = (NearConvex::new(polygon), Vec::new());
+        for strip in &self.strips {
+            found.extend(strip.locate_with_selection_function(&near).map(|entry| entry.data));
+        }
+        found
     }
 
     /// The rectangles that meet `window`, in ascending order.
@@ -68,7 +70,6 @@ impl RectTree {
 }
 
 /// Selects the rectangles that meet a convex polygon.
-#[derive(Clone)]
 struct NearConvex {
     bounds: Rect,
     /// For each side the direction in which the polygon lies of it, and how far in that direction the side is.
@@ -85,7 +86,7 @@ impl NearConvex {
     }
 }
 
-impl SelectionFunction<NumberedRect> for NearConvex {
+impl SelectionFunction<NumberedRect> for &NearConvex {
     fn should_unpack_parent(&self, envelope: &AABB<[f64; 2]>) -> bool {
         let [min, max] = [envelope.lower(), envelope.upper()].map(DVec2::from);
         // Outside a side lies all of a rectangle whose corner farthest inward does.
@@ -128,7 +129,7 @@ mod tests {
             let turned = |at: DVec2| (0..quarter).fold(at - 50.0, |at, _| at.perp()) + 50.0;
             let strip =
                 [(0.5, 0.45), (99.5, 99.45), (99.5, 99.5), (0.5, 0.5)].map(|at| turned(DVec2::from(at)));
-            let mut found: Vec<usize> = tree.meeting_convex(&strip).collect();
+            let mut found = tree.meeting_convex(&strip);
             found.sort_unstable();
             let corners = |rect: &Rect| {
                 let [min, max] = [rect.min, rect.max];
@@ -155,7 +156,8 @@ mod tests {
         assert_eq!(tree.strips.len(), 4);
         for corner in [0.0, 300.0, 700.0] {
             let window = Rect { min: DVec2::splat(corner), max: DVec2::splat(corner + 200.0) };
-            let expected: Vec<usize> = (0..rects.len()).filter(|&index| rects[index].meets(&window)).collect();
+            let expected: Vec<usize> =
+                (0..rects.len()).filter(|&index| rects[index].meets(&window)).collect();
             assert_eq!(tree.meeting_in_order(&window), expected);
         }
     }

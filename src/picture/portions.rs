@@ -45,7 +45,8 @@ mod tests {
                     made + 1
                 },
             );
-            let expected: Vec<usize> = items.iter().filter(|item| *item % 3 != 1).map(|item| item * 2 + 1).collect();
+            let expected: Vec<usize> =
+                items.iter().filter(|item| *item % 3 != 1).map(|item| item * 2 + 1).collect();
             assert_eq!((kept, calls), (expected.clone(), expected.len()));
         }
     }

@@ -37,7 +37,8 @@ pub fn apart<'a>(plans: impl IntoIterator<Item = &'a PlanMesh> + Clone) -> Vec<P
     let mut later = &rests[..];
     let with_rests = |plan: &'a PlanMesh| (plan, later.split_off(..plan.triangles.len()).unwrap_or_default());
     let each: Vec<(&PlanMesh, &[Rest])> = plans.into_iter().map(with_rests).collect();
-    let left = || each.into_par_iter().with_min_len(PLANS).map(|(plan, rests)| left_of(plan, rests)).collect();
+    let left =
+        || each.into_par_iter().with_min_len(PLANS).map(|(plan, rests)| left_of(plan, rests)).collect();
     let (left, ()) = rayon::join(left, || drop(covering));
     rests.into_par_iter().with_min_len(CHUNK).for_each(drop);
     left
@@ -119,7 +120,7 @@ impl Covering {
 
     /// The triangles whose rectangles meet a triangle, in ascending order.
     fn near(&self, corners: &[DVec2; 3]) -> Vec<usize> {
-        let mut near: Vec<usize> = self.tree.meeting_convex(corners).collect();
+        let mut near = self.tree.meeting_convex(corners);
         near.sort_unstable();
         near
     }
@@ -133,8 +134,8 @@ impl Covering {
     /// What no triangle before this one covers.
     fn rest(&self, triangle: usize, clip: &mut ConvexClip) -> Rest {
         let corners = &self.triangles[triangle];
-        let mut before: Vec<usize> =
-            self.tree.meeting_convex(corners).filter(|&other| other < triangle).collect();
+        let mut before = self.tree.meeting_convex(corners);
+        before.retain(|&other| other < triangle);
         if before.iter().any(|&other| cutting::covers(&self.triangles[other], corners)) {
             return Rest::Pieces(Vec::new());
         }

@@ -19,6 +19,7 @@ use crate::builder::SceneBuilder;
 use crate::buildings;
 use crate::climate::Climate;
 use crate::exact_ground::ExactGround;
+use crate::feature_labels;
 use crate::fences;
 use crate::finer_elevation::FinerElevation;
 use crate::font;
@@ -35,7 +36,7 @@ use crate::read_ahead::ReadAhead;
 use crate::relief_strength;
 use crate::roads::network;
 use crate::scene_model::SceneModel;
-use crate::shaped_ground::{shape, shape_loaded};
+use crate::shaped_ground::{ShapedFeatures, shape, shape_loaded};
 use crate::sources::Sources;
 use crate::spot_heights::spot_heights;
 use crate::style::{self, RampSource, Surroundings};
@@ -46,9 +47,11 @@ use crate::world_frame::WorldFrame;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::finding_code::FindingCode;
+use sandtable_description::words::Footing;
 use sandtable_geom::crs::Crs;
 use sandtable_roam::layout::{DEFAULT_PATCH, PatchLayout};
 use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::prominence::summits;
 use sandtable_terrain::query::deck::Deck;
 use sandtable_terrain::query::service::HeightService;
 use sandtable_terrain::query::source_raster::SourceRaster;
@@ -143,11 +146,18 @@ pub fn build_with(
     let mut collected = SceneBuilder::new(loaded.findings);
     let shaped = shape(document, &sources, &mut lattice, &mut collected);
     // What is wrong so far keeps the scene from being built; what follows is done to tell what else is.
+    let mut known_summits = None;
     if collected.errors.is_empty() {
-        network::lay(&shaped.roads, &lattice.extent(), &mut collected);
-        fences::set(&shaped.lines, frame.scale.ground(&lattice), &mut collected);
-        buildings::raise(document, &shaped.plots, frame.scale.ground(&lattice), &mut collected);
-        collected.resolve_overlaps();
+        let build = || {
+            network::lay(&shaped.roads, &lattice.extent(), &mut collected);
+            fences::set(&shaped.lines, frame.scale.ground(&lattice), &mut collected);
+            buildings::raise(document, &shaped.plots, frame.scale.ground(&lattice), &mut collected);
+            collected.resolve_overlaps();
+        };
+        // Pads of models move ground yet.
+        let is_final = document.models.iter().all(|model| *model.footing != Footing::Pad);
+        let needs_summits = is_final && feature_labels::need_summits(document);
+        ((), known_summits) = rayon::join(build, || needs_summits.then(|| summits(&lattice)));
     }
 
     progress("loading models");
@@ -160,7 +170,7 @@ pub fn build_with(
 
     graphics::lay(document, &sources, &lattice.extent(), &mut collected);
     let of_overlays = overlays::lay(&sources, &lattice, &mut collected);
-    let exact = ExactGround::new(&frame, &lattice, assets, loaded.all_samples)?;
+    let exact = ExactGround::new(&frame, &lattice, assets, loaded.all_samples)?.with_summits(known_summits);
     let sight = placed_sight::lay(&exact, &mut collected);
     let placed_analyses = analyses::place(&exact, &mut collected);
     let vehicles = analyses::vehicles(document, &mut collected.errors);
@@ -196,7 +206,9 @@ pub fn build_with(
         .for_each(|error| collected.findings.push(error));
     let overlaps = reaches.iter().map(|reach| reach.overlap(&lattice.extent())).collect();
     views::find_buried(document, &cameras, scale.ground(&lattice), &mut collected.findings);
-    let read = sources.into_read();
+    let ShapedFeatures { roads, plots, lines, held, dug } = shaped;
+    let barriers = fences::barriers(&lines);
+    let read = (sources.into_read(), roads, plots, lines);
     let (heights, ()) = rayon::join(
         || height_service(document, loaded.source, crs.clone(), Arc::clone(&lattice), &collected.decks),
         || drop(read),
@@ -245,13 +257,13 @@ pub fn build_with(
         wireframe: document.style.wireframe,
         layout,
         ground: OnceLock::new(),
-        held: Arc::new(shaped.held),
-        dug: shaped.dug,
+        held: Arc::new(held),
+        dug,
         ribbons: collected.ribbons,
         symbols: collected.symbols,
         graphics: collected.graphics,
         sight,
-        barriers: fences::barriers(&shaped.lines),
+        barriers,
         culverts: collected.culverts,
         vehicles,
         analyses: Vec::new(),

@@ -11,7 +11,7 @@
 //! pads or earthworks do, parts of it are built as nested grounds are; each reads the sources of the features again, so that
 //! heights in numbers have few of them.
 
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 
 use glam::{DVec2, Vec2};
 
@@ -31,6 +31,7 @@ use sandtable_description::words::{BaseRule, FenceKind, Footing, ProfileMode};
 use sandtable_geom::rect::Rect;
 use sandtable_raster::windows::Windows;
 use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::prominence::{ProminentSummit, summits};
 use sandtable_terrain::query::windowed::LatticePartError;
 use sandtable_terrain::query::{Interpolation, ground_height};
 
@@ -85,6 +86,7 @@ pub(super) struct ExactGround<'a> {
     pub lattice: &'a Lattice,
     /// Where that is of means.
     exact: Option<RefCell<ExactSource<'a>>>,
+    summits: OnceCell<Vec<ProminentSummit>>,
 }
 
 struct ExactSource<'a> {
@@ -119,7 +121,17 @@ impl<'a> ExactGround<'a> {
             let shaped = shapes_ground(document).then_some(shaped);
             Ok(RefCell::new(ExactSource { samples, shaped }))
         };
-        Ok(Self { frame, lattice, exact: needed.map(source).transpose()? })
+        Ok(Self { frame, lattice, exact: needed.map(source).transpose()?, summits: OnceCell::new() })
+    }
+
+    /// The same with the summits of the picture's ground, where they are known.
+    pub fn with_summits(self, summits: Option<Vec<ProminentSummit>>) -> Self {
+        Self { summits: summits.map(OnceCell::from).unwrap_or_default(), ..self }
+    }
+
+    /// The summits of the picture's ground, the most prominent first, found on first use.
+    pub fn summits(&self) -> &[ProminentSummit] {
+        self.summits.get_or_init(|| summits(self.lattice))
     }
 
     /// Whether the heights of the picture's ground are means of samples.

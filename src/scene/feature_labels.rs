@@ -18,7 +18,7 @@ use crate::shape_place::{place, world_points};
 use crate::sources::Sources;
 use crate::world_frame::WorldFrame;
 use sandtable_description::diagnostic::Diagnostic;
-use sandtable_description::document::LabelTable;
+use sandtable_description::document::{Document, LabelTable};
 use sandtable_description::expression::Expression;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::words::LabelKind;
@@ -42,7 +42,7 @@ pub(super) fn labels(
     let Some(source) = table.source() else { return Ok(Vec::new()) };
     let text = Expression::parse(&table.text).map_err(|error| frame.document.error(&table.text, error))?;
     let (crs, features) = sources.features(&source)?;
-    let summits = reads_prominence(table, &text).then(|| NamedSummits::new(lattice));
+    let summits = reads_prominence(table, &text).then(|| NamedSummits::new(lattice, exact.summits()));
     let known = |attributes: Attributes| {
         let prominence_m = summits.as_ref().and_then(|summits| {
             let at = place(attributes.geometry()?, &crs, frame, lattice)?;
@@ -122,6 +122,15 @@ pub(super) fn labels(
         findings.add(FindingCode::LeftOut, source.span(), sentence);
     }
     Ok(labels)
+}
+
+/// Whether labels of a document need the summits of the ground.
+pub(super) fn need_summits(document: &Document) -> bool {
+    document.style.spot_heights > 0
+        || document.labels.iter().any(|table| {
+            Expression::parse(&table.text)
+                .is_ok_and(|text| table.at.is_none() && reads_prominence(table, &text))
+        })
 }
 
 /// Whether an expression of a table of summits, of which `text` is one, reads their prominence.

@@ -3,7 +3,7 @@
 use glam::Vec2;
 
 use sandtable_terrain::lattice::Lattice;
-use sandtable_terrain::prominence::{ProminentSummit, summits};
+use sandtable_terrain::prominence::ProminentSummit;
 
 /// How far from a name its summit is looked for: meters, and cells of coarser ground.
 const SUMMIT_M: f64 = 150.0;
@@ -15,14 +15,15 @@ pub fn summit_reach_m(lattice: &Lattice) -> f64 {
 }
 
 /// The summits of a lattice, the most prominent first.
-pub(super) struct NamedSummits {
-    summits: Vec<ProminentSummit>,
+pub(super) struct NamedSummits<'a> {
+    summits: &'a [ProminentSummit],
     reach_m: f32,
 }
 
-impl NamedSummits {
-    pub fn new(lattice: &Lattice) -> Self {
-        Self { summits: summits(lattice), reach_m: summit_reach_m(lattice) as f32 }
+impl<'a> NamedSummits<'a> {
+    /// Those of `lattice`, all of whose summits are handed in.
+    pub fn new(lattice: &Lattice, summits: &'a [ProminentSummit]) -> Self {
+        Self { summits, reach_m: summit_reach_m(lattice) as f32 }
     }
 
     /// The prominence of the summit that a name at a place in world space belongs to: of those in reach the most prominent.
@@ -37,6 +38,7 @@ impl NamedSummits {
 mod tests {
     use super::*;
     use glam::DVec2;
+    use sandtable_terrain::prominence::summits;
 
     #[test]
     fn a_name_has_the_prominence_of_the_summit_near_it_and_0_on_a_slope() {
@@ -49,7 +51,8 @@ mod tests {
         };
         let heights = (0..65 * 65).map(height).collect();
         let lattice = Lattice::new(DVec2::ZERO, DVec2::splat(50.0), 65, heights).expect("a lattice");
-        let summits = NamedSummits::new(&lattice);
+        let summits = summits(&lattice);
+        let summits = NamedSummits::new(&lattice, &summits);
         let prominence_m = |x: f32, y: f32| summits.prominence_m(Vec2::new(x, y));
         // The saddle is where the cones meet: 1200 m apart and 80 m of height, 0.1 a meter.
         assert!((prominence_m(2150.0, 1650.0) - 20.0).abs() < 5.0, "{}", prominence_m(2150.0, 1650.0));

@@ -9,7 +9,6 @@ use crate::water::lake_level::LakeSurface;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::words::LabelKind;
 use sandtable_geom::polygon::inner_point;
-use sandtable_terrain::prominence::summits;
 
 /// Named labels come before all spot heights.
 const FIRST_RANK: f64 = 1e9;
@@ -41,7 +40,7 @@ pub(super) fn spot_heights(
     let apart = extent.size().length() as f32 * APART_SHARE;
     let least = (high_m - low_m) * LEAST_SHARE;
     let mut spots: Vec<SpotHeight> = Vec::new();
-    for summit in summits(lattice).into_iter().filter(|summit| summit.prominence_m >= least) {
+    for summit in exact.summits().iter().filter(|summit| summit.prominence_m >= least) {
         spots.push(SpotHeight {
             at: summit.at,
             elevation_m: summit.height_m,

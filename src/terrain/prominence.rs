@@ -42,7 +42,9 @@ pub fn summits(lattice: &Lattice) -> Vec<ProminentSummit> {
     let mut order: Vec<u32> = (0..blocks.heights.len() as u32)
         .filter(|&block| blocks.heights[block as usize].is_finite())
         .collect();
-    order.par_sort_unstable_by(|&a, &b| blocks.heights[b as usize].total_cmp(&blocks.heights[a as usize]).then(a.cmp(&b)));
+    order.par_sort_unstable_by(|&a, &b| {
+        blocks.heights[b as usize].total_cmp(&blocks.heights[a as usize]).then(a.cmp(&b))
+    });
     let Some(lowest) = order.last().map(|&block| blocks.heights[block as usize]) else { return Vec::new() };
     // The root of a flood is its summit; `u32::MAX` before a block is flooded.
     let mut floods = vec![u32::MAX; blocks.heights.len()];

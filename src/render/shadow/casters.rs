@@ -21,6 +21,9 @@ const SEEN_MARGIN: f32 = 1.05;
 /// Corners farther from the eye than this, in meters, are left out: squares of it are still finite.
 const FARTHEST_M: f32 = 1e15;
 
+/// The triangles that a thread turns toward the light in one go.
+const TURNED: usize = 1024;
+
 /// A finite triangle, in meters from the eye.
 #[derive(Clone, Copy, Debug)]
 pub struct CasterTriangle {
@@ -137,20 +140,35 @@ impl LightTriangles {
     /// The bytes of a triangle.
     const BYTES: usize = size_of::<(CasterTriangle, LightBox)>();
 
-    /// `triangles` along `axes`, those of them whose box `is_near`.
-    pub fn new(
+    /// `triangles` along `axes`.
+    pub fn new(triangles: &[CasterTriangle], axes: &LightAxes) -> Self {
+        Self::around(
+            triangles.par_iter().with_min_len(TURNED).map(|triangle| triangle.turned(axes)).collect(),
+        )
+    }
+
+    /// As [`Self::new`], those of them whose box `is_near`.
+    pub fn near(
         triangles: &[CasterTriangle],
         axes: &LightAxes,
         is_near: impl Fn(LightBox) -> bool + Sync,
     ) -> Self {
-        let turned = |triangle: &CasterTriangle| {
-            let corners = triangle.corners.map(|corner| axes.turned(corner));
-            let bounds = LightBox::of_triangle(corners);
-            is_near(bounds).then_some((CasterTriangle { corners, ..*triangle }, bounds))
-        };
-        let triangles: Vec<_> = triangles.par_iter().with_min_len(1024).filter_map(turned).collect();
-        let bounds = triangles.iter().fold(LightBox::EMPTY, |all, (_, bounds)| all.union(*bounds));
+        let turned = triangles.par_iter().with_min_len(TURNED).map(|triangle| triangle.turned(axes));
+        Self::around(turned.filter(|(_, bounds)| is_near(*bounds)).collect())
+    }
+
+    fn around(triangles: Vec<(CasterTriangle, LightBox)>) -> Self {
+        let boxes = triangles.par_iter().with_min_len(TURNED).map(|(_, bounds)| *bounds);
+        let bounds = boxes.reduce(|| LightBox::EMPTY, LightBox::union);
         Self { triangles, bounds }
+    }
+}
+
+impl CasterTriangle {
+    /// The triangle along `axes`, and its box.
+    fn turned(&self, axes: &LightAxes) -> (Self, LightBox) {
+        let corners = self.corners.map(|corner| axes.turned(corner));
+        (Self { corners, ..*self }, LightBox::of_triangle(corners))
     }
 }
 

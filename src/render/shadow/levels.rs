@@ -59,7 +59,7 @@ impl ShadowMap {
     /// # Errors
     /// There is not the memory for it.
     pub fn new(source: &MapSource, texel_px: f32) -> Result<Option<Self>, MemoryRefused> {
-        let solids = LightTriangles::new(&source.triangles.solids, &source.axes, |_| true);
+        let solids = LightTriangles::new(&source.triangles.solids, &source.axes);
         let MapSource { camera, axes, triangles, .. } = *source;
         let view = LightView { camera, axes, depths_m: triangles.depths_m };
         let Some(mut map) = Self::planned(&view, &solids, texel_px) else { return Ok(None) };
@@ -69,7 +69,7 @@ impl ShadowMap {
         map.texels = bytemuck::zeroed_vec(stored * (PAGE * PAGE) as usize);
         let kept: Vec<_> = map.levels.iter().map(|level| KeptPages::new(level, &map.pages)).collect();
         let is_near = |bounds: LightBox| kept.iter().any(|kept| kept.pages_on(bounds).is_some());
-        let ground = LightTriangles::new(&source.triangles.ground, &source.axes, is_near);
+        let ground = LightTriangles::near(&source.triangles.ground, &source.axes, is_near);
         let mut texels = map.texels.as_mut_slice();
         for (level, kept) in map.levels.iter().zip(&kept) {
             let pages = &mut map.pages[level.pages()];

@@ -126,6 +126,7 @@ impl Centerline {
 /// A road line with what its table says of it, before it is a feature.
 struct ReadRoad {
     centerline: Centerline,
+    name: String,
     default_counts: DefaultCounts,
     tag_notes: TagNotes,
 }
@@ -150,9 +151,10 @@ impl ReadRoad {
             level: level(road, &attributes, support, &mut tag_notes),
             surface,
         };
+        let name = attributes.name(road.name.as_deref());
         let (deck, feature, own_levels) = (None, FeatureId::NONE, None);
         let centerline = Centerline { street, shoulder_m, deck, feature, table, attributes, own_levels };
-        Self { centerline, default_counts, tag_notes }
+        Self { centerline, name, default_counts, tag_notes }
     }
 
     /// Makes it a feature.
@@ -161,9 +163,8 @@ impl ReadRoad {
             *collected.default_counts.entry(key).or_default() += count;
         }
         collected.tag_notes.append(self.tag_notes);
-        let attributes = &self.centerline.attributes;
-        let (name, origin) = (attributes.name(road.name.as_deref()), attributes.origin(&road.source));
-        Centerline { feature: collected.add(FeatureKind::Road, name, origin), ..self.centerline }
+        let origin = self.centerline.attributes.origin(&road.source);
+        Centerline { feature: collected.add(FeatureKind::Road, self.name, origin), ..self.centerline }
     }
 }
 

@@ -11,6 +11,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use crate::roads::centerline::Centerline;
 use crate::roads::spans::RoadSpan;
@@ -85,11 +86,12 @@ impl<'a> SpanMeetings<'a> {
             inside.extend(points[1..points.len() - 1].iter().map(|&at| (support, vertex_key(at))));
         }
         let ends_at = |support, at| ends.contains_key(&(support, at));
-        let on_ground = roads.iter().filter(|road| road.street.alignment.is_on_ground());
+        let on_ground = roads.par_iter().filter(|road| road.street.alignment.is_on_ground());
         let touched =
-            on_ground.flat_map(|road| road.street.alignment.line.points()).map(|&at| vertex_key(at));
-        let mut fixed: BTreeSet<VertexKey> =
+            on_ground.flat_map_iter(|road| road.street.alignment.line.points()).map(|&at| vertex_key(at));
+        let touched: Vec<VertexKey> =
             touched.filter(|&at| ends_at(Support::Bridge, at) || ends_at(Support::Tunnel, at)).collect();
+        let mut fixed = BTreeSet::from_iter(touched);
         let both = ends.keys().map(|&(_, at)| at);
         fixed.extend(both.filter(|&at| ends_at(Support::Bridge, at) && ends_at(Support::Tunnel, at)));
         Self { spans, ends, inside, fixed }

@@ -99,7 +99,8 @@ pub fn settle(
     site: &Site<'_>,
 ) -> Vec<Option<ChainRun>> {
     let below = Below::new(spans, chains, roads, site);
-    let samples: Vec<Vec<ClearancePoint>> = chains.par_iter().map(|chain| sampled(chain, spans, site)).collect();
+    let samples: Vec<Vec<ClearancePoint>> =
+        chains.par_iter().map(|chain| sampled(chain, spans, site)).collect();
     let meetings = meetings(&samples, &below);
     let mut order: Vec<usize> = (0..chains.len()).collect();
     order.sort_by_key(|&chain| {

@@ -163,7 +163,7 @@ fn find_continuations(spans: &mut [RoadSpan], roads: &[Centerline]) {
         let alignment = &road.alignment;
         alignment.is_on_ground() && alignment.line.points().iter().any(|&at| ends.contains(&vertex_key(at)))
     };
-    let on_ground = roads.iter().map(|road| &road.street).filter(meets);
+    let on_ground: Vec<&Street> = roads.par_iter().map(|road| &road.street).filter(meets).collect();
     let streets: Vec<&Street> = spans.iter().map(|span| &span.street).chain(on_ground).collect();
     let network = junction::connect(&streets);
     for (span, beyond) in spans.iter_mut().zip(network.continuations) {

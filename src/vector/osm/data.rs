@@ -237,3 +237,33 @@ impl OsmData {
         self.tags(tags).find(|tag| tag.0 == key).map(|tag| tag.1)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fill(data: &mut OsmData, id: i64, tags: &[(&str, &str)]) {
+        let tags: Result<OsmTags, OsmMemoryExceeded> =
+            tags.iter().map(|(key, value)| Ok((data.text(key)?, data.text(value)?))).collect();
+        let way = OsmWay { id, refs: Box::new([1, 2]), tags: tags.expect("memory") };
+        data.add_node(OsmNode { id, longitude: 0, latitude: 0 }, way.tags.clone()).expect("memory");
+        data.add_way(way).expect("memory");
+    }
+
+    #[test]
+    fn blocks_keep_their_texts_where_they_are_put_together() {
+        let blocks = [[("highway", "track"), ("name", "Rim")], [("name", "highway"), ("surface", "track")]];
+        let (mut all, mut whole) = (OsmData::default(), OsmData::default());
+        for (id, tags) in (1..).zip(&blocks) {
+            let mut block = OsmData::default();
+            fill(&mut block, id, tags);
+            all.append(block).expect("memory");
+            fill(&mut whole, id, tags);
+        }
+        for (index, tags) in blocks.iter().enumerate() {
+            assert_eq!(all.tags(&all.ways[index].tags).collect::<Vec<_>>(), tags);
+            assert_eq!(all.tags(&all.tagged_nodes[index].1).collect::<Vec<_>>(), tags);
+        }
+        assert_eq!((all.texts.len(), all.bytes), (5, whole.bytes), "texts that both have are charged once");
+    }
+}

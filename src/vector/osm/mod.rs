@@ -253,9 +253,8 @@ impl OsmLayer {
         let outline = |way: &'a OsmWay| {
             (way, data.positions(&way.refs), properties(data, &way.tags, "osm_way_id", way.id))
         };
-        let is_own_area = |way: &&OsmWay| {
-            self.holds(data, &way.tags) && is_area(data, way) && !assembler.replaces(way)
-        };
+        let is_own_area =
+            |way: &&OsmWay| self.holds(data, &way.tags) && is_area(data, way) && !assembler.replaces(way);
         let outlines: Vec<_> = data.ways.par_iter().filter(is_own_area).map(outline).collect();
         for (way, ring, properties) in outlines {
             let place = || named_place(data, "way", way.id, &way.tags);
