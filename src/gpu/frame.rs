@@ -5,6 +5,7 @@ use bytemuck::{bytes_of, cast_slice};
 use rayon::prelude::*;
 
 use crate::adapter::Gpu;
+use crate::buffer_writes::BufferWrites;
 use crate::error::GpuError;
 use crate::ground::GroundTextures;
 use crate::layouts::Layouts;
@@ -94,9 +95,9 @@ impl FrameGroup {
         Ok(Self { group, constants })
     }
 
-    /// Replaces the constants before the next submission.
-    pub fn write(&self, gpu: &Gpu, constants: &FrameUniforms) {
-        gpu.queue.write_buffer(&self.constants, 0, bytes_of(constants));
+    /// Replaces the constants.
+    pub fn write(&self, writes: &mut BufferWrites<'_>, constants: &FrameUniforms) {
+        writes.write(&self.constants, 0, bytes_of(constants));
     }
 }
 

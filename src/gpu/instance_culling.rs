@@ -21,6 +21,7 @@ use glam::Vec3;
 use wgpu::wgt::DrawIndexedIndirectArgs;
 
 use crate::adapter::Gpu;
+use crate::buffer_writes::BufferWrites;
 use crate::compute::compute_pipelines;
 use crate::culling::LEAST_PX;
 use crate::draw_call::DrawShape;
@@ -178,14 +179,13 @@ impl InstanceCuller {
 }
 
 impl CulledInstances {
-    /// Records which instances `camera` sees; the camera that is recorded last before a submission counts.
-    pub fn record(
-        &self,
-        gpu: &Gpu,
-        encoder: &mut wgpu::CommandEncoder,
-        (camera, timer): (&Camera, Option<&PassTimer>),
-    ) {
-        gpu.queue.write_buffer(&self.view, 0, cast_slice(&[CullingUniforms::new(camera)]));
+    /// Sets the camera of the cullings that are recorded.
+    pub fn see(&self, writes: &mut BufferWrites<'_>, camera: &Camera) {
+        writes.write(&self.view, 0, cast_slice(&[CullingUniforms::new(camera)]));
+    }
+
+    /// Records which instances the camera sees.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timer: Option<&PassTimer>) {
         let label = "culling of instances";
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some(label),
@@ -387,7 +387,8 @@ mod tests {
         camera: &Camera,
     ) -> usize {
         let mut encoder = gpu.encoder("culling");
-        culled.record(gpu, &mut encoder, (camera, None));
+        culled.see(&mut BufferWrites::by_queue(gpu), camera);
+        culled.record(&mut encoder, None);
         gpu.queue.submit([encoder.finish()]);
         let (calls, seen) = (read(gpu, &culled.calls), read(gpu, &culled.seen));
         let view = CullingView::new(camera);

@@ -19,6 +19,7 @@
 //! instance, all of a scene at most two gibibytes.
 
 pub mod adapter;
+mod buffer_writes;
 mod compute;
 mod culling;
 mod draped_vertex;

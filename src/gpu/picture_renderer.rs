@@ -11,6 +11,7 @@ use std::sync::{Arc, Weak};
 use glam::Vec3;
 
 use crate::adapter::Gpu;
+use crate::buffer_writes::BufferWrites;
 use crate::culling::seen_items;
 use crate::error::{DriverError, GpuError};
 use crate::formats::{COLOR, FEATURE};
@@ -240,7 +241,8 @@ impl PictureRenderer {
         tile: PictureTile,
     ) -> Result<DrawnTile, GpuError> {
         let (gpu, PictureScene { frame, materials, geometry, plan, parts, .. }) = (&self.gpu, scene);
-        frame.write(gpu, &scene.constants.in_tile(tile.projection(camera.size())));
+        let constants = scene.constants.in_tile(tile.projection(camera.size()));
+        frame.write(&mut BufferWrites::by_queue(gpu), &constants);
         let mut encoder = gpu.encoder("picture");
         let is_multisampled = gpu.samples > 1;
         let [samples, resolved, sample_depth, seen, depth] = targets.all().map(view);

@@ -119,8 +119,23 @@ impl Window {
     ) -> Vec<[u8; 4]> {
         let gpu = renderer.gpu().clone();
         let mut encoder = gpu.device().create_command_encoder(&Default::default());
+        self.record(renderer, &mut encoder, (camera, options));
+        gpu.queue().submit([encoder.finish()]);
+        self.pixels(&gpu)
+    }
+
+    fn record(
+        &self,
+        renderer: &mut LiveRenderer,
+        encoder: &mut wgpu::CommandEncoder,
+        (camera, options): (&Camera, &LiveOptions),
+    ) {
         let view = self.texture.create_view(&Default::default());
-        renderer.draw(&mut encoder, &view, SIZE, camera, options).unwrap_or_else(|error| panic!("{error}"));
+        renderer.draw(encoder, &view, SIZE, camera, options).unwrap_or_else(|error| panic!("{error}"));
+    }
+
+    fn pixels(&self, gpu: &Gpu) -> Vec<[u8; 4]> {
+        let mut encoder = gpu.device().create_command_encoder(&Default::default());
         let size = u64::from(SIZE.0 * SIZE.1 * 4);
         let buffer = gpu.device().create_buffer(&wgpu::BufferDescriptor {
             label: Some("copy of a frame"),
@@ -154,6 +169,12 @@ fn loaded_with(gpu: &Gpu, list: &DrawList, format: wgpu::TextureFormat, samples:
     renderer.load(list).unwrap_or_else(|error| panic!("{error}"));
     renderer.update(&changes(list)).unwrap_or_else(|error| panic!("{error}"));
     renderer
+}
+
+/// A camera that sees the scene from another side than most.
+fn from_aside() -> Camera {
+    Camera::new(Vec3::new(900.0, -200.0, 500.0), Vec3::new(320.0, 320.0, 0.0), 0.85, SIZE, (1.0, 5000.0))
+        .expect("sound")
 }
 
 /// The share of pixels of which a channel differs by more than two steps.
@@ -451,6 +472,34 @@ fn a_frame_that_moves_is_nearly_the_one_at_rest_and_changes_nothing() {
         assert_eq!(is_same, !gpu.is_software(), "hardware draws all: {mean} on {}", gpu.name());
         assert!(mean < 3.0, "{mean} of 255 on {}", gpu.name());
         assert_eq!(share_apart(&window.frame(&mut renderer, &camera), &before), 0.0);
+    }
+}
+
+#[test]
+fn frames_of_one_submission_have_their_own_cameras_and_ground() {
+    let list = scene();
+    for gpu in gpus() {
+        let [near, far] = [camera(SIZE.0, SIZE.1), from_aside()];
+        let bare = GroundChanges {
+            hidden: changes(&list).triangles[..4].iter().map(|patch| patch.patch).collect(),
+            ..Default::default()
+        };
+        let windows = [Window::new(gpu, WINDOW), Window::new(gpu, WINDOW)];
+        let options = LiveOptions::default();
+        let mut renderer = loaded(gpu, &list, WINDOW);
+        let mut alone = vec![windows[0].frame(&mut renderer, &near)];
+        renderer.update(&bare).expect("it fits");
+        alone.push(windows[1].frame(&mut renderer, &far));
+        assert!(alone[0] != alone[1]);
+        let mut renderer = loaded(gpu, &list, WINDOW);
+        let mut encoder = gpu.device().create_command_encoder(&Default::default());
+        windows[0].record(&mut renderer, &mut encoder, (&near, &options));
+        renderer.update(&bare).expect("it fits");
+        windows[1].record(&mut renderer, &mut encoder, (&far, &options));
+        gpu.queue().submit([encoder.finish()]);
+        for (window, alone) in windows.iter().zip(&alone) {
+            assert!(window.pixels(gpu) == *alone, "on {}", gpu.name());
+        }
     }
 }
 

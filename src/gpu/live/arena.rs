@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use crate::adapter::Gpu;
+use crate::buffer_writes::BufferWrites;
 use crate::error::GpuError;
 
 /// Bytes in a block: larger ones waste more where little is stored, smaller ones are changed more often while drawing.
@@ -64,7 +65,7 @@ impl Arena {
     }
 
     /// Stores bytes until they are released; those up to the next multiple of four are zero.
-    pub fn store(&mut self, gpu: &Gpu, contents: &[u8]) -> Result<StoredRange, GpuError> {
+    pub fn store(&mut self, writes: &mut BufferWrites<'_>, contents: &[u8]) -> Result<StoredRange, GpuError> {
         let size = (contents.len() as u64).next_multiple_of(ALIGNMENT);
         let known = self.blocks.iter_mut().enumerate().find_map(|(index, block)| {
             let bytes = block.as_mut()?.free.take(size)?;
@@ -72,16 +73,10 @@ impl Arena {
         });
         let range = match known {
             Some(range) => range,
-            None => self.in_new_block(gpu, size)?,
+            None => self.in_new_block(writes.gpu, size)?,
         };
         if let Some(Some(block)) = self.blocks.get(range.block) {
-            let aligned = contents.len() - contents.len() % ALIGNMENT as usize;
-            gpu.queue.write_buffer(&block.buffer, range.bytes.start, &contents[..aligned]);
-            if aligned < contents.len() {
-                let mut last = [0; ALIGNMENT as usize];
-                last[..contents.len() - aligned].copy_from_slice(&contents[aligned..]);
-                gpu.queue.write_buffer(&block.buffer, range.bytes.start + aligned as u64, &last);
-            }
+            writes.write(&block.buffer, range.bytes.start, contents);
         }
         Ok(range)
     }

@@ -20,7 +20,7 @@ use bytemuck::cast_slice;
 
 use glam::Vec3;
 
-use crate::adapter::Gpu;
+use crate::buffer_writes::BufferWrites;
 use crate::culling::{CullingView, ItemGroup};
 use crate::draped_vertex::DrapedMesh;
 use crate::error::GpuError;
@@ -256,7 +256,7 @@ impl DrapeArenas {
     /// Stores what lies on a patch, `pieces` of these `materials`, in place of what lay there; returns it and the bytes sent.
     pub fn store(
         &mut self,
-        gpu: &Gpu,
+        writes: &mut BufferWrites<'_>,
         before: StoredDrapes,
         (pieces, materials): (&[DrapedPiece], &[DrapeMaterial]),
     ) -> Result<(StoredDrapes, u64), GpuError> {
@@ -267,7 +267,7 @@ impl DrapeArenas {
             match chunk {
                 PlannedChunk::Kept(chunk) => drapes.chunks.push(chunk),
                 PlannedChunk::Sent(material, range) => {
-                    let (chunk, bytes) = self.send(gpu, material, &pieces[range])?;
+                    let (chunk, bytes) = self.send(writes, material, &pieces[range])?;
                     sent += bytes;
                     drapes.chunks.extend(chunk);
                 }
@@ -279,7 +279,7 @@ impl DrapeArenas {
     /// Sends pieces as one mesh; `None` where they have no triangles.
     fn send(
         &mut self,
-        gpu: &Gpu,
+        writes: &mut BufferWrites<'_>,
         material: DrapeMaterial,
         pieces: &[DrapedPiece],
     ) -> Result<(Option<DrapeChunk>, u64), GpuError> {
@@ -304,8 +304,8 @@ impl DrapeArenas {
         let chunk = DrapeChunk {
             pieces: held,
             material,
-            vertices: self.vertices.store(gpu, vertex_bytes)?,
-            indices: self.indices.store(gpu, index_bytes)?,
+            vertices: self.vertices.store(writes, vertex_bytes)?,
+            indices: self.indices.store(writes, index_bytes)?,
         };
         Ok((Some(chunk), (vertex_bytes.len() + index_bytes.len()) as u64))
     }

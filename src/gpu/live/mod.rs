@@ -44,6 +44,7 @@ mod targets;
 use std::sync::Arc;
 
 use crate::adapter::Gpu;
+use crate::buffer_writes::{BufferWrites, StagingRing};
 use crate::culling::CullingView;
 use crate::error::GpuError;
 use crate::frame::{FrameGroup, FrameTextures};
@@ -147,6 +148,8 @@ pub struct LiveRenderer {
     scene: Option<LoadedScene>,
     timer: Option<Arc<PassTimer>>,
     shadow_drawer: SharedShadowDrawer,
+    /// What is written for the next frame.
+    ring: StagingRing,
 }
 
 /// The treatment of the patches that are shown when another list is loaded.
@@ -246,6 +249,7 @@ impl LiveRenderer {
         let (layouts, colors, encoder) = made?;
         let culler = if gpu.is_software { None } else { InstanceCuller::open(&gpu) };
         format.shade_pixels = colors.shade_pixels(&gpu);
+        let ring = StagingRing::new(&gpu);
         Ok(Self {
             gpu,
             format,
@@ -258,6 +262,7 @@ impl LiveRenderer {
             scene: None,
             timer: None,
             shadow_drawer: SharedShadowDrawer::default(),
+            ring,
         })
     }
 
@@ -318,14 +323,16 @@ impl LiveRenderer {
         self.scene = Some(*scene);
     }
 
-    /// Applies changes of the ground, and returns the bytes sent for them. Does nothing before a scene is loaded.
+    /// Applies changes of the ground from the next frame that is drawn on, and returns the bytes sent for them. Does nothing
+    /// before a scene is loaded.
     ///
     /// # Errors
     /// See [`GpuError`].
     pub fn update(&mut self, changes: &GroundChanges) -> Result<UploadedBytes, GpuError> {
         let Some(scene) = &mut self.scene else { return Ok(UploadedBytes::default()) };
         self.gpu.guarded("sending what changed", || {
-            let mut sent = scene.patches.update(&self.gpu, changes)?;
+            let mut writes = BufferWrites::staged(&self.gpu, &mut self.ring);
+            let mut sent = scene.patches.update(&mut writes, changes)?;
             for change in &changes.map {
                 sent.map += scene.map.change(&self.gpu, scene.textures.ground(), change)?;
             }
@@ -392,8 +399,8 @@ impl LiveRenderer {
     }
 
     /// Records a frame to `target`, a texture of the renderer's format and of `size` pixels, as `camera` sees it, whose
-    /// picture should have that size. Nothing is drawn where a side is zero or no scene is loaded. The camera and the patches
-    /// of the last frame recorded before a submission count for all of them.
+    /// picture should have that size, with the changes since the frame before: the commands are to be submitted, in the order in which
+    /// frames are recorded. Nothing is drawn where a side is zero or no scene is loaded.
     ///
     /// # Errors
     /// See [`GpuError`]; after [`GpuError::Driver`] the device is to be opened anew.
@@ -425,20 +432,21 @@ impl LiveRenderer {
             known.map_or_else(|| LiveTargets::new(&Loader::new(gpu), &self.layouts, format, size), Ok)
         })?;
         let drawn = gpu.guarded("drawing a frame", || {
-            scene.frame.write(gpu, &scene.constants(camera, size));
+            let mut writes = BufferWrites::staged(gpu, &mut self.ring);
+            scene.frame.write(&mut writes, &scene.constants(camera, size));
             let patches = scene.patches.shown(camera);
             let leaves_narrow = options.detail == LiveDetail::Moving && gpu.is_software;
             let view = DrapeView { view: CullingView::new(camera), leaves_narrow };
-            let calls = scene.patches.calls(gpu, &patches, &view)?;
+            let calls = scene.patches.calls(&mut writes, &patches, &view)?;
             let lines: &[PatchId] = if options.wireframe { &patches } else { &[] };
             if options.wireframe {
-                scene.patches.store_lines(gpu, lines)?;
+                scene.patches.store_lines(&mut writes, lines)?;
                 self.colors.make(gpu, [PipelineKey::PATCH_LINES]);
             }
             let shown = targets.linear.as_ref().unwrap_or(target);
-            if let Some(culled) = &scene.culled {
-                culled.record(gpu, encoder, (camera, self.timer.as_deref()));
-            }
+            scene.culled.iter().for_each(|culled| culled.see(&mut writes, camera));
+            self.ring.record(gpu, encoder);
+            scene.culled.iter().for_each(|culled| culled.record(encoder, self.timer.as_deref()));
             let views = PassViews {
                 stage: PassStage::Whole,
                 label: "frame",

@@ -15,7 +15,7 @@ use std::ops::Range;
 use bytemuck::cast_slice;
 use wgpu::wgt::DrawIndexedIndirectArgs;
 
-use crate::adapter::Gpu;
+use crate::buffer_writes::BufferWrites;
 use crate::error::GpuError;
 use crate::live::LiveStatistics;
 use crate::live::arena::{Arena, StoredRange};
@@ -78,7 +78,7 @@ impl PatchCall {
 impl<K: Copy + PartialEq> PatchCalls<K> {
     /// Sends what the device reads of `calls` to `kept`, or to a larger buffer that takes its place.
     pub fn new(
-        gpu: &Gpu,
+        writes: &mut BufferWrites<'_>,
         source: &CallSource<'_>,
         calls: impl IntoIterator<Item = (K, PatchCall)>,
         kept: &mut Option<wgpu::Buffer>,
@@ -93,7 +93,7 @@ impl<K: Copy + PartialEq> PatchCalls<K> {
                 _ => runs.push(CallRun { key, calls: index..index + 1 }),
             }
         }
-        if !gpu.draws_indirectly || calls.is_empty() {
+        if !writes.gpu.draws_indirectly || calls.is_empty() {
             return Ok(Self { calls, runs, arguments: None });
         }
         let arguments: Vec<_> = calls.iter().map(|call| call.arguments(source)).collect();
@@ -103,10 +103,10 @@ impl<K: Copy + PartialEq> PatchCalls<K> {
             None => {
                 let usage = wgpu::BufferUsages::INDIRECT | wgpu::BufferUsages::COPY_DST;
                 let size = bytes.len().next_power_of_two() as u64;
-                Loader::new(gpu).buffer(|| "the calls of patches".into(), usage, size)?
+                Loader::new(writes.gpu).buffer(|| "the calls of patches".into(), usage, size)?
             }
         };
-        gpu.queue.write_buffer(&buffer, 0, bytes);
+        writes.write(&buffer, 0, bytes);
         *kept = Some(buffer.clone());
         Ok(Self { calls, runs, arguments: Some(buffer) })
     }

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use bytemuck::cast_slice;
 use glam::Vec3;
 
-use crate::adapter::Gpu;
+use crate::buffer_writes::BufferWrites;
 use crate::draped_vertex::DrapedVertex;
 use crate::error::GpuError;
 use crate::live::arena::{Arena, StoredRange};
@@ -91,7 +91,11 @@ impl PatchStore {
     }
 
     /// Applies changes; returns the bytes sent for them.
-    pub fn update(&mut self, gpu: &Gpu, changes: &GroundChanges) -> Result<UploadedBytes, GpuError> {
+    pub fn update(
+        &mut self,
+        writes: &mut BufferWrites<'_>,
+        changes: &GroundChanges,
+    ) -> Result<UploadedBytes, GpuError> {
         let mut sent = UploadedBytes::default();
         for id in &changes.dropped {
             if let Some(patch) = self.patches.remove(id) {
@@ -103,13 +107,13 @@ impl PatchStore {
             shown.into_iter().for_each(|shown| release_triangles(&mut self.triangles, shown));
         }
         for vertices in &changes.vertices {
-            sent.vertices += self.store_vertices(gpu, vertices)?;
+            sent.vertices += self.store_vertices(writes, vertices)?;
         }
         for triangles in &changes.triangles {
-            sent.triangles += self.store_triangles(gpu, triangles)?;
+            sent.triangles += self.store_triangles(writes, triangles)?;
         }
         for drapes in &changes.drapes {
-            sent.drapes += self.store_drapes(gpu, drapes)?;
+            sent.drapes += self.store_drapes(writes, drapes)?;
         }
         Ok(sent)
     }
@@ -124,7 +128,12 @@ impl PatchStore {
     }
 
     /// What patches show in a view, to be drawn before the next submission.
-    pub fn calls(&mut self, gpu: &Gpu, shown: &[PatchId], view: &DrapeView) -> Result<ShownCalls, GpuError> {
+    pub fn calls(
+        &mut self,
+        writes: &mut BufferWrites<'_>,
+        shown: &[PatchId],
+        view: &DrapeView,
+    ) -> Result<ShownCalls, GpuError> {
         let patches = || shown.iter().filter_map(|id| self.patches.get(id));
         let ground = |patch: &StoredPatch| {
             let (vertices, triangles) = (patch.positions.clone()?, patch.triangles.as_ref()?);
@@ -139,8 +148,8 @@ impl PatchStore {
         let drapes = drapes.into_iter().map(|(_, material, call)| (material, call));
         let [mut of_ground, mut of_drapes] = std::mem::take(&mut self.call_arguments);
         let calls = ShownCalls {
-            ground: PatchCalls::new(gpu, &self.ground_source(), ground, &mut of_ground)?,
-            drapes: PatchCalls::new(gpu, &self.drape_source(), drapes, &mut of_drapes)?,
+            ground: PatchCalls::new(writes, &self.ground_source(), ground, &mut of_ground)?,
+            drapes: PatchCalls::new(writes, &self.drape_source(), drapes, &mut of_drapes)?,
         };
         self.call_arguments = [of_ground, of_drapes];
         Ok(calls)
@@ -190,12 +199,12 @@ impl PatchStore {
     }
 
     /// Sends the edges of patches that have none yet.
-    pub fn store_lines(&mut self, gpu: &Gpu, shown: &[PatchId]) -> Result<(), GpuError> {
+    pub fn store_lines(&mut self, writes: &mut BufferWrites<'_>, shown: &[PatchId]) -> Result<(), GpuError> {
         for id in shown {
             let triangles = self.patches.get_mut(id).and_then(|patch| patch.triangles.as_mut());
             let Some(triangles) = triangles.filter(|triangles| triangles.lines.is_none()) else { continue };
             let lines = edges(&triangles.handed);
-            let stored = self.triangles.store(gpu, cast_slice(&lines))?;
+            let stored = self.triangles.store(writes, cast_slice(&lines))?;
             triangles.lines = Some((stored, lines.len() as u32 * 2));
         }
         Ok(())
@@ -226,7 +235,11 @@ impl PatchStore {
         self.drapes.release(patch.drapes);
     }
 
-    fn store_vertices(&mut self, gpu: &Gpu, new: &PatchVertices) -> Result<u64, GpuError> {
+    fn store_vertices(
+        &mut self,
+        writes: &mut BufferWrites<'_>,
+        new: &PatchVertices,
+    ) -> Result<u64, GpuError> {
         let patch = self.patches.entry(new.patch).or_default();
         patch.positions.take().into_iter().for_each(|old| self.positions.release(old));
         let corners = || new.positions.iter().map(|&at| Vec3::from(at));
@@ -236,27 +249,31 @@ impl PatchStore {
             return Ok(0);
         }
         let bytes = cast_slice(&new.positions);
-        patch.positions = Some(self.positions.store(gpu, bytes)?);
+        patch.positions = Some(self.positions.store(writes, bytes)?);
         Ok(bytes.len() as u64)
     }
 
-    fn store_triangles(&mut self, gpu: &Gpu, new: &PatchTriangles) -> Result<u64, GpuError> {
+    fn store_triangles(
+        &mut self,
+        writes: &mut BufferWrites<'_>,
+        new: &PatchTriangles,
+    ) -> Result<u64, GpuError> {
         let patch = self.patches.entry(new.patch).or_default();
         patch.triangles.take().into_iter().for_each(|old| release_triangles(&mut self.triangles, old));
         if new.triangles.is_empty() {
             return Ok(0);
         }
         let bytes = cast_slice(&new.triangles);
-        let indices = self.triangles.store(gpu, bytes)?;
+        let indices = self.triangles.store(writes, bytes)?;
         let (count, handed) = (new.triangles.len() as u32, Arc::clone(&new.triangles));
         patch.triangles = Some(StoredTriangles { indices, count, handed, lines: None });
         Ok(bytes.len() as u64)
     }
 
-    fn store_drapes(&mut self, gpu: &Gpu, new: &PatchDrapes) -> Result<u64, GpuError> {
+    fn store_drapes(&mut self, writes: &mut BufferWrites<'_>, new: &PatchDrapes) -> Result<u64, GpuError> {
         let materials = self.materials.of(&new.pieces)?;
         let drapes = &mut self.patches.entry(new.patch).or_default().drapes;
-        let (stored, sent) = self.drapes.store(gpu, std::mem::take(drapes), (&new.pieces, &materials))?;
+        let (stored, sent) = self.drapes.store(writes, std::mem::take(drapes), (&new.pieces, &materials))?;
         *drapes = stored;
         Ok(sent)
     }

@@ -6,6 +6,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::adapter::Gpu;
+use crate::buffer_writes::BufferWrites;
 use crate::error::GpuError;
 use crate::frame::{FrameGroup, FrameTextures};
 use crate::geometry::GpuGeometry;
@@ -196,7 +197,7 @@ impl LiveLoader {
     /// See [`GpuError`].
     pub fn update(&self, prepared: &mut PreparedScene, changes: &GroundChanges) -> Result<(), GpuError> {
         self.gpu.guarded("sending the ground", || {
-            prepared.scene.patches.update(&self.gpu, changes)?;
+            prepared.scene.patches.update(&mut BufferWrites::by_queue(&self.gpu), changes)?;
             self.gpu.finish_sending()
         })
     }
