@@ -180,8 +180,8 @@ fn listed(
     };
     let key = GroundMapKey { level, to_sun };
     let is_lit = purpose == ListPurpose::Picture;
-    if is_lit && !scene.has_map(key) {
-        progress("lighting terrain");
+    let makes_map = is_lit && !scene.has_map(key);
+    if makes_map {
         // The map and the features need these: neither is to wait for the other to make them.
         scene.ground();
         scene.water();
@@ -191,7 +191,13 @@ fn listed(
         if is_lit {
             scope.spawn(|_| map = Some(scene.map(key, || ())));
         }
-        shaped(DrawList { lighting, ..DrawList::default() }, scene, displayed, viewer, purpose, progress)
+        let list = DrawList { lighting, ..DrawList::default() };
+        let shaped = shaped(list, scene, displayed, viewer, purpose, progress);
+        if makes_map {
+            // What of it is not done beside the features, on one thread all.
+            progress("lighting terrain");
+        }
+        shaped
     });
     listed.list.ground = Some(map.unwrap_or_else(|| Arc::new(GroundMap::level())));
     listed
