@@ -32,7 +32,7 @@ use crate::models;
 use crate::overlays;
 use crate::placed_sight;
 use crate::planned_pictures::ElevationNeed;
-use crate::read_ahead::ReadAhead;
+use crate::read_ahead::SourcesAhead;
 use crate::relief_strength;
 use crate::roads::network;
 use crate::scene_model::SceneModel;
@@ -133,9 +133,9 @@ pub fn build_with(
         ElevationNeed::Pictures(_) if !document.analyses.is_empty() => ElevationNeed::AllThatFit,
         need => need,
     };
-    let mut ahead = ReadAhead::default();
+    let mut ahead = SourcesAhead::default();
     let loaded = rayon::in_place_scope(|scope| {
-        scope.spawn(|_| ahead = ReadAhead::of(document, assets));
+        scope.spawn(|_| ahead = SourcesAhead::of(document, assets));
         ground::load(document, assets, need)
     })?;
     let (crs, stated_crs, mut lattice) = (loaded.crs, loaded.stated_crs, loaded.lattice);

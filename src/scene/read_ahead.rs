@@ -20,7 +20,7 @@ use sandtable_vector::read::LayeredFile;
 
 /// Files that were read, with the layers that a document takes of them.
 #[derive(Default)]
-pub struct ReadAhead {
+pub struct SourcesAhead {
     /// By name.
     pub(super) files: BTreeMap<String, LayeredFile>,
     /// The layers of these.
@@ -30,7 +30,7 @@ pub struct ReadAhead {
 /// The layers that a document takes of one file.
 type WantedLayers<'a> = BTreeMap<LayerKey, Cow<'a, FeatureSource>>;
 
-impl ReadAhead {
+impl SourcesAhead {
     /// Reads the extracts that the tables of a document name.
     pub fn of(document: &Document, assets: &Assets) -> Self {
         let files: Vec<(String, WantedLayers<'_>)> = extracts(document, assets).into_iter().collect();
@@ -79,7 +79,7 @@ fn is_extract(name: &str) -> bool {
 }
 
 /// Reads a file and makes the layers that are wanted of it; `None` where it cannot be read.
-fn read(name: &str, wanted: &WantedLayers<'_>, assets: &Assets) -> Option<ReadAhead> {
+fn read(name: &str, wanted: &WantedLayers<'_>, assets: &Assets) -> Option<SourcesAhead> {
     let bytes = assets.read(name).ok()?;
     let (_, first) = wanted.first_key_value()?;
     let file = LayeredFile::read(name, &bytes, &hints(first))?.ok()?;
@@ -88,7 +88,7 @@ fn read(name: &str, wanted: &WantedLayers<'_>, assets: &Assets) -> Option<ReadAh
     let layer =
         |(key, source): (&LayerKey, &FeatureSource)| Some((key.clone(), file.layer(&hints(source)).ok()?));
     let layers = wanted.into_par_iter().filter_map(layer).collect();
-    Some(ReadAhead { files: BTreeMap::from([(name.to_owned(), file)]), layers })
+    Some(SourcesAhead { files: BTreeMap::from([(name.to_owned(), file)]), layers })
 }
 
 /// What a source states of its file, of which an extract has no companions and states no system.
@@ -108,7 +108,7 @@ mod tests {
         <way id='4'><nd ref='1'/><nd ref='2'/><tag k='highway' v='track'/></way></osm>";
 
     /// What is read ahead of roads with these keys.
-    fn ahead(roads: &[&str]) -> ReadAhead {
+    fn ahead(roads: &[&str]) -> SourcesAhead {
         let tables: String = roads.iter().map(|keys| format!("[[road]]\n{keys}\n")).collect();
         let text = format!("[terrain]\ndem = \"a\"\n{tables}");
         let document = parse("scene.toml", &text).expect("a valid scene");
@@ -117,7 +117,7 @@ mod tests {
         given.add_file("town.xml", EXTRACT.as_bytes().into());
         given.add_file("broken.osm", b"<osm><way".as_slice().into());
         let assets = Assets::new(Path::new("scene.toml"), &[]).expect("a folder").with_given(given);
-        ReadAhead::of(&document, &assets)
+        SourcesAhead::of(&document, &assets)
     }
 
     #[test]

@@ -2,7 +2,6 @@
 
 use std::cell::{Cell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Range;
 use std::sync::Arc;
 
 use glam::DVec2;
@@ -12,7 +11,9 @@ use crate::assets::Assets;
 use crate::attributes::Attributes;
 use crate::class_raster::{ClassRaster, ClassRasterError};
 use crate::layer_key::{LayerKey, layer_key};
-use crate::read_ahead::ReadAhead;
+use crate::picked_shapes::PickedShapes;
+use crate::read_ahead::SourcesAhead;
+use crate::reading_notes::ReadingNotes;
 use crate::scene_findings::SceneFindings;
 use crate::source_filter::{filter_of, values_of};
 use crate::source_reach::{ShapeReach, SourceReach};
@@ -55,16 +56,7 @@ pub struct Sources<'a> {
     /// Where the sources lie, by the first byte that states them.
     reaches: RefCell<BTreeMap<usize, SourceReach>>,
     /// What reading the files left out or took for something else, in the order of reading.
-    reading: RefCell<Vec<ReadingNote>>,
-}
-
-/// A sentence on how a file was read.
-struct ReadingNote {
-    code: FindingCode,
-    /// The bytes of the scene file that name the file.
-    span: Range<usize>,
-    file: String,
-    text: String,
+    reading: RefCell<ReadingNotes>,
 }
 
 /// A shape with the properties of its feature.
@@ -86,32 +78,14 @@ const SHAPES: usize = 32;
 /// The crossings up to which polygons are counted side by side; of one that has more, what is left for the scene decides.
 const FEW_CROSSINGS: usize = 64;
 
-/// The shapes of some features of a file, in its order.
-struct PickedShapes<T> {
-    shapes: Vec<Sourced<T>>,
-    /// How many features match and have another shape, by kind.
-    of_other_shape: BTreeMap<&'static str, usize>,
-}
-
-impl<T> PickedShapes<T> {
-    /// Adds the shapes of a feature whose geometry is of a kind.
-    fn add(&mut self, attributes: &Attributes, kind: &'static str, shapes: Vec<T>) {
-        if shapes.is_empty() {
-            *self.of_other_shape.entry(kind).or_default() += 1;
-        }
-        let sourced = |shape| Sourced { attributes: attributes.clone(), shape, crossings: 0 };
-        self.shapes.extend(shapes.into_iter().map(sourced));
-    }
-}
-
 impl<'a> Sources<'a> {
     /// Sources that read through `assets` and place through `frame`.
     pub fn new(frame: &'a WorldFrame<'a>, assets: &'a Assets) -> Self {
-        Self::with(frame, assets, ReadAhead::default())
+        Self::with(frame, assets, SourcesAhead::default())
     }
 
     /// As [`Self::new`], with what was read of the document's files before.
-    pub fn with(frame: &'a WorldFrame<'a>, assets: &'a Assets, ahead: ReadAhead) -> Self {
+    pub fn with(frame: &'a WorldFrame<'a>, assets: &'a Assets, ahead: SourcesAhead) -> Self {
         let crossings_left = Cell::new(RING_CROSSINGS.count());
         Self {
             frame,
@@ -300,7 +274,7 @@ impl<'a> Sources<'a> {
             _ => true,
         };
         let picked_of = |(portion, features): (usize, &[Feature])| {
-            let mut picked = PickedShapes { shapes: Vec::new(), of_other_shape: BTreeMap::new() };
+            let mut picked = PickedShapes::default();
             let matching = features.iter().enumerate().filter(|(_, feature)| filter.matches(feature));
             for (index, feature) in matching {
                 let attributes = Attributes::new(Arc::clone(&layer), portion * FEATURES + index);
@@ -312,17 +286,13 @@ impl<'a> Sources<'a> {
         };
         let portions: Vec<PickedShapes<T>> =
             layer.features.par_chunks(FEATURES).enumerate().map(picked_of).collect();
-        let (mut shapes, mut of_other_shape) = (Vec::new(), BTreeMap::<&str, usize>::new());
-        for picked in portions {
-            shapes.extend(picked.shapes);
-            for (kind, count) in picked.of_other_shape {
-                *of_other_shape.entry(kind).or_default() += count;
-            }
-        }
+        let mut all = PickedShapes::default();
+        portions.into_iter().for_each(|picked| all.append(picked));
+        let PickedShapes { shapes, of_other_shape } = all;
         if shapes.is_empty() && !self.class_rasters.borrow().contains(file.as_str()) {
             return Err(self.nothing_found(source, file, &filter, &layer));
         }
-        self.note_other_shapes(file, &of_other_shape);
+        self.reading.borrow_mut().add_other_shapes(file, &of_other_shape);
         Ok((layer.crs.clone(), shapes))
     }
 
@@ -390,13 +360,13 @@ impl<'a> Sources<'a> {
         if let Some(given) = self.assets.given().layer(file) {
             self.check_only_layer(file, source, "features in memory")?;
             let layer = self.given_layer(given, &key, stated);
-            self.note_reading(file, &layer);
+            self.reading.borrow_mut().add_of_layer(file, &layer);
             self.layers.borrow_mut().insert(key, Arc::clone(&layer));
             return Ok(layer);
         }
         if let Some(layer) = self.class_layer(file, source, &key)? {
             let layer = Arc::new(layer);
-            self.note_reading(file, &layer);
+            self.reading.borrow_mut().add_of_layer(file, &layer);
             self.layers.borrow_mut().insert(key, Arc::clone(&layer));
             return Ok(layer);
         }
@@ -417,7 +387,7 @@ impl<'a> Sources<'a> {
             self.city_models.borrow_mut().insert(key.clone(), Arc::new(model));
         }
         let layer = Arc::new(layer);
-        self.note_reading(file, &layer);
+        self.reading.borrow_mut().add_of_layer(file, &layer);
         self.layers.borrow_mut().insert(key, Arc::clone(&layer));
         Ok(layer)
     }
@@ -490,41 +460,9 @@ impl<'a> Sources<'a> {
         }
     }
 
-    /// Keeps what reading a file left out. What several layers of a file have in common is kept once.
-    fn note_reading(&self, file: &Stated<String>, layer: &VectorLayer) {
-        let mut reading = self.reading.borrow_mut();
-        let faults = layer.faults.iter().map(|text| (FindingCode::RecordsBroken, text));
-        for (code, text) in faults.chain(layer.notes.iter().map(|text| (FindingCode::VectorRead, text))) {
-            if !reading.iter().any(|known| known.text == *text && known.file == file.as_str()) {
-                let span = file.span().unwrap_or_default();
-                reading.push(ReadingNote { code, span, file: file.to_string(), text: text.clone() });
-            }
-        }
-    }
-
-    /// Keeps how many features of a table match and are left out, because they have another shape than it draws.
-    fn note_other_shapes(&self, file: &Stated<String>, of_other_shape: &BTreeMap<&str, usize>) {
-        let count: usize = of_other_shape.values().sum();
-        if count == 0 {
-            return;
-        }
-        let kinds: Vec<&str> = of_other_shape.keys().copied().collect();
-        let (features, have) = if count == 1 { ("feature", "has") } else { ("features", "have") };
-        let kinds = kinds.join(" and ");
-        let text =
-            format!("left out: {count} {features} that {have} another shape than the table draws: {kinds}");
-        let (code, span) = (FindingCode::LeftOut, file.span().unwrap_or_default());
-        let mut reading = self.reading.borrow_mut();
-        if !reading.iter().any(|known| known.text == text && known.span == span) {
-            reading.push(ReadingNote { code, span, file: file.to_string(), text });
-        }
-    }
-
     /// Reports what reading the files left out, or took for something else, once.
     pub fn report_reading(&self, findings: &mut SceneFindings) {
-        for ReadingNote { code, span, file, text } in self.reading.take() {
-            findings.add(code, span, format!("'{}': {text}", quoted(&file)));
-        }
+        self.reading.take().report(findings);
     }
 
     /// The system that the file of a source states and that its `crs` takes the place of; `None` of a source that was not
