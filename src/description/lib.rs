@@ -36,6 +36,7 @@ pub mod styles;
 pub mod symbols;
 mod table_key;
 mod table_name;
+pub mod table_sources;
 pub mod unused;
 mod value;
 pub mod words;

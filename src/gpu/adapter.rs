@@ -252,17 +252,11 @@ fn supports_samples(adapter: &wgpu::Adapter) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// A device of this machine; `None` with a loud line where there is none.
-    fn gpu() -> Option<Gpu> {
-        let opened = Gpu::open(&[GpuApi::Vulkan, GpuApi::Gl]);
-        assert!(opened.is_ok() || std::env::var_os("SANDTABLE_REQUIRE_GPU").is_none(), "{opened:?}");
-        opened.inspect_err(|error| eprintln!("SKIPPED: no GPU adapter: {error}")).ok()
-    }
+    use crate::test_device::gpu;
 
     #[test]
     fn a_lost_device_and_exhausted_memory_are_errors_of_their_own() {
-        let Some(gpu) = gpu() else { return };
+        let Some(gpu) = gpu(&[GpuApi::Vulkan, GpuApi::Gl]) else { return };
         let exhausted = gpu.guarded("testing", || {
             let usage = wgpu::BufferUsages::STORAGE;
             let size = 1 << 60;

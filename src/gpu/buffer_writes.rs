@@ -108,32 +108,16 @@ impl<'a> BufferWrites<'a> {
 mod tests {
     use super::*;
     use crate::adapter::GpuApi;
-
-    /// A device of this machine; `None` with a loud line where there is none.
-    fn gpu() -> Option<Gpu> {
-        let opened = Gpu::open(&[GpuApi::Vulkan, GpuApi::Gl]);
-        assert!(opened.is_ok() || std::env::var_os("SANDTABLE_REQUIRE_GPU").is_none(), "{opened:?}");
-        opened.inspect_err(|error| eprintln!("SKIPPED: no GPU adapter: {error}")).ok()
-    }
+    use crate::test_device::{gpu, read};
 
     fn buffer(gpu: &Gpu, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
         let descriptor = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
         gpu.device.create_buffer(&descriptor)
     }
 
-    /// What `buffer` holds once `encoder`'s commands are carried out.
-    fn read(gpu: &Gpu, mut encoder: wgpu::CommandEncoder, from: &wgpu::Buffer) -> Vec<u8> {
-        let copy = buffer(gpu, from.size(), wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ);
-        encoder.copy_buffer_to_buffer(from, 0, &copy, 0, from.size());
-        gpu.queue.submit([encoder.finish()]);
-        copy.map_async(wgpu::MapMode::Read, .., |result| result.expect("mapped"));
-        gpu.device.poll(wgpu::PollType::Wait { submission_index: None, timeout: None }).expect("copied");
-        copy.get_mapped_range(..).expect("mapped").to_vec()
-    }
-
     #[test]
     fn what_is_staged_arrives_in_its_order_as_what_the_queue_writes() {
-        let Some(gpu) = gpu() else { return };
+        let Some(gpu) = gpu(&[GpuApi::Vulkan, GpuApi::Gl]) else { return };
         let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
         let mut ring = StagingRing::new(&gpu);
         // More than the ring keeps in one of the frames, and frames after it.
@@ -158,7 +142,7 @@ mod tests {
 
     #[test]
     fn the_buffers_of_the_ring_are_used_again() {
-        let Some(gpu) = gpu() else { return };
+        let Some(gpu) = gpu(&[GpuApi::Vulkan, GpuApi::Gl]) else { return };
         let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
         let (mut ring, to) = (StagingRing::new(&gpu), buffer(&gpu, 1 << 16, usage));
         let mut buffers = Vec::new();

@@ -269,6 +269,7 @@ mod tests {
     use crate::culling::{CullingView, ItemGroup};
     use crate::geometry::GpuGeometry;
     use crate::materials::{TexturePlaces, TextureScope};
+    use crate::test_device::{gpu, read};
     use sandtable_draw::color::Srgba;
     use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId};
     use sandtable_draw::material::{AlphaMode, Material};
@@ -337,32 +338,16 @@ mod tests {
     }
 
     /// What `buffer` holds, as numbers of 32 bits.
-    fn read(gpu: &Gpu, buffer: &wgpu::Buffer) -> Vec<u32> {
-        let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
-        let size = buffer.size();
-        let descriptor = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
-        let copy = gpu.device.create_buffer(&descriptor);
-        let mut encoder = gpu.encoder("copy");
-        encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, size);
-        gpu.queue.submit([encoder.finish()]);
-        copy.map_async(wgpu::MapMode::Read, .., |result| result.expect("mapped"));
-        gpu.device.poll(wgpu::PollType::Wait { submission_index: None, timeout: None }).expect("copied");
-        let mapped = copy.get_mapped_range(..).expect("mapped");
-        mapped.as_chunks().0.iter().map(|bytes| u32::from_ne_bytes(*bytes)).collect()
+    fn numbers(gpu: &Gpu, buffer: &wgpu::Buffer) -> Vec<u32> {
+        let bytes = read(gpu, gpu.encoder("copy"), buffer);
+        bytes.as_chunks().0.iter().map(|bytes| u32::from_ne_bytes(*bytes)).collect()
     }
 
     /// Compares what the device finds to be seen with what the processor does, for all cameras, on every adapter.
     fn compare(list: &DrawList) -> Vec<usize> {
         let mut totals = Vec::new();
         for api in [GpuApi::Vulkan, GpuApi::Gl] {
-            let gpu = match Gpu::open(&[api]) {
-                Ok(gpu) => gpu,
-                Err(error) => {
-                    assert!(std::env::var_os("SANDTABLE_REQUIRE_GPU").is_none(), "{error}");
-                    eprintln!("SKIPPED: no GPU adapter: {error}");
-                    continue;
-                }
-            };
+            let Some(gpu) = gpu(&[api]) else { continue };
             if InstanceCulling::of(&gpu, list.items.len()) == InstanceCulling::Processor {
                 eprintln!("SKIPPED: {} culls nothing", gpu.name());
                 continue;
@@ -390,7 +375,7 @@ mod tests {
         culled.see(&mut BufferWrites::by_queue(gpu), camera);
         culled.record(&mut encoder, None);
         gpu.queue.submit([encoder.finish()]);
-        let (calls, seen) = (read(gpu, &culled.calls), read(gpu, &culled.seen));
+        let (calls, seen) = (numbers(gpu, &culled.calls), numbers(gpu, &culled.seen));
         let view = CullingView::new(camera);
         let mut total = 0;
         for (run, call) in plan.culled.iter().enumerate() {

@@ -46,6 +46,8 @@ mod plan;
 pub mod readback;
 mod shadow;
 pub mod shadow_maps;
+#[cfg(test)]
+mod test_device;
 mod tiled_picture;
 mod tiles;
 mod uniforms;

@@ -8,10 +8,10 @@ use std::ops::Range;
 
 use crate::context::LintContext;
 use crate::sink::FindingSink;
-use crate::table_sources::table_sources;
 use sandtable_description::document::Document;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::stated::Stated;
+use sandtable_description::table_sources::table_sources;
 use sandtable_geom::position::Position;
 
 /// The largest square of something with a place of its own on the ground: a model, a line, an observer, an eye. Six digits

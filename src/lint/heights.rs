@@ -10,9 +10,9 @@ use glam::DVec2;
 
 use crate::context::LintContext;
 use crate::sink::FindingSink;
-use crate::table_sources::{SourceRole, table_sources};
 use sandtable_description::features::ModelPlacement;
 use sandtable_description::finding_code::FindingCode;
+use sandtable_description::table_sources::{SourceRole, table_sources};
 use sandtable_description::words::Clamp;
 use sandtable_geom::length_unit::FOOT_M;
 use sandtable_scene::attributes::Attributes;

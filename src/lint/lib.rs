@@ -30,7 +30,6 @@ mod road_profiles;
 pub mod sink;
 mod standing;
 mod systems;
-mod table_sources;
 mod terrain;
 mod tolerance;
 mod unseen;

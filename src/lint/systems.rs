@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use crate::context::LintContext;
 use crate::sink::FindingSink;
-use crate::table_sources::table_sources;
 use sandtable_description::finding_code::FindingCode;
+use sandtable_description::table_sources::table_sources;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::datum_shift::DatumShift;
 use sandtable_scene::overridden_crs::OverriddenCrs;

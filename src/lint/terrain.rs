@@ -6,9 +6,9 @@ use glam::DVec2;
 
 use crate::context::LintContext;
 use crate::sink::FindingSink;
-use crate::table_sources::{SourceRole, table_sources};
 use sandtable_base::message::suggest::quoted;
 use sandtable_description::finding_code::FindingCode;
+use sandtable_description::table_sources::{SourceRole, table_sources};
 use sandtable_geom::rect::Rect;
 use sandtable_scene::source_reach::SourceOverlap;
 

@@ -7,9 +7,9 @@ use glam::DVec2;
 
 use crate::context::LintContext;
 use crate::sink::FindingSink;
-use crate::table_sources::table_sources;
 use sandtable_description::feature_source::FeatureSource;
 use sandtable_description::finding_code::FindingCode;
+use sandtable_description::table_sources::table_sources;
 use sandtable_terrain::full_resolution::FullResolution;
 use sandtable_terrain::triangle_surface::TriangleSurface;
 use sandtable_vector::feature::Geometry;

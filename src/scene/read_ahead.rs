@@ -13,6 +13,7 @@ use crate::assets::Assets;
 use crate::layer_key::{LayerKey, layer_key};
 use sandtable_description::document::Document;
 use sandtable_description::feature_source::FeatureSource;
+use sandtable_description::table_sources::{TableSource, table_sources};
 use sandtable_remote::address::is_address;
 use sandtable_vector::feature::VectorLayer;
 use sandtable_vector::hints::VectorHints;
@@ -48,7 +49,7 @@ impl SourcesAhead {
 /// The extracts that a document names.
 fn extracts<'a>(document: &'a Document, assets: &Assets) -> BTreeMap<String, WantedLayers<'a>> {
     let mut files: BTreeMap<String, WantedLayers<'_>> = BTreeMap::new();
-    for source in sources(document) {
+    for TableSource { source, .. } in table_sources(document) {
         let Some(file) = source.file.as_ref().filter(|file| is_extract(file)) else { continue };
         if assets.given().layer(file).is_none() {
             let (name, key) = (file.to_string(), layer_key(file, &source));
@@ -56,20 +57,6 @@ fn extracts<'a>(document: &'a Document, assets: &Assets) -> BTreeMap<String, Wan
         }
     }
     files
-}
-
-/// The sources of the tables that shape the ground, lie on it or name what does.
-fn sources(document: &Document) -> impl Iterator<Item = Cow<'_, FeatureSource>> {
-    let water = document.rivers.iter().map(|table| &table.source);
-    let water = water.chain(document.coasts.iter().map(|table| &table.source));
-    let water = water.chain(document.lakes.iter().map(|table| &table.source));
-    let ways = document.roads.iter().map(|table| &table.source);
-    let ways = ways.chain(document.bridges.iter().map(|table| &table.source));
-    let ways = ways.chain(document.fences.iter().map(|table| &table.source));
-    let areas = document.areas.iter().map(|table| &table.source);
-    let areas = areas.chain(document.buildings.iter().map(|table| &table.source));
-    let labels = document.labels.iter().filter_map(|table| table.source());
-    water.chain(ways).chain(areas).map(Cow::Borrowed).chain(labels.map(Cow::Owned))
 }
 
 /// Whether a name is that of an OpenStreetMap extract on the disk.

@@ -34,6 +34,15 @@ struct TaggedFeatures {
     texts: Vec<String>,
 }
 
+impl TaggedFeatures {
+    /// Keeps a text where it is one of the first, and one more than is told of, which says that there are more.
+    fn add_text(&mut self, text: String) {
+        if self.texts.len() <= MOST_TEXTS && !self.texts.contains(&text) {
+            self.texts.push(text);
+        }
+    }
+}
+
 /// Counts of properties that were guessed at or not understood.
 #[derive(Clone, Debug, Default)]
 pub struct TagNotes {
@@ -50,9 +59,7 @@ impl TagNotes {
             Scalar::Number(number) => number.to_string(),
             Scalar::Bool(value) => value.to_string(),
         };
-        if features.texts.len() <= MOST_TEXTS && !features.texts.contains(&text) {
-            features.texts.push(text);
-        }
+        features.add_text(text);
     }
 
     /// Counts what was counted of later features as well.
@@ -60,11 +67,7 @@ impl TagNotes {
         for (key, TaggedFeatures { count, texts }) in later.counts {
             let features = self.counts.entry(key).or_default();
             features.count += count;
-            for text in texts {
-                if features.texts.len() <= MOST_TEXTS && !features.texts.contains(&text) {
-                    features.texts.push(text);
-                }
-            }
+            texts.into_iter().for_each(|text| features.add_text(text));
         }
     }
 

@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
-use sandtable_description::document::Document;
-use sandtable_description::feature_source::FeatureSource;
+use crate::document::Document;
+use crate::feature_source::FeatureSource;
 
 /// A table with a source.
 pub struct TableSource<'a> {
