@@ -1,5 +1,6 @@
 //! The devices that this crate's tests run on, and what their buffers hold.
 
+#[cfg(test)]
 use crate::adapter::{Gpu, GpuApi};
 
 /// A device of this machine by one of some interfaces; `None` with a loud line where there is none. With
