@@ -13,7 +13,7 @@ use std::ops::Range;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::cpu::clip::{MOST_CORNERS, Outline, clipped};
+use crate::cpu::clip::{Outline, SeenPart, clipped};
 use crate::cpu::pattern::SamplePattern;
 use crate::cpu::plane::TrianglePlanes;
 use crate::cpu::raster::{PixelWindow, SubpixelBox, SubpixelPoint, doubled_area, sample_places, snapped};
@@ -101,16 +101,17 @@ struct SeenTriangle {
     offsets: [DVec3; 3],
     /// The same in homogeneous pixels.
     points: [DVec3; 3],
-    outline: Outline,
-    snapped: SnappedOutline,
+    outline: SeenOutline,
     /// The pixels that it may touch.
     window: PixelWindow,
 }
 
-/// An outline in sub-pixels.
-struct SnappedOutline {
-    corners: [SubpixelPoint; MOST_CORNERS],
-    count: usize,
+/// The outline of what is seen of a triangle.
+enum SeenOutline {
+    /// All of it: its corners in sub-pixels.
+    Whole([SubpixelPoint; 3]),
+    /// What is left of it, and the same in sub-pixels.
+    Cut(Box<Outline>, Vec<SubpixelPoint>),
 }
 
 struct ItemSetup<'a> {
@@ -298,22 +299,28 @@ impl<'a> ItemSetup<'a> {
         if !points.iter().all(|point| point.is_finite()) {
             return None;
         }
-        let outline = clipped(points, self.screen)?;
-        let snapped = SnappedOutline::new(&outline);
-        let bounds = SubpixelBox::around(snapped.corners());
+        let outline = match clipped(&points, self.screen)? {
+            SeenPart::Whole => SeenOutline::Whole(points.map(snapped_corner)),
+            SeenPart::Cut(outline) => {
+                let snapped = outline.corners().iter().copied().map(snapped_corner).collect();
+                SeenOutline::Cut(outline, snapped)
+            }
+        };
+        let snapped = outline.snapped();
+        let bounds = SubpixelBox::around(snapped);
         let window = bounds.pixels(self.screen.size);
         let is_drawn = window.from[1] < self.drawn.end && self.drawn.start < window.to[1];
         if !is_drawn || window.is_empty() || bounds.is_between(self.samples) {
             return None;
         }
-        if let [a, b, c] = *snapped.corners() {
+        if let [a, b, c] = *snapped {
             // Counter-clockwise as seen is the negative sense on a picture whose rows run down.
             let area = doubled_area(&[a, c, b]);
             if area == 0 || (area < 0 && !self.two_sided) {
                 return None;
             }
         }
-        Some(SeenTriangle { offsets, points, outline, snapped, window })
+        Some(SeenTriangle { offsets, points, outline, window })
     }
 
     fn add_triangle(&self, chunk: &mut FaceChunk, triangle: u32, id: FaceId) {
@@ -338,7 +345,7 @@ impl<'a> ItemSetup<'a> {
             DepthLayer::Ground | DepthLayer::Solid => 0.0,
         };
         let range = match self.screen.is_parallel {
-            false => nearness_range(outline, self.screen.near),
+            false => nearness_range(outline.corners(&points), self.screen.near),
             true => nearness().map(|corner| corner as f32).into_iter().fold([f32::MAX, f32::MIN], extended),
         };
         let reach = (1.0 + tolerance) as f32;
@@ -347,7 +354,7 @@ impl<'a> ItemSetup<'a> {
 
     /// The outline as a fan of triangles that may touch a pixel that is drawn.
     fn push_pieces(&self, pieces: &mut Vec<FacePiece>, seen: &SeenTriangle, faces_eye: bool, face: FaceId) {
-        let [a, rest @ ..] = seen.snapped.corners() else { return };
+        let [a, rest @ ..] = seen.outline.snapped() else { return };
         let is_whole = rest.len() == 2;
         for pair in rest.windows(2) {
             let (a, b, c) = (*a, pair[0], pair[1]);
@@ -361,24 +368,32 @@ impl<'a> ItemSetup<'a> {
     }
 }
 
-impl SnappedOutline {
-    fn new(outline: &Outline) -> Self {
-        let mut snapped_outline = Self { corners: [[0; 2]; MOST_CORNERS], count: outline.corners().len() };
-        for (slot, corner) in snapped_outline.corners.iter_mut().zip(outline.corners()) {
-            *slot = [snapped(corner.x / corner.z), snapped(corner.y / corner.z)];
+impl SeenOutline {
+    fn snapped(&self) -> &[SubpixelPoint] {
+        match self {
+            Self::Whole(snapped) => snapped,
+            Self::Cut(_, snapped) => snapped,
         }
-        snapped_outline
     }
 
-    fn corners(&self) -> &[SubpixelPoint] {
-        &self.corners[..self.count]
+    /// In homogeneous pixels; `points` are the triangle's corners.
+    fn corners<'a>(&'a self, points: &'a [DVec3; 3]) -> &'a [DVec3] {
+        match self {
+            Self::Whole(_) => points,
+            Self::Cut(outline, _) => outline.corners(),
+        }
     }
+}
+
+/// The sub-pixel position of a corner in homogeneous pixels.
+fn snapped_corner(corner: DVec3) -> SubpixelPoint {
+    [snapped(corner.x / corner.z), snapped(corner.y / corner.z)]
 }
 
 /// The least and greatest `1 / w` among the corners. Cutting a triangle of astronomic size can leave a corner slightly
 /// before the near plane, or even behind the eye: both are clamped to what a camera sees.
-fn nearness_range(outline: &Outline, near: f64) -> [f32; 2] {
-    let inverses = outline.corners().iter().map(|corner| (1.0 / corner.z).clamp(0.0, 1.0 / near) as f32);
+fn nearness_range(corners: &[DVec3], near: f64) -> [f32; 2] {
+    let inverses = corners.iter().map(|corner| (1.0 / corner.z).clamp(0.0, 1.0 / near) as f32);
     inverses.fold([f32::MAX, 0.0], extended)
 }
 

@@ -161,7 +161,7 @@ pub fn cover<const N: usize>(
         let rows = [top, (top + BLOCK).min(height)];
         for left in (0..width).step_by(BLOCK as usize) {
             let columns = [left, (left + BLOCK).min(width)];
-            let extremes = edges.map(|edge| edge.extremes(columns, rows));
+            let extremes = edges.each_ref().map(|edge| edge.extremes(columns, rows));
             if extremes.iter().any(|&(_, greatest)| greatest < 0) {
                 continue;
             }
