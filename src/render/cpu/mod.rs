@@ -25,7 +25,7 @@
 //! Shading takes two thirds of the time and more, shadows where solids are a tenth of that; the rest is triangles (three
 //! corners projected, three planes) and one depth test per covered sample. Eight samples per pixel take a third more time
 //! than one. Memory: 12 bytes per pixel for the picture; 150 bytes per visible triangle of two strips; for each band of 64 rows in work
-//! 12 bytes per pixel and 52 per triangle in it; for each thread 0.3 MiB, and up to 2 MiB more under transparent
+//! 12 bytes per pixel and 8 to 16 per triangle in it; for each thread 0.3 MiB, and up to 2 MiB more under transparent
 //! surfaces; a third of each texture and of the ground map for their coarser levels, and as much again of a texture with
 //! holes for its alpha; the shadow maps.
 

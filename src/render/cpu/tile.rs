@@ -49,10 +49,10 @@ impl<const N: usize> TileScratch<N> {
     }
 }
 
-/// The pixels of `window`, row by row, from all `pieces` of its band in the list's order.
-pub fn draw_tile<const N: usize>(
-    frame: &TileContext<N>,
-    pieces: &[FacePiece],
+/// The pixels of `window`, row by row, from all pieces that may touch it, and perhaps others, in the list's order.
+pub fn draw_tile<'a, const N: usize>(
+    frame: &TileContext<'a, N>,
+    pieces: impl Iterator<Item = &'a FacePiece>,
     window: PixelWindow,
     scratch: &mut TileScratch<N>,
 ) -> Vec<ResolvedPixel> {
@@ -60,7 +60,7 @@ pub fn draw_tile<const N: usize>(
     scratch.blend.clear(window);
     let touches_tile = |piece: &&FacePiece| !piece.window.intersection(window).is_empty();
     let (transparent, others): (Vec<&FacePiece>, Vec<&FacePiece>) =
-        pieces.iter().filter(touches_tile).partition(|piece| piece.alpha == AlphaMode::Blend);
+        pieces.filter(touches_tile).partition(|piece| piece.alpha == AlphaMode::Blend);
     let mut solids = Vec::new();
     for piece in others {
         let face = frame.geometry.face(piece.face);
