@@ -83,14 +83,6 @@ pub struct DrawMesh {
     pub triangles: Vec<[VertexId; 3]>,
 }
 
-impl DrawMesh {
-    /// The same mesh in memory that the calling thread takes, without any to spare: allocators keep what each thread takes
-    /// apart, so that what many threads make and one frees is not there for the next that needs it.
-    pub fn packed(self) -> Self {
-        Self { vertices: self.vertices.as_slice().to_vec(), triangles: self.triangles.as_slice().to_vec() }
-    }
-}
-
 impl MeshSink<DrawVertex> for DrawMesh {
     fn vertex(&mut self, vertex: DrawVertex) -> VertexId {
         let id = VertexId::new(self.vertices.len());

@@ -17,12 +17,12 @@ use crate::drapes::{
 use crate::lake_tint::longest_lakes;
 use crate::line_scale::LineScale;
 use crate::placed_text::PlacedText;
-use crate::symbols::{DrapedSymbol, PlanFinish, PlannedSymbol, SymbolUv, planned_with};
+use crate::symbols::{DrapedSymbol, PlannedSymbol, SymbolUv, planned_with};
 use crate::{airspace, ground, models, overlay, solids, table, uprights, voids};
 use sandtable_draw::lighting::Lighting;
 use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, FeatureId, MaterialId};
 use sandtable_geom::rect::Rect;
-use sandtable_ribbon::drape::drape;
+use sandtable_ribbon::drape::Draper;
 use sandtable_ribbon::texture::RibbonSurface;
 use sandtable_roam::displayed::DisplayedTerrain;
 use sandtable_scene::feature_meshes::Ribbon;
@@ -182,10 +182,9 @@ fn ribbons(
 ) -> Vec<LaidItem> {
     let sources = sources(scene);
     let lakes = longest_lakes(scene, |bounds: &Rect| Some(bounds.size().max_element()));
-    let draped = |ribbon: &Ribbon| {
+    let draped = |draper: &mut Draper, ribbon: &Ribbon| {
         let taper = sources.get(&ribbon.feature).and_then(|symbol| tapered(ribbon, symbol));
-        let mut mesh = DrawMesh::default();
-        drape(taper.as_ref().unwrap_or(&ribbon.plan), displayed, &mut mesh);
+        let mut mesh = draper.drape(taper.as_ref().unwrap_or(&ribbon.plan), displayed);
         let lake = lakes.get(&ribbon.feature).filter(|_| ribbon.surface == RibbonSurface::Lake);
         let tint = lake.map(|lake| {
             let tint = lake.tint();
@@ -194,7 +193,7 @@ fn ribbons(
         });
         (mesh, tint)
     };
-    let meshes: Vec<_> = scene.ribbons.par_iter().map(draped).collect();
+    let meshes: Vec<_> = scene.ribbons.par_iter().map_init(Draper::default, draped).collect();
     let item = |(ribbon, (mesh, tint)): (&Ribbon, (DrawMesh, _))| {
         let material = match tint {
             Some(pixels) => {
@@ -222,24 +221,18 @@ fn symbols<'a>(
     scale: LineScale<'_>,
     shown: ItemShown,
 ) -> Vec<LaidItem> {
-    let draped = |PlannedSymbol { symbol, casing, fill, deck }: PlannedSymbol<'a>| {
+    let draped = |draper: &mut Draper, planned: PlannedSymbol<'a>| {
+        let PlannedSymbol { symbol, casing, fill, deck } = planned;
         // A page shows bridges as they are, and drapes all symbols.
         let [casing, fill] = if deck.is_some() { Default::default() } else { [casing, fill] };
         let [casing, fill] = [casing, fill].map(|plan| {
-            let mut mesh = DrawMesh::default();
-            drape(&plan, displayed, &mut mesh);
+            let mut mesh = draper.drape(&plan, displayed);
             mesh.vertices.iter_mut().for_each(|vertex| vertex.uv = [CLASS_U, vertex.uv[0]]);
             mesh
         });
         DrapedSymbol { symbol, casing, fill, is_raised: false }
     };
-    let (mut lines, _) = planned_with(
-        scene,
-        camera,
-        scale,
-        SymbolUv::Across,
-        PlanFinish { make: draped, keep: |draped| draped },
-    );
+    let (mut lines, _) = planned_with(scene, camera, scale, SymbolUv::Across, draped);
     // Mouths of rivers lie over shores.
     lines.sort_by(|a, b| {
         let is_shore = |line: &DrapedSymbol<'_>| line.symbol.surface == RibbonSurface::ShoreLine;

@@ -7,19 +7,19 @@
 use std::collections::BTreeMap;
 
 use glam::Vec3;
+use rayon::prelude::*;
 
 use crate::add_mesh;
 use crate::detail::Viewer;
 use crate::lake_tint::large_lakes;
 use crate::line_scale::LineScale;
 use crate::markings::faded;
-use crate::portions::in_portions;
 use crate::symbols::{DrapedSymbol, RibbonShow, Symbols, symbols};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh, FeatureId, MaterialId};
 use sandtable_draw::material::{AlphaMode, Material, NormalSource};
 use sandtable_draw::pixels::Pixels;
-use sandtable_ribbon::drape::drape;
+use sandtable_ribbon::drape::Draper;
 use sandtable_ribbon::partition;
 use sandtable_ribbon::plan::PlanMesh;
 use sandtable_ribbon::stroke::{StrokeOptions, StrokePath, stroke};
@@ -98,12 +98,12 @@ pub(super) fn add(
     let scale = line_scale().map(|(_, scale)| scale);
     let sources = sources(scene);
     let lakes = scale.as_ref().map(|scale| large_lakes(scene, scale)).unwrap_or_default();
-    let draped_ribbon = |ribbon: &Ribbon| {
+    let draped_ribbon = |draper: &mut Draper, ribbon: &Ribbon| {
         let mut draped = DrapedRibbon::default();
         if shows.get(&ribbon.feature) != Some(&RibbonShow::Replaced) {
             let source = sources.get(&ribbon.feature).filter(|_| scale.is_some());
             let tapered = source.and_then(|symbol| tapered(ribbon, symbol));
-            drape(tapered.as_ref().unwrap_or(&ribbon.plan), displayed, &mut draped.ribbon);
+            draped.ribbon = draper.drape(tapered.as_ref().unwrap_or(&ribbon.plan), displayed);
             let scale = scale.as_ref().filter(|_| ribbon.surface != ribbon.surface.unmarked());
             draped.markings = scale.map(|scale| faded(&draped.ribbon, scale));
             let lake = lakes.get(&ribbon.feature).filter(|_| ribbon.surface == RibbonSurface::Lake);
@@ -115,7 +115,7 @@ pub(super) fn add(
         }
         draped
     };
-    let meshes = in_portions(&scene.ribbons, |ribbon| Some(draped_ribbon(ribbon)), DrapedRibbon::packed);
+    let meshes: Vec<_> = scene.ribbons.par_iter().map_init(Draper::default, draped_ribbon).collect();
     let (mut shores, mut rivers, mut roads) = (Vec::new(), Vec::new(), Vec::new());
     let (raised, draped): (Vec<_>, Vec<_>) = draped.into_iter().partition(|draped| draped.is_raised);
     for draped in draped {
@@ -152,13 +152,6 @@ pub(super) fn add(
     }
     add_up_to(&mut ribbons, u8::MAX);
     RaisedSymbols::new(raised)
-}
-
-impl DrapedRibbon {
-    fn packed(self) -> Self {
-        let Self { ribbon, markings, tint } = self;
-        Self { ribbon: ribbon.packed(), markings: markings.map(DrawMesh::packed), tint }
-    }
 }
 
 /// The rivers that have a source, by feature.

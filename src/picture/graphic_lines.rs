@@ -115,8 +115,7 @@ impl GraphicPen {
     /// The lines draped on the displayed ground: grounds and casings, then lines.
     pub fn draped(&self, displayed: &dyn TriangleSurface) -> [Vec<DrapedPart>; 2] {
         let part = |plan: &PlanMesh, color: Srgba, feature: FeatureId| {
-            let mut mesh = DrawMesh::default();
-            drape(plan, displayed, &mut mesh);
+            let mesh = drape(plan, displayed);
             DrapedPart { color, mesh, feature }
         };
         let grounds = self.grounds.iter().map(|((feature, color), plan)| part(plan, Srgba(*color), *feature));

@@ -26,7 +26,6 @@ mod nested_surface;
 mod overlay;
 pub mod panorama;
 pub mod placed_text;
-mod portions;
 mod post_tint;
 pub mod recut;
 pub mod setting;

@@ -9,7 +9,7 @@ use crate::placed_text::PlacedText;
 use crate::post_tint::{self, TINT_LAYER, TintPlan};
 use crate::{add_mesh, analyses, graphics, sight};
 use sandtable_draw::color::Srgba;
-use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh};
+use sandtable_draw::list::{DepthLayer, DrawList};
 use sandtable_ribbon::drape::drape;
 use sandtable_scene::analyses::SceneAnalysis;
 use sandtable_scene::scene_model::SceneModel;
@@ -100,8 +100,7 @@ pub(super) fn add_ground_tints(
 
 fn add_tints(list: &mut DrawList, tints: Vec<TintPlan>, layer: DepthLayer, displayed: &dyn TriangleSurface) {
     for TintPlan { plan, color, texture, feature } in tints {
-        let mut mesh = DrawMesh::default();
-        drape(&plan, displayed, &mut mesh);
+        let mesh = drape(&plan, displayed);
         if !mesh.triangles.is_empty() {
             let material = post_tint::add_material(list, color, texture);
             add_mesh(list, mesh, material, layer, feature);

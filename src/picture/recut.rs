@@ -255,7 +255,7 @@ impl GroundSheets {
     /// Plans the symbols of the lines that are too narrow for an eye that turns around where `camera` is. They are not cut
     /// yet; returns the patches in which what lies has changed.
     pub fn plan_symbols(&mut self, scene: &SceneModel, camera: &Camera) -> Vec<usize> {
-        let (lines, shows) = planned(scene, camera, LineScale::around(camera), |symbol| symbol);
+        let (lines, shows) = planned(scene, camera, LineScale::around(camera));
         let (mut shores, mut rivers, mut roads) = (Vec::new(), Vec::new(), Vec::new());
         // A walk shows bridges as they are, and drapes all symbols.
         for line in lines.into_iter().filter(|line| line.deck.is_none()) {

@@ -19,7 +19,6 @@ use rayon::prelude::*;
 
 use crate::line_scale::LineScale;
 use crate::line_view::{self, LineView};
-use crate::portions::in_portions;
 use sandtable_draw::list::{DrawMesh, FeatureId};
 use sandtable_earthworks::alignment::{Alignment, Support, Width};
 use sandtable_geom::polyline::Polyline;
@@ -28,7 +27,7 @@ use sandtable_geom::segment;
 use sandtable_geom::simplify::simplified;
 use sandtable_geom::spline;
 use sandtable_mesh::sink::MeshSink;
-use sandtable_ribbon::drape::drape;
+use sandtable_ribbon::drape::Draper;
 use sandtable_ribbon::plan::{PlanMesh, PlanVertex};
 use sandtable_ribbon::stroke::{StrokeOptions, StrokePath, stroke};
 use sandtable_ribbon::texture::RibbonSurface;
@@ -149,27 +148,23 @@ pub(super) fn symbols<'a>(
     scale: LineScale<'_>,
     displayed: &dyn TriangleSurface,
 ) -> Symbols<'a> {
-    let mesh = |plan: &PlanMesh, deck: Option<&DeckLine>, above_m: f64| {
-        let mut mesh = DrawMesh::default();
-        drape(plan, displayed, &mut mesh);
+    let mesh = |draper: &mut Draper, plan: &PlanMesh, deck: Option<&DeckLine>, above_m: f64| {
+        let mut mesh = draper.drape(plan, displayed);
         if let Some(deck) = deck {
             raise(&mut mesh, |at| scene.scale.world_z(deck.level_at(at)) + deck.parapet_m + above_m);
         }
         mesh
     };
-    let draped = |PlannedSymbol { symbol, casing, fill, deck }: PlannedSymbol<'a>| DrapedSymbol {
-        symbol,
-        casing: mesh(&casing, deck, CASING_ABOVE_M),
-        fill: mesh(&fill, deck, FILL_ABOVE_M),
-        is_raised: deck.is_some(),
+    let draped = |draper: &mut Draper, planned: PlannedSymbol<'a>| {
+        let PlannedSymbol { symbol, casing, fill, deck } = planned;
+        DrapedSymbol {
+            symbol,
+            casing: mesh(draper, &casing, deck, CASING_ABOVE_M),
+            fill: mesh(draper, &fill, deck, FILL_ABOVE_M),
+            is_raised: deck.is_some(),
+        }
     };
-    let packed = |draped: DrapedSymbol<'a>| DrapedSymbol {
-        casing: draped.casing.packed(),
-        fill: draped.fill.packed(),
-        ..draped
-    };
-    let finish = PlanFinish { make: draped, keep: packed };
-    let (draped, shows) = planned_with(scene, camera, scale, SymbolUv::Share, finish);
+    let (draped, shows) = planned_with(scene, camera, scale, SymbolUv::Share, draped);
     Symbols { draped, shows }
 }
 
@@ -191,31 +186,23 @@ pub(super) enum SymbolUv {
     Across,
 }
 
-/// What `finish` makes of each symbol that `camera` sees by `scale`, and how the ribbons beside them show.
-pub(super) fn planned<'a, T: Send>(
+/// The symbols that `camera` sees by `scale`, and how the ribbons beside them show.
+pub(super) fn planned<'a>(
     scene: &'a SceneModel,
     camera: &Camera,
     scale: LineScale<'_>,
-    finish: impl Fn(PlannedSymbol<'a>) -> T + Sync,
-) -> (Vec<T>, BTreeMap<FeatureId, RibbonShow>) {
-    planned_with(scene, camera, scale, SymbolUv::Share, PlanFinish { make: finish, keep: |made| made })
+) -> (Vec<PlannedSymbol<'a>>, BTreeMap<FeatureId, RibbonShow>) {
+    planned_with(scene, camera, scale, SymbolUv::Share, |_, symbol| symbol)
 }
 
-/// What is made of each planned symbol.
-pub(super) struct PlanFinish<M, K> {
-    /// Makes it, on any thread.
-    pub make: M,
-    /// Readies it to be kept, on the calling thread.
-    pub keep: K,
-}
-
-/// [`planned`] with texture coordinates of another meaning.
+/// What `finish` makes of each of [`planned`], on any thread, with what that thread drapes with; texture coordinates have the
+/// meaning `uv`.
 pub(super) fn planned_with<'a, T: Send>(
     scene: &'a SceneModel,
     camera: &Camera,
     scale: LineScale<'_>,
     uv: SymbolUv,
-    PlanFinish { make, keep }: PlanFinish<impl Fn(PlannedSymbol<'a>) -> T + Sync, impl Fn(T) -> T>,
+    finish: impl Fn(&mut Draper, PlannedSymbol<'a>) -> T + Sync,
 ) -> (Vec<T>, BTreeMap<FeatureId, RibbonShow>) {
     let lines = LineView::new(scene, camera, scale);
     let view = SymbolView { lines, scale: scene.scale, water: scene.water() };
@@ -235,7 +222,7 @@ pub(super) fn planned_with<'a, T: Send>(
         let most = shows.entry(symbol.feature).or_insert(show);
         *most = show.max(*most);
     }
-    let plan = |(symbol, seen): &(&'a LineSymbol, SeenLine)| {
+    let plan = |draper: &mut Draper, (symbol, seen): &(&'a LineSymbol, SeenLine)| {
         let dashed: Vec<Vec<SymbolVertex>>;
         let runs = if symbol.surface == RibbonSurface::Track {
             dashed = seen.runs.iter().flat_map(|run| dashes(run, symbol.least_px)).collect();
@@ -254,10 +241,10 @@ pub(super) fn planned_with<'a, T: Send>(
             PlanMesh::default()
         };
         let deck = symbol.deck.as_ref().filter(|deck| view.shows_apart(deck));
-        make(PlannedSymbol { symbol, casing, fill: strokes(SymbolPart::Fill), deck })
+        finish(draper, PlannedSymbol { symbol, casing, fill: strokes(SymbolPart::Fill), deck })
     };
-    let narrow = |line: &(&'a LineSymbol, SeenLine)| (!line.1.runs.is_empty()).then(|| plan(line));
-    (in_portions(&seen, narrow, keep), shows)
+    let narrow = seen.par_iter().filter(|(_, seen)| !seen.runs.is_empty());
+    (narrow.map_init(Draper::default, plan).collect(), shows)
 }
 
 /// A vertex of a line in view.

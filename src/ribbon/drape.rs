@@ -20,20 +20,38 @@ use sandtable_terrain::triangle_surface::{SurfaceTriangle, TriangleSurface, plan
 /// Pieces smaller than this are rounding left over where edges coincide.
 const SLIVER_M2: f64 = 1e-7;
 
-/// Writes `plan` cut to the displayed triangles of `ground` to `sink`; parts off the displayed ground are left out.
-pub fn drape(plan: &PlanMesh, ground: &dyn TriangleSurface, sink: &mut impl MeshSink<DrawVertex>) {
-    let mut draper = Draper::default();
-    plan.corners().for_each(|corners| draper.lay(corners, ground, sink));
+/// `plan` cut to the displayed triangles of `ground`; parts off the displayed ground are left out.
+pub fn drape(plan: &PlanMesh, ground: &dyn TriangleSurface) -> DrawMesh {
+    Draper::default().drape(plan, ground)
 }
 
-/// Lays single triangles; holds what each needs, for the next.
+/// Lays one plan after the other; holds the memory that each needs, for the next.
+///
+/// Threads that lay many plans each have one: memory that many threads take and free at once makes them wait for each other.
 #[derive(Debug, Default)]
 pub struct Draper {
+    pieces: PieceWriter,
+    mesh: DrawMesh,
+}
+
+/// Cuts and writes pieces.
+#[derive(Debug, Default)]
+struct PieceWriter {
     piece: Vec<DVec2>,
     scratch: Vec<DVec2>,
+    ids: Vec<VertexId>,
 }
 
 impl Draper {
+    /// [`drape`]; the mesh takes no more memory than it needs.
+    pub fn drape(&mut self, plan: &PlanMesh, ground: &dyn TriangleSurface) -> DrawMesh {
+        let Self { pieces, mesh } = self;
+        mesh.vertices.clear();
+        mesh.triangles.clear();
+        plan.corners().for_each(|corners| pieces.lay(corners, ground, mesh));
+        mesh.clone()
+    }
+
     /// Writes one plan triangle cut to the displayed triangles of `ground` to `sink`, with vertices of its own.
     pub fn lay(
         &mut self,
@@ -41,14 +59,25 @@ impl Draper {
         ground: &dyn TriangleSurface,
         sink: &mut impl MeshSink<DrawVertex>,
     ) {
-        let Self { piece, scratch } = self;
+        self.pieces.lay(corners, ground, sink);
+    }
+}
+
+impl PieceWriter {
+    fn lay(
+        &mut self,
+        corners: [PlanVertex; 3],
+        ground: &dyn TriangleSurface,
+        sink: &mut impl MeshSink<DrawVertex>,
+    ) {
+        let Self { piece, scratch, ids } = self;
         let texture = TextureMap::of(corners);
         ground.visit_facets(&Rect::around(corners.map(|corner| corner.at)), &mut |facet| {
             piece.clear();
             piece.extend(corners.map(|corner| corner.at));
             let window = facet.map(|corner| corner.truncate().as_dvec2());
             polygon::clip_convex(piece, scratch, &window);
-            write_piece(piece, facet, &texture, sink);
+            write_piece(piece, facet, &texture, ids, sink);
         });
     }
 }
@@ -57,6 +86,7 @@ fn write_piece(
     piece: &[DVec2],
     facet: &SurfaceTriangle,
     texture: &TextureMap,
+    ids: &mut Vec<VertexId>,
     sink: &mut impl MeshSink<DrawVertex>,
 ) {
     if piece.len() < 3 || polygon::doubled_area(piece) < 2.0 * SLIVER_M2 {
@@ -70,8 +100,9 @@ fn write_piece(
             color: Srgba::WHITE,
         })
     };
-    let ids: Vec<_> = piece.iter().map(|&at| vertex(at)).collect();
-    polygon::fan(&ids).for_each(|corners| sink.triangle(corners));
+    ids.clear();
+    ids.extend(piece.iter().map(|&at| vertex(at)));
+    polygon::fan(ids).for_each(|corners| sink.triangle(corners));
 }
 
 /// The largest vertical distance in meters between a draped mesh and the displayed ground, at the middle of

@@ -65,12 +65,6 @@ fn camera(eye: (f32, f32, f32), target: (f32, f32)) -> Option<Camera> {
     Camera::new(Vec3::new(eye.0, eye.1, eye.2), target, 0.8, (800, 600), (0.5, 20_000.0)).ok()
 }
 
-fn draped(plan: &PlanMesh, terrain: &DisplayedTerrain) -> DrawMesh {
-    let mut mesh = DrawMesh::default();
-    drape(plan, terrain, &mut mesh);
-    mesh
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1200))]
 
@@ -90,7 +84,7 @@ proptest! {
         let mut plan = PlanMesh::default();
         let alignment = Alignment::on_ground(line.expect("checked"), width_m);
         stroke(&StrokePath::alone(&alignment), &StrokeOptions::default(), &mut plan);
-        let clearance = check_clearance(&draped(&plan, &terrain), &terrain);
+        let clearance = check_clearance(&drape(&plan, &terrain), &terrain);
         prop_assert!(clearance < 2e-3, "{clearance} m");
     }
 }
@@ -142,7 +136,7 @@ fn a_lake_is_perfectly_level_however_coarse_the_ground_around_it() {
     for tolerance_px in [0.5, 5.0, 500.0] {
         let camera = camera((1500.0, -3000.0, 2500.0), (1500.0, 1200.0)).expect("sound");
         let terrain = world.seen_by(&camera, tolerance_px);
-        let lake = draped(&plan, &terrain);
+        let lake = drape(&plan, &terrain);
         assert!(lake.triangles.len() >= plan.triangles.len());
         let levels: Vec<f32> = lake.vertices.iter().map(|vertex| vertex.position[2]).collect();
         assert!(levels.iter().all(|&z| z == 371.25 * 1.5), "tolerance {tolerance_px}");

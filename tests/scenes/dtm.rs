@@ -42,8 +42,7 @@ fn features_get_their_elevation_from_the_ground_that_roam_built() {
     let alignment = Alignment::on_ground(line, 12.0);
     stroke(&StrokePath::alone(&alignment), &StrokeOptions::default(), &mut plan);
     assert!(!plan.triangles.is_empty(), "triangles from centerline and width");
-    let mut draped = DrawMesh::default();
-    drape(&plan, &displayed, &mut draped);
+    let draped = drape(&plan, &displayed);
     assert!(draped.triangles.len() > plan.triangles.len(), "cut by the ground");
     assert!(check_clearance(&draped, &displayed) < 1e-3, "it lies on the ground that is shown");
     let model = displayed.displayed_z(DVec2::new(444.0, 333.0)).expect("on the ground");
