@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use glam::{DAffine2, DVec2, Vec3};
 use proptest::prelude::*;
-use sandtable_draw::list::DrawMesh;
 use sandtable_earthworks::alignment::Alignment;
 use sandtable_earthworks::leveling;
 use sandtable_geom::crs::Crs;

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, Vec3};
 use sandtable_description::parse::parse_bytes;
-use sandtable_draw::list::{DepthLayer, DrawMesh};
+use sandtable_draw::list::DepthLayer;
 use sandtable_earthworks::alignment::Alignment;
 use sandtable_geom::polyline::Polyline;
 use sandtable_picture::{build_draw_list, camera as scene_camera};

@@ -24,6 +24,10 @@ use sandtable_draw::material::AlphaMode;
 /// Triangles per chunk; a power of two, so that a face's id splits into chunk and index.
 const CHUNK: u64 = 2048;
 
+/// Triangles of which is known together which rows they may touch: few, since those that follow each other in a list lie near
+/// each other for a while, a chunk of roads all over the picture.
+const BLOCK: u64 = 32;
+
 /// The least [`drape_tolerance`] with parallel rays: eight times the rounding of a nearness to f32, 10 cm over 100 km.
 const PARALLEL_DRAPE_TOLERANCE: f64 = 1e-6;
 
@@ -165,23 +169,28 @@ impl<'a> GeometrySource<'a> {
         0..self.screen.size[1]
     }
 
-    /// The faces that may be seen in `rows`, in the list's order. `chunk_rows` are those that each chunk may touch, where that
-    /// is known.
-    pub fn geometry(&self, rows: &Range<u32>, chunk_rows: &[Range<u32>]) -> ScreenGeometry {
-        let is_seen = |number: u64| {
-            let own = chunk_rows.get(number as usize);
+    /// The faces that may be seen in `rows`, in the list's order. `block_rows` are those that each block of triangles may touch,
+    /// where that is known.
+    pub fn geometry(&self, rows: &Range<u32>, block_rows: &[Range<u32>]) -> ScreenGeometry {
+        let is_seen = |&block: &u64| {
+            let own = block_rows.get(block as usize);
             own.is_none_or(|own| own.start < rows.end && rows.start < own.end)
         };
-        let chunk = |number: u64| if is_seen(number) { self.chunk(number, rows) } else { FaceChunk::EMPTY };
-        ScreenGeometry { chunks: self.chunk_numbers().map(chunk).collect() }
+        let chunk = |number: u64| {
+            let first = number * CHUNK;
+            let blocks = first / BLOCK..(first + CHUNK).min(self.total).div_ceil(BLOCK);
+            build_chunk(self, first, blocks.filter(is_seen).map(|block| self.block(block)), rows)
+        };
+        ScreenGeometry { chunks: (0..self.total.div_ceil(CHUNK)).into_par_iter().map(chunk).collect() }
     }
 
-    /// The rows that each chunk may touch; calls `visit` with those of each triangle, in any order and on all threads.
+    /// The rows that each block of triangles may touch; calls `visit` with those of each triangle, in any order and on all
+    /// threads.
     pub fn survey(&self, visit: impl Fn(Range<u32>) + Sync) -> Vec<Range<u32>> {
         let rows = self.rows();
-        let surveyed = |number: u64| {
+        let surveyed = |block: u64| {
             let (mut top, mut bottom) = (u32::MAX, 0);
-            each_triangle(self, self.chunk_triangles(number), &rows, |setup, triangle| {
+            each_triangle(self, self.block(block), &rows, |setup, triangle| {
                 if let Some(SeenTriangle { window: PixelWindow { from, to }, .. }) = setup.seen(triangle) {
                     visit(from[1]..to[1]);
                     (top, bottom) = (top.min(from[1]), bottom.max(to[1]));
@@ -189,24 +198,13 @@ impl<'a> GeometrySource<'a> {
             });
             top..bottom
         };
-        self.chunk_numbers().map(surveyed).collect()
+        (0..self.total.div_ceil(BLOCK)).into_par_iter().map(surveyed).collect()
     }
 
-    fn chunk_numbers(&self) -> rayon::range::Iter<u64> {
-        (0..self.total.div_ceil(CHUNK)).into_par_iter()
+    /// The triangles of a block, counted through all items.
+    fn block(&self, number: u64) -> Range<u64> {
+        number * BLOCK..((number + 1) * BLOCK).min(self.total)
     }
-
-    fn chunk_triangles(&self, number: u64) -> Range<u64> {
-        number * CHUNK..((number + 1) * CHUNK).min(self.total)
-    }
-
-    fn chunk(&self, number: u64, rows: &Range<u32>) -> FaceChunk {
-        build_chunk(self, self.chunk_triangles(number), rows)
-    }
-}
-
-impl FaceChunk {
-    const EMPTY: Self = Self { faces: Vec::new(), pieces: Vec::new(), rows: 0..0 };
 }
 
 impl ScreenGeometry {
@@ -250,16 +248,23 @@ fn each_triangle(
     }
 }
 
-/// The faces of the triangles number `triangles`, counted through all items, that may be seen in the rows `drawn`.
-fn build_chunk(source: &GeometrySource, triangles: Range<u64>, drawn: &Range<u32>) -> FaceChunk {
-    let most = (triangles.end - triangles.start) as usize;
+/// The faces of those triangles of the chunk that begins with number `first` that lie in `blocks` and may be seen in the rows
+/// `drawn`; counted through all items.
+fn build_chunk(
+    source: &GeometrySource,
+    first: u64,
+    blocks: impl Iterator<Item = Range<u64>> + Clone,
+    drawn: &Range<u32>,
+) -> FaceChunk {
+    let most = blocks.clone().map(|triangles| (triangles.end - triangles.start) as usize).sum();
     let (faces, pieces) = (Vec::with_capacity(most), Vec::with_capacity(most));
     let mut chunk = FaceChunk { faces, pieces, rows: 0..0 };
-    let first = triangles.start as u32;
-    each_triangle(source, triangles, drawn, |setup, triangle| {
-        let id = FaceId(first + chunk.faces.len() as u32);
-        setup.add_triangle(&mut chunk, triangle, id);
-    });
+    for triangles in blocks {
+        each_triangle(source, triangles, drawn, |setup, triangle| {
+            let id = FaceId(first as u32 + chunk.faces.len() as u32);
+            setup.add_triangle(&mut chunk, triangle, id);
+        });
+    }
     let (mut top, mut bottom) = (u32::MAX, 0);
     for PixelWindow { from, to } in chunk.pieces.iter().map(|piece| piece.window) {
         (top, bottom) = (top.min(from[1]), bottom.max(to[1]));

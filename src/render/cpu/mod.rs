@@ -220,7 +220,7 @@ fn draw<const N: usize>(
     let mut depth_m: Vec<f32> = repeat_n(f32::INFINITY, count).collect();
     let mut features: Vec<FeatureId> = repeat_n(FeatureId::NONE, count).collect();
     // While a strip is drawn, the faces of the next are made: threads that find no tile left in one go on with the other.
-    let faces = |rows| source.geometry(rows, &strips.chunk_rows);
+    let faces = |rows| source.geometry(rows, &strips.block_rows);
     let mut made = strips.rows.first().map(faces);
     for (number, rows) in strips.rows.iter().enumerate() {
         let Some(geometry) = made else { break };

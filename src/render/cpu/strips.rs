@@ -24,8 +24,8 @@ const STRIP_PIECES: u64 = MOST_PIECES / 2;
 pub struct RowStrips {
     /// The rows of each, from the top; all but the last end at a band's end.
     pub rows: Vec<Range<u32>>,
-    /// The rows that each chunk of triangles may touch; empty for a picture in one strip.
-    pub chunk_rows: Vec<Range<u32>>,
+    /// The rows that each block of triangles may touch; empty for a picture in one strip.
+    pub block_rows: Vec<Range<u32>>,
 }
 
 impl RowStrips {
@@ -39,11 +39,11 @@ impl RowStrips {
     pub fn of(source: &GeometrySource, most: u64) -> Self {
         let rows = source.rows();
         if source.triangle_count() <= most {
-            return Self { rows: vec![rows], chunk_rows: Vec::new() };
+            return Self { rows: vec![rows], block_rows: Vec::new() };
         }
         let bands = rows.end.div_ceil(TILE) as usize;
         let [begins, ends] = [(); 2].map(|()| (0..bands).map(|_| AtomicU64::new(0)).collect::<Vec<_>>());
-        let chunk_rows = source.survey(|rows| {
+        let block_rows = source.survey(|rows| {
             begins[(rows.start / TILE) as usize].fetch_add(1, Ordering::Relaxed);
             ends[((rows.end - 1) / TILE) as usize].fetch_add(1, Ordering::Relaxed);
         });
@@ -51,7 +51,7 @@ impl RowStrips {
             [begins, ends].map(|counts| counts.into_iter().map(AtomicU64::into_inner).collect());
         let strips = BandCounts { begins, ends }.cut(most);
         let rows = strips.into_iter().map(|bands| bands.start * TILE..(bands.end * TILE).min(rows.end));
-        Self { rows: rows.collect(), chunk_rows }
+        Self { rows: rows.collect(), block_rows }
     }
 }
 
