@@ -7,6 +7,8 @@
 //! Cost: a few hundred nanoseconds for each pair of triangles that overlap; it grows with the ribbon's length in
 //! displayed triangles.
 
+use std::mem;
+
 use glam::{DVec2, Vec3};
 
 use crate::plan::{PlanMesh, PlanVertex, TextureMap};
@@ -30,26 +32,22 @@ pub fn drape(plan: &PlanMesh, ground: &dyn TriangleSurface) -> DrawMesh {
 /// Threads that lay many plans each have one: memory that many threads take and free at once makes them wait for each other.
 #[derive(Debug, Default)]
 pub struct Draper {
-    pieces: PieceWriter,
-    mesh: DrawMesh,
-}
-
-/// Cuts and writes pieces.
-#[derive(Debug, Default)]
-struct PieceWriter {
     piece: Vec<DVec2>,
     scratch: Vec<DVec2>,
     ids: Vec<VertexId>,
+    mesh: DrawMesh,
 }
 
 impl Draper {
     /// [`drape`]; the mesh takes no more memory than it needs.
     pub fn drape(&mut self, plan: &PlanMesh, ground: &dyn TriangleSurface) -> DrawMesh {
-        let Self { pieces, mesh } = self;
+        let mut mesh = mem::take(&mut self.mesh);
         mesh.vertices.clear();
         mesh.triangles.clear();
-        plan.corners().for_each(|corners| pieces.lay(corners, ground, mesh));
-        mesh.clone()
+        plan.corners().for_each(|corners| self.lay(corners, ground, &mut mesh));
+        let draped = mesh.clone();
+        self.mesh = mesh;
+        draped
     }
 
     /// Writes one plan triangle cut to the displayed triangles of `ground` to `sink`, with vertices of its own.
@@ -59,18 +57,7 @@ impl Draper {
         ground: &dyn TriangleSurface,
         sink: &mut impl MeshSink<DrawVertex>,
     ) {
-        self.pieces.lay(corners, ground, sink);
-    }
-}
-
-impl PieceWriter {
-    fn lay(
-        &mut self,
-        corners: [PlanVertex; 3],
-        ground: &dyn TriangleSurface,
-        sink: &mut impl MeshSink<DrawVertex>,
-    ) {
-        let Self { piece, scratch, ids } = self;
+        let Self { piece, scratch, ids, .. } = self;
         let texture = TextureMap::of(corners);
         ground.visit_facets(&Rect::around(corners.map(|corner| corner.at)), &mut |facet| {
             piece.clear();
