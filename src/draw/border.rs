@@ -7,6 +7,7 @@ use rayon::iter::repeat_n;
 use rayon::prelude::*;
 
 use crate::list::DrawMesh;
+use sandtable_base::split_mix::split_mix64;
 use sandtable_mesh::sink::VertexId;
 
 /// Returns the edges that belong to one triangle only, its inside on their left, in a fixed order.
@@ -59,13 +60,9 @@ impl BorderEnds {
     }
 }
 
-/// A number for each vertex, all bits of which look random (Steele and others, "Fast Splittable Pseudorandom Number
-/// Generators", 2014).
+/// A number for each vertex that looks random.
 fn mixed(vertex: u32) -> u64 {
-    let state = (u64::from(vertex) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    let state = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let state = (state ^ (state >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    state ^ (state >> 31)
+    split_mix64(u64::from(vertex) + 1)
 }
 
 /// An edge as one number: its lower vertex, its higher, and whether it runs upward.

@@ -16,6 +16,7 @@ use glam::{DVec2, DVec3, Vec3};
 
 use crate::faces::Faces;
 use crate::fence_track::{self, Ends, TrackJoint, TrackStretch};
+use sandtable_base::split_mix::split_mix64;
 use sandtable_draw::color::Srgba;
 use sandtable_earthworks::alignment::Alignment;
 use sandtable_geom::profile::Profile;
@@ -233,15 +234,13 @@ struct BandSegment {
     ends: bool,
 }
 
-/// A fixed number in −1..=1 for each place (to the centimeter) and salt (a 64-bit integer hash, Steele et al. 2014).
+/// A fixed number in −1..=1 for each place (to the centimeter) and salt (see [`split_mix64`]).
 pub fn noise(at: DVec2, salt: u64) -> f64 {
     let place = (at * 100.0).round();
-    let mut hash = (place.x as i64 as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+    let hash = (place.x as i64 as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15)
         ^ (place.y as i64 as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f)
         ^ salt.wrapping_mul(0x1656_67b1_9e37_79f9);
-    hash = (hash ^ hash >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    hash = (hash ^ hash >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((hash ^ hash >> 31) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    (split_mix64(hash) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
 }
 
 /// A color, lighter or darker by some steps of 255.

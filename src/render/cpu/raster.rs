@@ -201,6 +201,7 @@ fn covered<const N: usize>(edges: &[EdgeFunction<N>; 3], column: u32, row: u32) 
 mod tests {
     use super::*;
     use crate::cpu::pattern::{EIGHT, FOUR, ONE};
+    use sandtable_base::split_mix::split_mix64;
 
     const SIDE: u32 = 40;
     const ALL: PixelWindow = PixelWindow { from: [0, 0], to: [SIDE, SIDE] };
@@ -209,9 +210,7 @@ mod tests {
     /// Generators", 2014).
     fn random(state: &mut u64) -> u64 {
         *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mixed = (*state ^ (*state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ (mixed >> 31)
+        split_mix64(*state)
     }
 
     #[test]

@@ -2,6 +2,8 @@
 //!
 //! SplitMix64 (Steele, Lea and Flood 2014), started from a mix of the seed and the square's coordinates.
 
+use sandtable_base::split_mix::split_mix64;
+
 /// A stream of numbers.
 #[derive(Clone, Debug)]
 pub struct Chance(u64);
@@ -9,9 +11,9 @@ pub struct Chance(u64);
 impl Chance {
     /// The stream of a square under a seed.
     pub fn of(seed: u64, (column, row): (i64, i64)) -> Self {
-        let start =
-            mixed(seed ^ mixed(column as u64)).wrapping_add((row as u64).wrapping_mul(0xd6e8_feb8_6659_fd93));
-        Self(mixed(start))
+        let start = split_mix64(seed ^ split_mix64(column as u64))
+            .wrapping_add((row as u64).wrapping_mul(0xd6e8_feb8_6659_fd93));
+        Self(split_mix64(start))
     }
 
     /// The stream that a number of another one starts.
@@ -22,7 +24,7 @@ impl Chance {
     /// The next number.
     pub fn number(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        mixed(self.0)
+        split_mix64(self.0)
     }
 
     /// The next number in 0..1.
@@ -43,12 +45,6 @@ pub fn seed_of<'a>(seed: u32, texts: impl Iterator<Item = &'a str>) -> u64 {
     bytes.fold(0xcbf2_9ce4_8422_2325 ^ u64::from(seed).rotate_left(32), |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
     })
-}
-
-fn mixed(number: u64) -> u64 {
-    let number = (number ^ (number >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let number = (number ^ (number >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    number ^ (number >> 31)
 }
 
 #[cfg(test)]
