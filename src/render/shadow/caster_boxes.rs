@@ -2,14 +2,15 @@
 //!
 //! The triangles themselves are not kept, since the processor draws none of them.
 
-use std::ops::Range;
+use std::mem;
 
 use glam::Vec3;
 use rayon::prelude::*;
 
 use crate::shadow::LightAxes;
 use crate::shadow::casters::{
-    CasterTriangle, LightBox, LightTriangles, add_triangles, is_caster, portions, seen_depths, wider,
+    CasterTriangle, LightBox, LightTriangles, Portion, is_caster, portion_triangles, portions, seen_depths,
+    wider,
 };
 use sandtable_draw::list::{DepthLayer, DrawList};
 use sandtable_view::camera::Camera;
@@ -50,31 +51,31 @@ impl CasterBoxes {
         if !list.items.iter().any(|item| is_caster(list, item)) {
             return None;
         }
-        let of_portion = |(index, part): (usize, Range<u32>)| {
-            let (mut triangles, count) = (Vec::new(), part.len());
-            add_triangles(&mut triangles, list, camera.eye(), (index, part));
-            let is_ground = list.items[index].layer == DepthLayer::Ground;
+        let of_portion = |portion: &Portion| {
+            let count: usize = portion.iter().map(|(_, part)| part.len()).sum();
+            let triangles = portion_triangles(list, camera.eye(), portion);
+            let is_solid =
+                |triangle: &&CasterTriangle| list.items[triangle.item as usize].layer != DepthLayer::Ground;
             let boxes = |axes: &LightAxes| -> Vec<(u32, LightBox)> {
-                triangles.iter().map(|triangle| (triangle.item, box_of(triangle, axes))).collect()
+                let solids = triangles.iter().filter(is_solid);
+                solids.map(|triangle| (triangle.item, box_of(triangle, axes))).collect()
             };
             PortionBoxes {
-                by_light: if is_ground { Vec::new() } else { lights.iter().map(boxes).collect() },
+                by_light: lights.iter().map(boxes).collect(),
                 depths_m: seen_depths(&triangles, camera),
                 is_real: triangles.len() == count && triangles.iter().all(is_real),
             }
         };
-        let portions: Vec<PortionBoxes> =
-            portions(list, 0..list.items.len()).into_par_iter().map(of_portion).collect();
+        let mut portions: Vec<PortionBoxes> =
+            portions(list, 0..list.items.len()).par_iter().map(of_portion).collect();
         let depths_m = portions.iter().map(|portion| portion.depths_m).reduce(wider)?;
         let is_real = portions.iter().all(|portion| portion.is_real);
+        let has_any = portions.iter().any(|portion| portion.by_light.iter().any(|boxes| !boxes.is_empty()));
         let of_light = |light: usize| {
-            let boxes = portions.iter().filter_map(|portion| portion.by_light.get(light));
-            let triangles = boxes.map(Vec::as_slice).collect::<Vec<_>>().concat();
-            let bounds = triangles.iter().fold(LightBox::EMPTY, |all, (_, bounds)| all.union(*bounds));
-            LightTriangles { triangles, bounds }
+            let boxes = portions.iter_mut().map(|portion| mem::take(&mut portion.by_light[light]));
+            LightTriangles::around(boxes.filter(|boxes| !boxes.is_empty()).collect())
         };
-        let by_light: Vec<_> = (0..lights.len()).map(of_light).collect();
-        let has_any = by_light.iter().any(|boxes| !boxes.triangles.is_empty());
+        let by_light = (0..lights.len()).map(of_light).collect();
         // What is not real may have no depths.
         (has_any && depths_m[0] <= depths_m[1] || !is_real).then_some(Self { by_light, depths_m, is_real })
     }

@@ -1,6 +1,7 @@
 //! The triangles of a draw list in the space of a light.
 
 use std::collections::BTreeMap;
+use std::mem;
 use std::ops::Range;
 
 use glam::{DMat4, Vec2, Vec3};
@@ -21,8 +22,8 @@ const SEEN_MARGIN: f32 = 1.05;
 /// Corners farther from the eye than this, in meters, are left out: squares of it are still finite.
 const FARTHEST_M: f32 = 1e15;
 
-/// The triangles that a thread turns toward the light in one go.
-const TURNED: usize = 1024;
+/// Triangles of a portion, which a thread works on in one go: some tenths of a millisecond.
+pub const PORTION: usize = 4096;
 
 /// A finite triangle, in meters from the eye.
 #[derive(Clone, Copy, Debug)]
@@ -39,23 +40,24 @@ pub struct LightBox {
     pub high: Vec2,
 }
 
-/// The shadow casters of a list, along the world's axes.
+/// The shadow casters of a list, along the world's axes: in portions that are never joined, since that is work of one
+/// thread.
 #[derive(Debug)]
 pub struct ListTriangles {
-    /// Of solids that cast shadows, in the list's order; never empty.
-    pub solids: Vec<CasterTriangle>,
+    /// Of solids that cast shadows, in the list's order; there is at least one.
+    pub solids: Vec<Vec<CasterTriangle>>,
     /// Of the ground.
-    pub ground: Vec<CasterTriangle>,
+    pub ground: Vec<Vec<CasterTriangle>>,
     /// The least and greatest depth of what is seen, in meters; above 0 in perspective.
     pub depths_m: [f32; 2],
     /// The masks of the textures of solids, by texture.
     pub masks: BTreeMap<u32, AlphaMask>,
 }
 
-/// Triangles along the axes of a light, or what of them is needed, each with its box.
+/// Triangles along the axes of a light, or what of them is needed, each with its box; in portions.
 #[derive(Debug)]
 pub struct LightTriangles<T = CasterTriangle> {
-    pub triangles: Vec<(T, LightBox)>,
+    pub portions: Vec<Vec<(T, LightBox)>>,
     pub bounds: LightBox,
 }
 
@@ -94,8 +96,8 @@ impl LightBox {
 impl ListTriangles {
     /// The memory that the triangles of a checked list take, with those along the light of a map; 0 where no solid casts.
     pub fn bytes_of(list: &DrawList) -> u64 {
-        const COLLECTED: u64 = 2;
-        const BYTES: u64 = COLLECTED * (size_of::<CasterTriangle>() + LightTriangles::BYTES) as u64;
+        // A portion of those near a light grows as they are found.
+        const BYTES: u64 = (size_of::<CasterTriangle>() + 2 * LightTriangles::BYTES) as u64;
         if !list.items.iter().any(|item| is_caster(list, item)) {
             return 0;
         }
@@ -112,21 +114,21 @@ impl ListTriangles {
             return None;
         }
         let ground_end = list.items.partition_point(|item| item.layer == DepthLayer::Ground);
-        let triangles = |items: Range<usize>| -> Vec<CasterTriangle> {
-            let lists: Vec<_> = portions(list, items)
-                .into_par_iter()
-                .fold(Vec::new, |mut triangles, (index, part)| {
-                    add_triangles(&mut triangles, list, camera.eye(), (index, part));
-                    triangles
-                })
-                .collect();
-            lists.concat()
+        let triangles = |items: Range<usize>| -> (Vec<Vec<CasterTriangle>>, [f32; 2]) {
+            let of_portion = |portion: &Portion| {
+                let triangles = portion_triangles(list, camera.eye(), portion);
+                let depths_m = seen_depths(&triangles, camera);
+                (triangles, depths_m)
+            };
+            let (portions, depths_m): (_, Vec<_>) = portions(list, items).par_iter().map(of_portion).unzip();
+            (portions, depths_m.into_iter().fold([f32::MAX, f32::MIN], wider))
         };
-        let (solids, ground) = (triangles(first..list.items.len()), triangles(0..ground_end));
-        let [of_solids, of_ground] = [&solids, &ground].map(|triangles| seen_depths(triangles, camera));
-        let depths_m = [of_solids[0].min(of_ground[0]), of_solids[1].max(of_ground[1])];
+        let (solids, of_solids) = triangles(first..list.items.len());
+        let (ground, of_ground) = triangles(0..ground_end);
+        let depths_m = wider(of_solids, of_ground);
         let masks = masks(list, &list.items[first..]);
-        (!solids.is_empty() && depths_m[0] <= depths_m[1]).then_some(Self { solids, ground, depths_m, masks })
+        let has_any = solids.iter().any(|portion| !portion.is_empty());
+        (has_any && depths_m[0] <= depths_m[1]).then_some(Self { solids, ground, depths_m, masks })
     }
 }
 
@@ -140,27 +142,35 @@ impl LightTriangles {
     /// The bytes of a triangle.
     const BYTES: usize = size_of::<(CasterTriangle, LightBox)>();
 
-    /// `triangles` along `axes`.
-    pub fn new(triangles: &[CasterTriangle], axes: &LightAxes) -> Self {
-        Self::around(
-            triangles.par_iter().with_min_len(TURNED).map(|triangle| triangle.turned(axes)).collect(),
-        )
+    /// Triangles along `axes`.
+    pub fn new(portions: &[Vec<CasterTriangle>], axes: &LightAxes) -> Self {
+        let turned =
+            |portion: &Vec<CasterTriangle>| portion.iter().map(|triangle| triangle.turned(axes)).collect();
+        Self::around(portions.par_iter().map(turned).collect())
     }
 
     /// As [`Self::new`], those of them whose box `is_near`.
     pub fn near(
-        triangles: &[CasterTriangle],
+        portions: &[Vec<CasterTriangle>],
         axes: &LightAxes,
         is_near: impl Fn(LightBox) -> bool + Sync,
     ) -> Self {
-        let turned = triangles.par_iter().with_min_len(TURNED).map(|triangle| triangle.turned(axes));
-        Self::around(turned.filter(|(_, bounds)| is_near(*bounds)).collect())
+        let turned = |portion: &Vec<CasterTriangle>| {
+            let turned = portion.iter().map(|triangle| triangle.turned(axes));
+            turned.filter(|(_, bounds)| is_near(*bounds)).collect()
+        };
+        Self::around(portions.par_iter().map(turned).collect())
     }
+}
 
-    fn around(triangles: Vec<(CasterTriangle, LightBox)>) -> Self {
-        let boxes = triangles.par_iter().with_min_len(TURNED).map(|(_, bounds)| *bounds);
-        let bounds = boxes.reduce(|| LightBox::EMPTY, LightBox::union);
-        Self { triangles, bounds }
+impl<T: Sync> LightTriangles<T> {
+    /// Triangles with the box around them all.
+    pub fn around(portions: Vec<Vec<(T, LightBox)>>) -> Self {
+        let of_portion = |portion: &Vec<(T, LightBox)>| {
+            portion.iter().fold(LightBox::EMPTY, |all, (_, bounds)| all.union(*bounds))
+        };
+        let bounds = portions.par_iter().map(of_portion).reduce(|| LightBox::EMPTY, LightBox::union);
+        Self { portions, bounds }
     }
 }
 
@@ -172,45 +182,54 @@ impl CasterTriangle {
     }
 }
 
-/// The triangles of the ground and of casters among these items of a checked list, by item, in ranges for which threads
-/// work apart.
-pub fn portions(list: &DrawList, items: Range<usize>) -> Vec<(usize, Range<u32>)> {
-    /// Triangles of a portion: some tenths of a millisecond.
-    const PORTION: u32 = 4096;
+/// Parts of items, [`PORTION`] triangles or fewer together.
+pub type Portion = Vec<(usize, Range<u32>)>;
+
+/// The triangles of the ground and of casters among these items of a checked list, in its order.
+pub fn portions(list: &DrawList, items: Range<usize>) -> Vec<Portion> {
     let casting = items.filter(|&index| {
         let item = &list.items[index];
         item.layer == DepthLayer::Ground || is_caster(list, item)
     });
-    let of_item = |index: usize| {
-        let Range { start, end } = list.items[index].triangles;
-        let starts = (start..end).step_by(PORTION as usize);
-        starts.map(move |from| (index, from..from.saturating_add(PORTION).min(end)))
-    };
-    casting.flat_map(of_item).collect()
-}
-
-/// Adds the finite triangles of a part of an item.
-pub fn add_triangles(
-    triangles: &mut Vec<CasterTriangle>,
-    list: &DrawList,
-    eye: Vec3,
-    (index, part): (usize, Range<u32>),
-) {
-    let item = &list.items[index];
-    let mesh = &list.meshes[item.mesh.0 as usize];
-    let to_world: DMat4 = item.world_from_mesh.as_dmat4();
-    let eye = eye.as_dvec3();
-    let corner =
-        |position: [f32; 3]| (to_world.transform_point3(Vec3::from(position).as_dvec3()) - eye).as_vec3();
-    triangles.reserve(part.len());
-    for triangle in part {
-        let [a, b, c] = mesh.triangles[triangle as usize];
-        let position = |id: VertexId| corner(mesh.vertices[id.index()].position);
-        let corners = [position(a), position(b), position(c)];
-        if corners.iter().all(|corner| corner.abs().max_element() < FARTHEST_M) {
-            triangles.push(CasterTriangle { corners, item: index as u32, triangle });
+    let (mut portions, mut portion, mut room) = (Vec::new(), Vec::new(), PORTION as u32);
+    for index in casting {
+        let Range { mut start, end } = list.items[index].triangles;
+        while start < end {
+            let part = start..end.min(start + room);
+            (start, room) = (part.end, room - part.len() as u32);
+            portion.push((index, part));
+            if room == 0 {
+                portions.push(mem::take(&mut portion));
+                room = PORTION as u32;
+            }
         }
     }
+    if !portion.is_empty() {
+        portions.push(portion);
+    }
+    portions
+}
+
+/// The finite triangles of a portion of a checked list.
+pub fn portion_triangles(list: &DrawList, eye: Vec3, portion: &Portion) -> Vec<CasterTriangle> {
+    let mut triangles = Vec::with_capacity(portion.iter().map(|(_, part)| part.len()).sum());
+    for (index, part) in portion {
+        let item = &list.items[*index];
+        let mesh = &list.meshes[item.mesh.0 as usize];
+        let to_world: DMat4 = item.world_from_mesh.as_dmat4();
+        let eye = eye.as_dvec3();
+        let corner =
+            |position: [f32; 3]| (to_world.transform_point3(Vec3::from(position).as_dvec3()) - eye).as_vec3();
+        for triangle in part.clone() {
+            let [a, b, c] = mesh.triangles[triangle as usize];
+            let position = |id: VertexId| corner(mesh.vertices[id.index()].position);
+            let corners = [position(a), position(b), position(c)];
+            if corners.iter().all(|corner| corner.abs().max_element() < FARTHEST_M) {
+                triangles.push(CasterTriangle { corners, item: *index as u32, triangle });
+            }
+        }
+    }
+    triangles
 }
 
 /// The least and greatest depth of what the camera sees, in meters: in perspective of corners, with parallel rays of
@@ -222,8 +241,7 @@ pub fn seen_depths(triangles: &[CasterTriangle], camera: &Camera) -> [f32; 2] {
     let tan = camera.tan_half_fov() * SEEN_MARGIN;
     let (near, far) = camera.planes();
     let (right, up) = (camera.right() / tan.x, camera.up() / tan.y);
-    let widened = |[least, most]: [f32; 2], triangle: &CasterTriangle| {
-        let mut range = [least, most];
+    let widened = |mut range: [f32; 2], triangle: &CasterTriangle| {
         for corner in &triangle.corners {
             let depth = corner.dot(camera.forward());
             let is_seen = depth > near
@@ -236,8 +254,7 @@ pub fn seen_depths(triangles: &[CasterTriangle], camera: &Camera) -> [f32; 2] {
         }
         range
     };
-    let none = || [f32::MAX, 0.0];
-    triangles.par_iter().with_min_len(1024).fold(none, widened).reduce(none, wider)
+    triangles.iter().fold([f32::MAX, 0.0], widened)
 }
 
 /// The wider of two ranges of depths.
@@ -259,8 +276,7 @@ fn depths_in_frame(
         });
         wider(range, depths_in_square(&seen))
     };
-    let none = || [f32::MAX, f32::MIN];
-    triangles.par_iter().with_min_len(1024).fold(none, widened).reduce(none, wider)
+    triangles.iter().fold([f32::MAX, f32::MIN], widened)
 }
 
 /// The least and greatest Z of the part of a triangle between −1 and 1 along X and Y; the first is the greater where there

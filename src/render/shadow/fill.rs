@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::cpu::alpha::AlphaMask;
 use crate::cpu::raster::{PixelWindow, doubled_area, snapped};
-use crate::shadow::casters::{CasterTriangle, LightTriangles};
+use crate::shadow::casters::{CasterTriangle, LightBox, LightTriangles};
 use crate::shadow::coverage::cover_centers;
 use crate::shadow::cut::cut_at;
 use crate::shadow::levels::{KeptPages, MapSource, PageRange};
@@ -32,11 +32,12 @@ pub struct Filling<'a> {
     pub kept: &'a KeptPages<'a>,
 }
 
-/// The triangles of a level by the row of pages that they begin in, those of more than [`SHORT_ROWS`] rows apart: few
-/// rows ask for a triangle, and a list of enormous ones takes no more memory than any.
-struct RowBuckets {
-    short: Vec<Vec<u32>>,
-    tall: Vec<u32>,
+/// The triangles of a portion that lie on a level.
+struct LevelPortion<'a> {
+    /// Those of up to [`SHORT_ROWS`] rows of pages, by the row that they begin in: few rows ask for a triangle.
+    short: Vec<LevelTriangle<'a>>,
+    /// The others: a list of enormous ones takes no more memory than any.
+    tall: Vec<LevelTriangle<'a>>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -82,18 +83,15 @@ struct TexelMask<'a> {
     along: Vec3,
 }
 
-impl Filling<'_> {
+impl<'a> Filling<'a> {
     /// Draws the `texels` of the stored pages of the level, whose entries are `pages`; sets the greatest values of each.
     pub fn fill(&self, pages: &mut [ShadowPage], mut texels: &mut [ShadowTexel]) {
-        let mut triangles = Vec::new();
-        for (kind, casters) in [(CasterKind::Solid, self.solids), (CasterKind::Ground, self.ground)] {
-            for (triangle, bounds) in &casters.triangles {
-                if let Some(range) = self.kept.pages_on(*bounds) {
-                    triangles.push(LevelTriangle { triangle, kind, range });
-                }
-            }
-        }
-        let buckets = RowBuckets::new(&triangles, self.level.rows);
+        let on_level = |kind: CasterKind, casters: &'a LightTriangles| {
+            let of_portion = move |portion: &'a Vec<_>| LevelPortion::new(kind, portion, self.kept);
+            casters.portions.par_iter().map(of_portion).filter(|portion| !portion.is_empty())
+        };
+        let solids = on_level(CasterKind::Solid, self.solids);
+        let portions: Vec<_> = solids.chain(on_level(CasterKind::Ground, self.ground)).collect();
         let mut rows = Vec::new();
         for (row, pages) in (0..).zip(pages.chunks_exact_mut(self.level.columns as usize)) {
             let stored = pages.iter().filter(|page| page.number > 0).count();
@@ -104,7 +102,7 @@ impl Filling<'_> {
             }
         }
         rows.into_par_iter().for_each(|(row, pages, texels)| {
-            self.row(row, pages, texels, (&triangles, &buckets));
+            self.row(row, pages, texels, &portions);
         });
     }
 
@@ -114,7 +112,7 @@ impl Filling<'_> {
         row: u32,
         pages: &mut [ShadowPage],
         texels: &mut [ShadowTexel],
-        (triangles, buckets): (&[LevelTriangle], &RowBuckets),
+        portions: &[LevelPortion<'_>],
     ) {
         let mut stored = 0;
         let place = |page: &ShadowPage| {
@@ -128,9 +126,7 @@ impl Filling<'_> {
             ShadowPurpose::Contact => vec![f32::MAX; texels.len()],
         };
         let mut work = PageRow { row, places, texels, undersides };
-        let below = row.saturating_sub(SHORT_ROWS - 1) as usize;
-        for &index in buckets.short[below..=row as usize].iter().flatten().chain(&buckets.tall) {
-            let on = &triangles[index as usize];
+        for on in portions.iter().flat_map(|portion| portion.near_row(row)) {
             if on.range.from[1] <= row && row < on.range.to[1] {
                 self.draw(on, &mut work);
             }
@@ -246,17 +242,29 @@ impl Filling<'_> {
     }
 }
 
-impl RowBuckets {
-    fn new(triangles: &[LevelTriangle], rows: u32) -> Self {
-        let mut buckets = Self { short: vec![Vec::new(); rows as usize], tall: Vec::new() };
-        for (index, on) in (0..).zip(triangles) {
-            if on.range.to[1] - on.range.from[1] <= SHORT_ROWS {
-                buckets.short[on.range.from[1] as usize].push(index);
-            } else {
-                buckets.tall.push(index);
+impl<'a> LevelPortion<'a> {
+    fn new(kind: CasterKind, portion: &'a [(CasterTriangle, LightBox)], kept: &KeptPages) -> Self {
+        let (mut short, mut tall) = (Vec::new(), Vec::new());
+        for (triangle, bounds) in portion {
+            if let Some(range) = kept.pages_on(*bounds) {
+                let rows = range.to[1] - range.from[1];
+                let triangles = if rows <= SHORT_ROWS { &mut short } else { &mut tall };
+                triangles.push(LevelTriangle { triangle, kind, range });
             }
         }
-        buckets
+        short.sort_unstable_by_key(|on| on.range.from[1]);
+        Self { short, tall }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.short.is_empty() && self.tall.is_empty()
+    }
+
+    /// The triangles that may touch a row of pages.
+    fn near_row(&self, row: u32) -> impl Iterator<Item = &LevelTriangle<'a>> {
+        let first = self.short.partition_point(|on| on.range.from[1] + SHORT_ROWS <= row);
+        let begun = self.short.partition_point(|on| on.range.from[1] <= row);
+        self.short[first..begun].iter().chain(&self.tall)
     }
 }
 

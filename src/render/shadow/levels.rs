@@ -251,13 +251,14 @@ impl ShadowLevel {
     /// Whether a solid is on or near each page. Counts the boxes that begin and end, so that a box costs the same
     /// however large it is.
     fn touched<T: Sync>(&self, solids: &LightTriangles<T>) -> Vec<bool> {
-        /// Boxes that a thread counts at once: each has a grid of its own.
-        const COUNTED: usize = 1 << 16;
+        /// Portions of boxes that a thread counts at once: each has a grid of its own.
+        const COUNTED: usize = 16;
         let stride = self.columns as usize + 1;
         let size = stride * (self.rows as usize + 1);
-        let counted = |boxes: &[(T, LightBox)]| {
+        let counted = |portions: &[Vec<(T, LightBox)>]| {
             let mut counts = vec![0i64; size];
-            for range in boxes.iter().filter_map(|(_, bounds)| self.pages_near(*bounds, PAGE_MARGIN)) {
+            let boxes = portions.iter().flatten();
+            for range in boxes.filter_map(|(_, bounds)| self.pages_near(*bounds, PAGE_MARGIN)) {
                 let [[left, bottom], [right, top]] =
                     [range.from, range.to].map(|at| at.map(|page| page as usize));
                 counts[bottom * stride + left] += 1;
@@ -271,7 +272,7 @@ impl ShadowLevel {
             counts.iter_mut().zip(&others).for_each(|(count, other)| *count += other);
             counts
         };
-        let counts = solids.triangles.par_chunks(COUNTED).map(counted).reduce_with(sum);
+        let counts = solids.portions.par_chunks(COUNTED).map(counted).reduce_with(sum);
         let mut counts = counts.unwrap_or_else(|| vec![0; size]);
         for index in 0..counts.len() {
             let west = if index % stride > 0 { counts[index - 1] } else { 0 };

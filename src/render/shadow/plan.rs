@@ -81,7 +81,7 @@ impl PlannedShadowMap {
         let on_level = |level| {
             let kept = KeptPages::new(level, &map.pages);
             let mut items = Vec::new();
-            for (item, bounds) in &solids.triangles {
+            for (item, bounds) in solids.portions.iter().flatten() {
                 // Triangles come item by item.
                 if items.last() != Some(item) && kept.pages_on(*bounds).is_some() {
                     items.push(*item);
