@@ -6,6 +6,8 @@
 //! step needs as much again. A capacity beyond that size keeps the block by itself. Pages that are never written take address
 //! space and no memory.
 
+use bytemuck::{Zeroable, zeroed_vec};
+
 /// The size in bytes from which glibc always maps a block by itself, and a little more.
 const ALWAYS_MAPPED: usize = (32 << 20) + (64 << 10);
 
@@ -13,14 +15,14 @@ const ALWAYS_MAPPED: usize = (32 << 20) + (64 << 10);
 const LEAST: usize = 4 << 20;
 
 /// The capacity of a vector of `count` values whose memory is given back when it is dropped.
-pub fn returned_capacity<T>(count: usize) -> usize {
+fn returned_capacity<T>(count: usize) -> usize {
     let size = size_of::<T>().max(1);
     if count.saturating_mul(size) < LEAST { count } else { count.max(ALWAYS_MAPPED.div_ceil(size)) }
 }
 
-/// `count` zeros, or values `false`, in memory that is given back; it is taken page by page as it is written.
-pub fn returned_zeros<T: Clone + Default>(count: usize) -> Vec<T> {
-    let mut zeros = vec![T::default(); returned_capacity::<T>(count)];
+/// `count` zeros, or values that are zeros in memory, as `false` is, in memory that is given back; it is taken page by page as it is written.
+pub fn returned_zeros<T: Zeroable>(count: usize) -> Vec<T> {
+    let mut zeros = zeroed_vec(returned_capacity::<T>(count));
     zeros.truncate(count);
     zeros
 }

@@ -13,13 +13,16 @@
 //!
 //! Ground below 0 m alone is no sea: polders, the Jordan valley and the plains of Mars are dry.
 
+use std::ops::Range;
+
+use bytemuck::Zeroable;
 use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::lattice::Lattice;
 use crate::level_regions::large_region_posts;
 use crate::low_regions::{LowGround, LowRegion};
-use crate::returned_memory::returned_capacity;
+use crate::returned_memory::returned_zeros;
 use crate::terraces::are_whole;
 
 /// The fewest posts of a lake or a sea without a stated level: fewer happen to be level.
@@ -110,8 +113,7 @@ impl WaterCover {
 /// The water of a lattice of elevations in meters, by the rules of this module. Time and memory are linear in the number of posts.
 pub fn water_cover(lattice: &Lattice, rules: &WaterRules) -> WaterCover {
     let heights = lattice.heights();
-    let mut state = Vec::with_capacity(returned_capacity::<PostState>(heights.len()));
-    state.resize(heights.len(), PostState::New);
+    let state = returned_zeros(heights.len());
     let mut search = WaterSearch { lattice, state, posts: Vec::new() };
     let mut cover = WaterCover::default();
     match rules.sea_level_m {
@@ -131,8 +133,10 @@ pub fn water_cover(lattice: &Lattice, rules: &WaterRules) -> WaterCover {
     cover
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Zeroable)]
+#[repr(u8)]
 enum PostState {
+    #[default]
     New,
     /// Of a few posts below 0 m among zeros.
     Pit,
@@ -310,10 +314,19 @@ impl WaterSearch<'_> {
     }
 }
 
-/// The rows of heights of which something holds: all threads look, so that a search on one passes most rows over.
-fn rows_where(lattice: &Lattice, holds: impl Fn(&[f32]) -> bool + Sync) -> Vec<usize> {
-    let rows = lattice.heights().par_chunks_exact(lattice.columns() as usize).enumerate();
-    rows.filter(|(_, row)| holds(row)).map(|(number, _)| number).collect()
+/// Posts of a stretch of a row: few of rough ground hold two equal heights.
+const STRETCH: usize = 256;
+
+/// The stretches of rows, and the post east of each, of which something holds: all threads look, so that a search on one
+/// passes most posts over.
+fn stretches_where(lattice: &Lattice, holds: impl Fn(&[f32]) -> bool + Sync) -> Vec<Range<usize>> {
+    let (heights, columns) = (lattice.heights(), lattice.columns() as usize);
+    let of_row = |row: usize| {
+        let (start, end) = (row * columns, (row + 1) * columns);
+        let stretch = move |from: usize| from..(from + STRETCH + 1).min(end);
+        (start..end).step_by(STRETCH).map(stretch).filter(|posts| holds(&heights[posts.clone()]))
+    };
+    (0..lattice.rows() as usize).into_par_iter().flat_map_iter(of_row).collect()
 }
 
 /// Posts, rising, among which is the first of every lake that is as high as the one east of it.
@@ -326,10 +339,10 @@ fn level_posts(lattice: &Lattice) -> Box<dyn Iterator<Item = usize> + '_> {
         let posts = large_region_posts(heights, columns, LEAST_POSTS);
         return Box::new(posts.into_iter().map(|index| index as usize));
     }
-    let has_level = |row: &[f32]| row.windows(2).fold(false, |any, pair| any | (pair[0] == pair[1]));
-    let rows = rows_where(lattice, has_level).into_iter();
+    let has_level = |posts: &[f32]| posts.windows(2).fold(false, |any, pair| any | (pair[0] == pair[1]));
+    let stretches = stretches_where(lattice, has_level).into_iter();
     let level = move |&index: &usize| heights[index] == heights[index + 1];
-    Box::new(rows.flat_map(move |row| (row * columns..(row + 1) * columns - 1).filter(level)))
+    Box::new(stretches.flat_map(move |posts| (posts.start..posts.end - 1).filter(level)))
 }
 
 #[cfg(test)]
