@@ -6,6 +6,7 @@
 //! pixel that it does not paint.
 
 use glam::Vec2;
+use rayon::prelude::*;
 use tiny_skia::{ColorU8, FillRule, Paint, PixmapMut, PremultipliedColorU8, Transform};
 
 use crate::drawing::{Drawing, PaintedPath};
@@ -21,7 +22,7 @@ struct Translucent {
 
 /// Paints `drawings` on `pixels`, in order, clipped to the picture.
 pub fn paint<'a>(pixels: &mut Pixels, drawings: impl IntoIterator<Item = &'a Drawing>) {
-    let translucent: Vec<_> = (pixels.data().iter().enumerate())
+    let translucent: Vec<_> = (pixels.data().par_iter().enumerate())
         .filter(|(_, color)| color.0[3] < 255)
         .map(|(index, &straight)| Translucent { index, straight, multiplied: multiply(straight) })
         .collect();

@@ -15,6 +15,7 @@
 
 use std::ops::Range;
 
+use rayon::iter::repeat_n;
 use rayon::prelude::*;
 
 use crate::bintree::Triangle;
@@ -57,7 +58,8 @@ pub(super) fn raised_errors(lattice: &Lattice, layout: &PatchLayout, every: usiz
         return rows.flat_map(|row| row.iter().step_by(every).copied()).collect();
     }
     let measured = MeasuredLattice { lattice, layout, survey: TileSurvey::new(lattice) };
-    let mut errors = vec![0f32; columns * rows];
+    // All threads fill them: new memory takes time when it is first written.
+    let mut errors: Vec<f32> = repeat_n(0.0, columns * rows).collect();
     SweepSource::sweep_made(layout, |south, own| measured.rows(south, own), every, &mut errors);
     errors
 }
