@@ -1,5 +1,6 @@
 //! `sandtable render`: a scene file to an annotated picture or sheet.
 
+use std::mem;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -123,6 +124,10 @@ pub fn run(arguments: &RenderArguments, threads: usize, gpu: Option<OtherRendere
                     false => print_summary(&summary(arguments, path, &scenes, &times))?,
                 }
                 failures.extend(missing);
+                if number + 1 == outputs.len() {
+                    // The process ends: the system takes all of its memory back at once.
+                    mem::forget(scenes);
+                }
             }
             Err(error) if is_batch => {
                 failures.push(RenderFailure { name: file.display().to_string(), error });

@@ -222,7 +222,7 @@ pub(super) fn planned_with<'a, T: Send>(
         let most = shows.entry(symbol.feature).or_insert(show);
         *most = show.max(*most);
     }
-    let plan = |draper: &mut Draper, (symbol, seen): &(&'a LineSymbol, SeenLine)| {
+    let plan = |draper: &mut Draper, (symbol, seen): (&'a LineSymbol, SeenLine)| {
         let dashed: Vec<Vec<SymbolVertex>>;
         let runs = if symbol.surface == RibbonSurface::Track {
             dashed = seen.runs.iter().flat_map(|run| dashes(run, symbol.least_px)).collect();
@@ -243,7 +243,7 @@ pub(super) fn planned_with<'a, T: Send>(
         let deck = symbol.deck.as_ref().filter(|deck| view.shows_apart(deck));
         finish(draper, PlannedSymbol { symbol, casing, fill: strokes(SymbolPart::Fill), deck })
     };
-    let narrow = seen.par_iter().filter(|(_, seen)| !seen.runs.is_empty());
+    let narrow = seen.into_par_iter().filter(|(_, seen)| !seen.runs.is_empty());
     (narrow.map_init(Draper::default, plan).collect(), shows)
 }
 

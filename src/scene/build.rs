@@ -10,6 +10,7 @@
 use std::sync::{Arc, OnceLock};
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use crate::analyses;
 use crate::assets::Assets;
@@ -208,10 +209,10 @@ pub fn build_with(
     views::find_buried(document, &cameras, scale.ground(&lattice), &mut collected.findings);
     let ShapedFeatures { roads, plots, lines, held, dug } = shaped;
     let barriers = fences::barriers(&lines);
-    let read = (sources.into_read(), roads, plots, lines);
-    let (heights, ()) = rayon::join(
+    let read = (sources.into_read(), plots, lines);
+    let (heights, ((), ())) = rayon::join(
         || height_service(document, loaded.source, crs.clone(), Arc::clone(&lattice), &collected.decks),
-        || drop(read),
+        || rayon::join(|| drop(read), || roads.into_par_iter().for_each(drop)),
     );
     let heights = heights?;
     let surroundings = Surroundings::new(document);
