@@ -20,7 +20,8 @@ fn returned_capacity<T>(count: usize) -> usize {
     if count.saturating_mul(size) < LEAST { count } else { count.max(ALWAYS_MAPPED.div_ceil(size)) }
 }
 
-/// `count` zeros, or values that are zeros in memory, as `false` is, in memory that is given back; it is taken page by page as it is written.
+/// `count` zeros, or values that are stored as zeros, such as `false`, in memory that is given back; it is taken page by page
+/// as it is written.
 pub fn returned_zeros<T: Zeroable>(count: usize) -> Vec<T> {
     let mut zeros = zeroed_vec(returned_capacity::<T>(count));
     zeros.truncate(count);

@@ -23,7 +23,7 @@ const SEEN_MARGIN: f32 = 1.05;
 const FARTHEST_M: f32 = 1e15;
 
 /// Triangles of a portion, which a thread works on in one go: some tenths of a millisecond.
-pub const PORTION: usize = 4096;
+const PORTION: u32 = 4096;
 
 /// A finite triangle, in meters from the eye.
 #[derive(Clone, Copy, Debug)]
@@ -191,16 +191,16 @@ pub fn portions(list: &DrawList, items: Range<usize>) -> Vec<Portion> {
         let item = &list.items[index];
         item.layer == DepthLayer::Ground || is_caster(list, item)
     });
-    let (mut portions, mut portion, mut room) = (Vec::new(), Vec::new(), PORTION as u32);
+    let (mut portions, mut portion, mut room) = (Vec::new(), Vec::new(), PORTION);
     for index in casting {
         let Range { mut start, end } = list.items[index].triangles;
         while start < end {
-            let part = start..end.min(start + room);
+            let part = start..end.min(start.saturating_add(room));
             (start, room) = (part.end, room - part.len() as u32);
             portion.push((index, part));
             if room == 0 {
                 portions.push(mem::take(&mut portion));
-                room = PORTION as u32;
+                room = PORTION;
             }
         }
     }
@@ -312,4 +312,46 @@ fn masks(list: &DrawList, solids: &[DrawItem]) -> BTreeMap<u32, AlphaMask> {
         }
     }
     masks
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Mat4;
+
+    use super::*;
+    use sandtable_draw::list::{DrawMesh, FeatureId};
+    use sandtable_draw::material::Material;
+
+    #[test]
+    fn portions_hold_each_triangle_of_casters_once_and_in_order() {
+        let mut list = DrawList::default();
+        let material = list.add_material(Material::default());
+        let mesh = list.add_mesh(DrawMesh::default());
+        let counts = [1, 5000, 0, 3, 4092, 9000];
+        for (feature, count) in (0..).map(FeatureId).zip(counts) {
+            let layer = DepthLayer::Solid;
+            let world_from_mesh = Mat4::IDENTITY;
+            list.items.push(DrawItem {
+                mesh,
+                triangles: 7..7 + count,
+                material,
+                world_from_mesh,
+                layer,
+                feature,
+            });
+        }
+        let portions = portions(&list, 0..counts.len());
+        let sizes: Vec<usize> =
+            portions.iter().map(|portion| portion.iter().map(|(_, part)| part.len()).sum()).collect();
+        assert_eq!(sizes, [4096, 4096, 4096, 4096, 1712]);
+        let held: Vec<_> = portions
+            .iter()
+            .flatten()
+            .flat_map(|(index, part)| part.clone().map(move |triangle| (*index, triangle)))
+            .collect();
+        let all: Vec<_> = (counts.iter().enumerate())
+            .flat_map(|(index, count)| (7..7 + count).map(move |triangle| (index, triangle)))
+            .collect();
+        assert_eq!(held, all);
+    }
 }
